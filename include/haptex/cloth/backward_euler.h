@@ -1,0 +1,61 @@
+// Backward Euler integration of a cloth with user-chosen, non-uniform time steps.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "haptex/cloth/block_matrix.h"
+#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/linear_solver.h"
+
+namespace haptex::cloth {
+
+struct StepSettings {
+  LinearSolverMethod solver = LinearSolverMethod::kAutomatic;
+  /// Relative residual |b - A dv| / |b| that every linear solve reaches.
+  double tolerance = 1e-6;
+  /// 1: the linearised step alone. More: Newton iterations with line search until the nonlinear
+  /// residual falls below newton_tolerance times the first one, or this number is spent.
+  int newton_iterations = 1;
+  double newton_tolerance = 1e-8;
+};
+
+/// What a step did and took.
+struct StepReport {
+  bool accepted = false;       ///< false: the result was not finite and the state is as before
+  bool linear_converged = false;
+  LinearSolverMethod solver = LinearSolverMethod::kCholesky;  ///< that gave the last solution
+  int linear_iterations = 0;   ///< conjugate gradient iterations of all solves
+  double linear_residual = 0;  ///< relative, the largest of all solves
+  int newton_iterations = 0;   ///< linear solves
+  double newton_residual = 0;  ///< nonlinear residual relative to the first; 0 if not asked for
+  bool newton_converged = true;
+  double assembly_seconds = 0;
+  double solve_seconds = 0;
+  double total_seconds = 0;
+};
+
+/// One step solves (M - h D - h^2 K) dv = h (F + h K v), then v += dv, x += h v (Baraff and Witkin
+/// 1998), with K and D projected to be negative semidefinite, so that the matrix is positive
+/// definite for every state and step. Attached particles reach their place exactly at the end of
+/// the step. With more than one Newton iteration the step continues from there to the minimum of
+/// the incremental potential of backward Euler, each iteration a descent by line search.
+///
+/// A step allocates nothing: all buffers are made by the constructor.
+class BackwardEuler {
+ public:
+  explicit BackwardEuler(const Cloth& cloth);
+
+  /// Advances `state` by `time_step` seconds.
+  /// @throws std::invalid_argument if the time step is not finite and > 0, the tolerance not in
+  ///   (0, 1), newton_iterations < 1, or the state's size is not the cloth's
+  StepReport step(const Cloth& cloth, ClothState& state, double time_step,
+                  const StepSettings& settings);
+
+ private:
+  SymmetricBlockMatrix matrix_;
+  LinearSolver solver_;
+  // further buffers, one vector per particle each
+};
+
+}  // namespace haptex::cloth

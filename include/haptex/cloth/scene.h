@@ -1,0 +1,30 @@
+// Scene files: what is simulated, how finely, what is modelled and what is attached. YAML.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "haptex/cloth/backward_euler.h"
+#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/mesh.h"
+
+namespace haptex::cloth {
+
+struct Scene {
+  std::string fabric_path;            ///< absolute, or relative to the working directory
+  ClothMesh mesh;
+  ModelledEffects effects;
+  std::vector<int> attached_particles;  ///< at their initial positions
+  double time_step = 0.0;               ///< s
+  StepSettings step;
+};
+
+/// Reads a scene file; docs/scene_files.md describes the format. A fabric or mesh name without a
+/// path separator is looked up in the directory of its kind beside the scene's directory
+/// (config/fabrics for config/scenes).
+/// @throws std::runtime_error if the file cannot be read or is not YAML
+/// @throws std::invalid_argument naming file, key, value and what is allowed
+Scene loadScene(const std::string& path);
+
+}  // namespace haptex::cloth

@@ -1,0 +1,17 @@
+// Fabric files: YAML, one fabric each.
+#pragma once
+
+#include <string>
+
+#include "haptex/material/fabric.h"
+
+namespace haptex::material {
+
+/// Reads a fabric file; docs/fabric_files.md describes the format.
+/// @throws std::runtime_error if the file cannot be read or is not YAML
+/// @throws std::invalid_argument naming file, key, value and what is allowed if a key is missing
+///   or unknown, a unit is wrong, a number is not finite or out of range, or samples are not in
+///   strictly increasing order of strain
+Fabric loadFabric(const std::string& path);
+
+}  // namespace haptex::material
