@@ -22,7 +22,7 @@ struct StepSettings {
 
 /// What a step did and took.
 struct StepReport {
-  bool accepted = false;       ///< false: the result was not finite and the state is as before
+  bool accepted = false;  ///< false: the result was not finite and the state is as before
   bool linear_converged = false;
   LinearSolverMethod solver = LinearSolverMethod::kCholesky;  ///< that gave the last solution
   int linear_iterations = 0;   ///< conjugate gradient iterations of all solves
@@ -38,24 +38,45 @@ struct StepReport {
 /// One step solves (M - h D - h^2 K) dv = h (F + h K v), then v += dv, x += h v (Baraff and Witkin
 /// 1998), with K and D projected to be negative semidefinite, so that the matrix is positive
 /// definite for every state and step. Attached particles reach their place exactly at the end of
-/// the step. With more than one Newton iteration the step continues from there to the minimum of
-/// the incremental potential of backward Euler, each iteration a descent by line search.
+/// the step. With more than one Newton iteration the step goes on from there to the minimum of the
+/// incremental potential of backward Euler,
+///   |M^(1/2) (v - v0)|^2 / 2 + Membrane::incrementalPotential(x) - external forces . x,
+/// by Newton iterations with a backtracking line search.
 ///
 /// A step allocates nothing: all buffers are made by the constructor.
 class BackwardEuler {
  public:
-  explicit BackwardEuler(const Cloth& cloth);
+  /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1) or
+  ///   newton_iterations is less than 1
+  BackwardEuler(const Cloth& cloth, const StepSettings& settings);
 
-  /// Advances `state` by `time_step` seconds.
-  /// @throws std::invalid_argument if the time step is not finite and > 0, the tolerance not in
-  ///   (0, 1), newton_iterations < 1, or the state's size is not the cloth's
-  StepReport step(const Cloth& cloth, ClothState& state, double time_step,
-                  const StepSettings& settings);
+  /// Advances `state` by `time_step` seconds; steps need not be uniform.
+  /// @param cloth that of the constructor; its fabric, loads and attachments may have changed
+  /// @throws std::invalid_argument if the time step is not finite and > 0 or the state's size is
+  ///   not the cloth's; the state is then as before
+  StepReport step(const Cloth& cloth, ClothState& state, double time_step);
+
+  const StepSettings& settings() const { return settings_; }
 
  private:
+  void prescribe(const Cloth& cloth, const ClothState& state, double time_step);
+  void solveLinear(StepReport& report);
+  void iterateNewton(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
+  bool searchLine(const Cloth& cloth, const ClothState& begin, double h, double& potential);
+  double incrementalPotential(const Cloth& cloth, const ClothState& begin, double h,
+                              const Positions& positions, const Velocities& velocities) const;
+
+  StepSettings settings_;
   SymmetricBlockMatrix matrix_;
   LinearSolver solver_;
-  // further buffers, one vector per particle each
+  BlockVector rhs_;
+  BlockVector solution_;    // of the last linear system, with the prescribed values
+  BlockVector prescribed_;  // velocity changes of the attached particles
+  std::vector<char> fixed_;
+  bool any_fixed_ = false;
+  ClothState end_;    // the step's result before it is accepted
+  ClothState trial_;  // of a line search; empty with one Newton iteration
+  std::vector<MembraneStrain> begin_strains_;
 };
 
 }  // namespace haptex::cloth

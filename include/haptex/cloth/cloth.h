@@ -40,8 +40,8 @@ struct AttachmentPath {
 
 /// One block of the exact Jacobians of the internal forces.
 struct JacobianBlock {
-  int row;     ///< particle whose force is differentiated
-  int column;  ///< particle by whose position or velocity
+  int row;                      ///< particle whose force is differentiated
+  int column;                   ///< particle by whose position or velocity
   Eigen::Matrix3d by_position;  ///< N/m
   Eigen::Matrix3d by_velocity;  ///< N.s/m
 };

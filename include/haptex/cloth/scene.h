@@ -12,7 +12,7 @@
 namespace haptex::cloth {
 
 struct Scene {
-  std::string fabric_path;            ///< absolute, or relative to the working directory
+  std::string fabric_path;  ///< absolute, or relative to the working directory
   ClothMesh mesh;
   ModelledEffects effects;
   std::vector<int> attached_particles;  ///< at their initial positions

@@ -1,0 +1,107 @@
+// The Green-Lagrange membrane element of Volino and Magnenat-Thalmann 2005 on every triangle of a
+// cloth: design equations in docs/mechanics.md.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "haptex/cloth/block_matrix.h"
+#include "haptex/cloth/mesh.h"
+#include "haptex/material/fabric.h"
+
+namespace haptex::cloth {
+
+using Positions = std::vector<Eigen::Vector3d>;   ///< m, one per particle
+using Velocities = std::vector<Eigen::Vector3d>;  ///< m/s, one per particle
+
+/// A triangle at rest. U = sum_i weft_weights[i] P_i is the deformed image of the unit vector
+/// along weft, V likewise along warp (no unit); the weights (1/m) sum to zero.
+struct MembraneElement {
+  std::array<int, 3> particles;        ///< ascending
+  std::array<int, 3> slots;            ///< of the matrix blocks (1,0), (2,0), (2,1)
+  std::array<double, 3> weft_weights;  ///< ru of the design, 1/m
+  std::array<double, 3> warp_weights;  ///< rv, 1/m
+  double area;                         ///< at rest, m^2
+};
+
+/// Green-Lagrange strains or their rates (1/s) in the order weft (U.U-1)/2, warp (V.V-1)/2,
+/// shear U.V.
+using MembraneStrain = Eigen::Vector3d;
+
+/// Projects the symmetric tensor [[s0, s2], [s2, s1]] to its nearest positive semidefinite one
+/// (Frobenius norm) by clamping its two eigenvalues in closed form.
+Eigen::Vector3d projectStress(const Eigen::Vector3d& stress);
+
+/// Elastic and, if asked for, viscous membrane forces of all elements of a mesh.
+class Membrane {
+ public:
+  /// @param mesh without defects (findDefects())
+  /// @param viscosity whether the viscous curves of the fabric act
+  Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool viscosity);
+
+  /// Takes the curves of another fabric.
+  void setFabric(const material::Fabric& fabric);
+
+  const std::vector<MembraneElement>& elements() const { return elements_; }
+
+  /// Strain of one element.
+  MembraneStrain strain(const MembraneElement& element, const Positions& positions) const;
+
+  /// Adds the membrane forces (N): F_i = -A [suu ru_i U + svv rv_i V + suv (ru_i V + rv_i U)].
+  void addForces(const Positions& positions, const Velocities& velocities,
+                 std::vector<Eigen::Vector3d>& forces) const;
+
+  /// Elastic energy (J).
+  double elasticEnergy(const Positions& positions) const;
+
+  /// Adds what the membrane contributes to the linearised backward Euler step,
+  ///   matrix += -h D - h^2 K,  rhs += h (F + h K v),
+  /// with the exact projection: slopes of the curves clamped to >= 0 and the stress of the
+  /// geometric part by projectStress(), the same K on both sides.
+  /// @param h time step, s
+  void addStep(const Positions& positions, const Velocities& velocities, double h,
+               SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
+
+  /// Adds what the membrane contributes to a Newton iteration on the incremental potential
+  ///   sum_elements A [W(e) + h G((e - e0)/h)],  G the integral of the viscous curves,
+  /// whose discrete strain rate is exactly zero under rigid motion:
+  ///   matrix += h^2 times its projected Hessian, rhs -= h times its gradient.
+  /// @param positions     at the end of the step
+  /// @param begin_strains e0 of every element, strains at the beginning of the step
+  void addNewton(const Positions& positions, const std::vector<MembraneStrain>& begin_strains,
+                 double h, SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
+
+  /// The incremental potential of addNewton() (J).
+  double incrementalPotential(const Positions& positions,
+                              const std::vector<MembraneStrain>& begin_strains, double h) const;
+
+  /// Strains of all elements. @param strains resized to the number of elements
+  void computeStrains(const Positions& positions, std::vector<MembraneStrain>& strains) const;
+
+  /// The exact Jacobians of the forces of one element: blocks [i][j] are dF_i/dP_j (N/m) and
+  /// dF_i/dv_j (N.s/m) of its particles in the order of `particles`. With viscosity dF/dP is not
+  /// symmetric, because the strain rate depends on the position.
+  struct Jacobian {
+    std::array<std::array<Eigen::Matrix3d, 3>, 3> by_position;
+    std::array<std::array<Eigen::Matrix3d, 3>, 3> by_velocity;
+  };
+  Jacobian exactJacobian(const MembraneElement& element, const Positions& positions,
+                         const Velocities& velocities) const;
+
+ private:
+  struct Frame;  // U, V of an element, or their rates
+  static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
+  template <bool kViscous>
+  void addStepOf(const Positions& positions, const Velocities& velocities, double h,
+                 SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
+  std::array<material::CurveValue, 3> elasticResponse(const MembraneStrain& strain) const;
+  std::array<material::CurveValue, 3> viscousResponse(const MembraneStrain& rate) const;
+
+  std::vector<MembraneElement> elements_;
+  std::array<material::StrainStressCurve, 3> elastic_;
+  std::array<material::StrainStressCurve, 3> viscous_;
+  bool viscosity_;
+};
+
+}  // namespace haptex::cloth

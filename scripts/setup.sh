@@ -1,0 +1,91 @@
+# Sourced by the other scripts: installs what is missing, builds, and sets up the ROS environment.
+# Everything it prints goes to standard error, so that standard output belongs to the caller.
+
+haptex_root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)"
+
+haptex_die() {
+  echo "$(basename "$0"): $*" >&2
+  exit 1
+}
+
+haptex_as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    haptex_die "missing packages have to be installed by root, and there is no sudo: $*"
+  fi
+}
+
+# Installs the packages of scripts/packages.txt that are not installed yet.
+haptex_install_packages() {
+  local package
+  local missing=()
+  while read -r package; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      missing+=("$package")
+  done < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$haptex_root/scripts/packages.txt")
+  [ "${#missing[@]}" -eq 0 ] && return
+  echo "Installing ${#missing[@]} Debian packages: ${missing[*]}" >&2
+  haptex_as_root apt-get update >&2 || haptex_die "apt-get update failed"
+  haptex_as_root env DEBIAN_FRONTEND=noninteractive \
+    apt-get install --yes --no-install-recommends "${missing[@]}" >&2 ||
+    haptex_die "these packages could not be installed: ${missing[*]}"
+}
+
+# haptex_logged LOG COMMAND...: runs the command into the log and shows its end if it fails.
+haptex_logged() {
+  local log="$1"
+  shift
+  if ! "$@" >>"$log" 2>&1; then
+    tail -n 40 "$log" >&2
+    echo "failed: $*" >&2
+    echo "The whole log: $log" >&2
+    return 1
+  fi
+}
+
+# haptex_configure DIRECTORY [CMAKE_ARGUMENT...]: configures into build directory DIRECTORY of the
+# package. A build directory that was made for another place is made anew: its paths are wrong.
+haptex_configure() {
+  local build="$haptex_root/$1"
+  shift
+  local cache="$build/CMakeCache.txt"
+  if [ -e "$cache" ] && ! { grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$haptex_root" "$cache" &&
+    grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build" "$cache"; }; then
+    rm -rf "$build"
+  fi
+  mkdir -p "$build"
+  : >"$build/build.log"
+  # Debian's ROS belongs to Debian's Python, which need not be the first on PATH.
+  haptex_logged "$build/build.log" cmake -S "$haptex_root" -B "$build" \
+    -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=/usr/bin/python3 \
+    -DCATKIN_DEVEL_PREFIX="$build/devel" -DCMAKE_INSTALL_PREFIX="$build/install" "$@"
+}
+
+# haptex_compile DIRECTORY [TARGET...]
+haptex_compile() {
+  local build="$haptex_root/$1"
+  shift
+  haptex_logged "$build/build.log" cmake --build "$build" -j "$(nproc)" --target "${@:-all}"
+}
+
+# haptex_environment SETUP_FILE: ROS's own setup files read variables that may be unset.
+haptex_environment() {
+  local setup_file="$1"
+  set --
+  set +u
+  # shellcheck disable=SC1090
+  source "$setup_file" >&2
+  set -u
+}
+
+# Installs and builds what all scripts but scripts/test need, and enters the devel space.
+haptex_setup() {
+  haptex_install_packages
+  echo "Building in $haptex_root/build" >&2
+  haptex_configure build || haptex_die "configuring failed"
+  haptex_compile build || haptex_die "building failed"
+  haptex_environment "$haptex_root/build/devel/setup.bash"
+}

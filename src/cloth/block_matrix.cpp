@@ -1,0 +1,79 @@
+#include "haptex/cloth/block_matrix.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace haptex::cloth {
+
+SymmetricBlockMatrix::SymmetricBlockMatrix(int size,
+                                           const std::vector<std::array<int, 3>>& triangles)
+    : diagonal_(size, Eigen::Matrix3d::Zero()) {
+  std::vector<std::vector<int>> columns_of_row(size);
+  for (const std::array<int, 3>& triangle : triangles) {
+    for (int i : triangle) {
+      for (int j : triangle) {
+        if (j < i) columns_of_row[i].push_back(j);
+      }
+    }
+  }
+  row_begin_.reserve(size + 1);
+  row_begin_.push_back(0);
+  for (std::vector<int>& columns : columns_of_row) {
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    columns_.insert(columns_.end(), columns.begin(), columns.end());
+    row_begin_.push_back(static_cast<int>(columns_.size()));
+  }
+  columns_.shrink_to_fit();
+  lower_.assign(columns_.size(), Eigen::Matrix3d::Zero());
+}
+
+int SymmetricBlockMatrix::slot(int row, int column) const {
+  const auto begin = columns_.begin() + row_begin_.at(row);
+  const auto end = columns_.begin() + row_begin_.at(row + 1);
+  const auto found = std::lower_bound(begin, end, column);
+  if (found == end || *found != column) {
+    throw std::out_of_range("no block at row " + std::to_string(row) + ", column " +
+                            std::to_string(column) + " of the matrix pattern");
+  }
+  return static_cast<int>(found - columns_.begin());
+}
+
+void SymmetricBlockMatrix::setZero() {
+  std::fill(diagonal_.begin(), diagonal_.end(), Eigen::Matrix3d::Zero());
+  std::fill(lower_.begin(), lower_.end(), Eigen::Matrix3d::Zero());
+}
+
+void SymmetricBlockMatrix::multiply(const BlockVector& x, BlockVector& y) const {
+  for (int i = 0; i < size(); ++i) {
+    const Eigen::Vector3d x_i = x.col(i);
+    Eigen::Vector3d sum = diagonal_[i] * x_i;
+    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) {
+      const int j = columns_[s];  // j < i, so y.col(j) is already set
+      sum += lower_[s] * x.col(j);
+      y.col(j) += lower_[s].transpose() * x_i;
+    }
+    y.col(i) = sum;
+  }
+}
+
+void SymmetricBlockMatrix::eliminate(const std::vector<char>& fixed, const BlockVector& values,
+                                     BlockVector& rhs) {
+  for (int i = 0; i < size(); ++i) {
+    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) {
+      const int j = columns_[s];
+      if (!fixed[i] && !fixed[j]) continue;
+      if (!fixed[i]) rhs.col(i) -= lower_[s] * values.col(j);
+      if (!fixed[j]) rhs.col(j) -= lower_[s].transpose() * values.col(i);
+      lower_[s].setZero();
+    }
+  }
+  for (int i = 0; i < size(); ++i) {
+    if (!fixed[i]) continue;
+    diagonal_[i].setIdentity();
+    rhs.col(i).setZero();
+  }
+}
+
+}  // namespace haptex::cloth

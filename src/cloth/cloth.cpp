@@ -1,0 +1,174 @@
+#include "haptex/cloth/cloth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+namespace haptex::cloth {
+namespace {
+
+void requireDensity(const material::Fabric& fabric) {
+  if (!std::isfinite(fabric.areal_density) || fabric.areal_density <= 0.0) {
+    std::ostringstream message;
+    message << "areal density of fabric '" << fabric.name << "' is " << fabric.areal_density
+            << " kg/m2; it must be finite and greater than 0";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+const ClothMesh& requireSoundAndReturn(const ClothMesh& mesh) {
+  requireSound(mesh);
+  return mesh;
+}
+
+std::vector<double> lumpedMasses(const Membrane& membrane, std::size_t particles, double density) {
+  std::vector<double> masses(particles, 0.0);
+  for (const MembraneElement& element : membrane.elements()) {
+    for (int particle : element.particles) masses[particle] += density * element.area / 3.0;
+  }
+  return masses;
+}
+
+}  // namespace
+
+Eigen::Vector3d AttachmentPath::position(double time) const {
+  if (duration <= 0.0 || time >= start_time + duration) return start + displacement;
+  if (time <= start_time) return start;
+  const double s = (time - start_time) / duration;
+  return start + s * s * s * (10.0 + s * (-15.0 + 6.0 * s)) * displacement;
+}
+
+Cloth::Cloth(ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects)
+    : mesh_(std::move(mesh)),
+      fabric_(std::move(fabric)),
+      effects_(effects),
+      membrane_(requireSoundAndReturn(mesh_), fabric_, effects.viscosity),
+      external_forces_(mesh_.rest_coordinates.size(), Eigen::Vector3d::Zero()),
+      attachments_(mesh_.rest_coordinates.size()) {
+  requireDensity(fabric_);
+  if (!effects.gravity.allFinite()) {
+    throw std::invalid_argument("gravity has a component that is not finite");
+  }
+  masses_ = lumpedMasses(membrane_, mesh_.rest_coordinates.size(), fabric_.areal_density);
+}
+
+ClothState Cloth::initialState() const {
+  ClothState state;
+  state.positions = mesh_.initial_positions;
+  state.velocities.assign(particleCount(), Eigen::Vector3d::Zero());
+  return state;
+}
+
+void Cloth::setFabric(material::Fabric fabric) {
+  requireDensity(fabric);
+  membrane_.setFabric(fabric);
+  masses_ = lumpedMasses(membrane_, particleCount(), fabric.areal_density);
+  fabric_ = std::move(fabric);
+}
+
+void Cloth::requireParticle(int particle) const {
+  if (particle < 0 || particle >= static_cast<int>(particleCount())) {
+    std::ostringstream message;
+    message << "particle " << particle << " does not exist; the cloth has particles 0 to "
+            << particleCount() - 1;
+    throw std::invalid_argument(message.str());
+  }
+}
+
+void Cloth::setExternalForce(int particle, const Eigen::Vector3d& force) {
+  requireParticle(particle);
+  if (!force.allFinite()) {
+    throw std::invalid_argument("the force on particle " + std::to_string(particle) +
+                                " has a component that is not finite");
+  }
+  external_forces_[particle] = force;
+}
+
+void Cloth::attach(int particle, const AttachmentPath& path) {
+  requireParticle(particle);
+  const bool finite = path.start.allFinite() && path.displacement.allFinite() &&
+                      std::isfinite(path.start_time) && std::isfinite(path.duration);
+  if (!finite || path.duration < 0.0) {
+    std::ostringstream message;
+    message << "the path of particle " << particle << " from (" << path.start.transpose()
+            << ") m by (" << path.displacement.transpose() << ") m in " << path.duration
+            << " s is not allowed; numbers must be finite and the duration at least 0";
+    throw std::invalid_argument(message.str());
+  }
+  attachments_[particle] = path;
+}
+
+void Cloth::release(int particle) {
+  requireParticle(particle);
+  if (!attachments_[particle]) {
+    throw std::invalid_argument("particle " + std::to_string(particle) + " is not attached");
+  }
+  attachments_[particle].reset();
+}
+
+void Cloth::releaseAll() { std::fill(attachments_.begin(), attachments_.end(), std::nullopt); }
+
+bool Cloth::isAttached(int particle) const {
+  requireParticle(particle);
+  return attachments_[particle].has_value();
+}
+
+void Cloth::computeForces(const ClothState& state, std::vector<Eigen::Vector3d>& forces) const {
+  forces.resize(particleCount());
+  for (std::size_t i = 0; i < particleCount(); ++i) {
+    forces[i] = external_forces_[i] + masses_[i] * effects_.gravity;
+  }
+  membrane_.addForces(state.positions, state.velocities, forces);
+}
+
+double Cloth::potentialEnergy(const ClothState& state) const {
+  double energy = membrane_.elasticEnergy(state.positions);
+  for (std::size_t i = 0; i < particleCount(); ++i) {
+    energy -= (external_forces_[i] + masses_[i] * effects_.gravity).dot(state.positions[i]);
+  }
+  return energy;
+}
+
+double Cloth::kineticEnergy(const ClothState& state) const {
+  double energy = 0.0;
+  for (std::size_t i = 0; i < particleCount(); ++i) {
+    energy += 0.5 * masses_[i] * state.velocities[i].squaredNorm();
+  }
+  return energy;
+}
+
+std::vector<JacobianBlock> Cloth::jacobian(const ClothState& state,
+                                           const std::vector<int>& particles) const {
+  std::vector<std::map<int, JacobianBlock>> rows(particles.size());
+  std::map<int, std::vector<std::size_t>> rows_of_particle;
+  for (std::size_t r = 0; r < particles.size(); ++r) {
+    requireParticle(particles[r]);
+    rows_of_particle[particles[r]].push_back(r);
+  }
+  for (const MembraneElement& element : membrane_.elements()) {
+    for (int i = 0; i < 3; ++i) {
+      const auto asked = rows_of_particle.find(element.particles[i]);
+      if (asked == rows_of_particle.end()) continue;
+      const Membrane::Jacobian jacobian =
+          membrane_.exactJacobian(element, state.positions, state.velocities);
+      for (std::size_t r : asked->second) {
+        for (int j = 0; j < 3; ++j) {
+          JacobianBlock empty{element.particles[i], element.particles[j], Eigen::Matrix3d::Zero(),
+                              Eigen::Matrix3d::Zero()};
+          JacobianBlock& block = rows[r].emplace(element.particles[j], empty).first->second;
+          block.by_position += jacobian.by_position[i][j];
+          block.by_velocity += jacobian.by_velocity[i][j];
+        }
+      }
+    }
+  }
+  std::vector<JacobianBlock> blocks;
+  for (const auto& row : rows) {
+    for (const auto& entry : row) blocks.push_back(entry.second);
+  }
+  return blocks;
+}
+
+}  // namespace haptex::cloth

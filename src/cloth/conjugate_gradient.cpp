@@ -1,0 +1,77 @@
+#include "haptex/cloth/conjugate_gradient.h"
+
+#include <Eigen/LU>
+
+namespace haptex::cloth {
+
+namespace {
+
+double dot(const BlockVector& a, const BlockVector& b) { return a.cwiseProduct(b).sum(); }
+
+}  // namespace
+
+ConjugateGradient::ConjugateGradient(int size)
+    : inverse_diagonal_(size),
+      residual_(3, size),
+      preconditioned_(3, size),
+      direction_(3, size),
+      product_(3, size) {}
+
+SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                                     double tolerance, int max_iterations, BlockVector& x) {
+  SolveResult result;
+  const double rhs_norm = rhs.norm();
+  if (rhs_norm == 0.0) {
+    x.setZero();
+    result.converged = true;
+    return result;
+  }
+  for (int i = 0; i < matrix.size(); ++i) inverse_diagonal_[i] = matrix.diagonal(i).inverse();
+  const auto precondition = [&] {
+    for (int i = 0; i < matrix.size(); ++i) {
+      preconditioned_.col(i).noalias() = inverse_diagonal_[i] * residual_.col(i);
+    }
+  };
+  const auto restart = [&] {
+    matrix.multiply(x, product_);
+    residual_ = rhs - product_;
+    result.residual = residual_.norm() / rhs_norm;
+    result.converged = result.residual <= tolerance;
+  };
+
+  restart();
+  if (!(result.residual <= 1.0)) {  // a guess worse than none, or not a number
+    x.setZero();
+    restart();
+  }
+  while (!result.converged && result.iterations < max_iterations) {
+    precondition();
+    direction_ = preconditioned_;
+    double slope = dot(residual_, preconditioned_);
+    double recurrence = result.residual;
+    while (recurrence > tolerance && result.iterations < max_iterations) {
+      matrix.multiply(direction_, product_);
+      const double curvature = dot(direction_, product_);
+      if (!(curvature > 0.0)) {  // not positive definite to rounding, or not a number
+        restart();
+        return result;
+      }
+      const double step = slope / curvature;
+      x += step * direction_;
+      residual_ -= step * product_;
+      ++result.iterations;
+      recurrence = residual_.norm() / rhs_norm;
+      precondition();
+      const double next_slope = dot(residual_, preconditioned_);
+      direction_ = preconditioned_ + (next_slope / slope) * direction_;
+      slope = next_slope;
+    }
+    const double before = result.residual;
+    restart();
+    // Below the rounding of the matrix-vector product another round cannot help.
+    if (!(result.residual < 0.5 * before)) break;
+  }
+  return result;
+}
+
+}  // namespace haptex::cloth

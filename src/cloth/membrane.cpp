@@ -1,0 +1,303 @@
+#include "haptex/cloth/membrane.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace haptex::cloth {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+struct Membrane::Frame {
+  Vector3d weft;
+  Vector3d warp;
+
+  MembraneStrain strain() const {
+    return {0.5 * (weft.squaredNorm() - 1.0), 0.5 * (warp.squaredNorm() - 1.0), weft.dot(warp)};
+  }
+  MembraneStrain rate(const Frame& derivative) const {
+    return {weft.dot(derivative.weft), warp.dot(derivative.warp),
+            derivative.weft.dot(warp) + weft.dot(derivative.warp)};
+  }
+};
+
+namespace {
+
+MembraneElement restElement(const ClothMesh& mesh, const SymmetricBlockMatrix& pattern,
+                            std::array<int, 3> particles) {
+  std::sort(particles.begin(), particles.end());
+  const Eigen::Vector2d& a = mesh.rest_coordinates[particles[0]];
+  const Eigen::Vector2d& b = mesh.rest_coordinates[particles[1]];
+  const Eigen::Vector2d& c = mesh.rest_coordinates[particles[2]];
+  const double ua = a.x(), va = a.y(), ub = b.x(), vb = b.y(), uc = c.x(), vc = c.y();
+  const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
+  MembraneElement element;
+  element.particles = particles;
+  element.slots = {pattern.slot(particles[1], particles[0]),
+                   pattern.slot(particles[2], particles[0]),
+                   pattern.slot(particles[2], particles[1])};
+  element.weft_weights = {(vb - vc) / d, (vc - va) / d, (va - vb) / d};
+  element.warp_weights = {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d};
+  element.area = 0.5 * std::abs(d);
+  return element;
+}
+
+/// Adds factor * (tangent blocks of one element) to the matrix: the sum over the three strains of
+/// slope g_i g_j^T plus the geometric part, both positive semidefinite. Blocks with particle 0
+/// follow from the others because the weights sum to zero.
+void addTangent(const MembraneElement& element, const Vector3d& weft, const Vector3d& warp,
+                const Vector3d& slope, const Vector3d& stress, double factor,
+                SymmetricBlockMatrix& matrix) {
+  const Matrix3d weft_weft = weft * weft.transpose();
+  const Matrix3d warp_warp = warp * warp.transpose();
+  const Matrix3d warp_weft = warp * weft.transpose();
+  const auto block = [&](int i, int j) {
+    const double uu = factor * element.weft_weights[i] * element.weft_weights[j];
+    const double vv = factor * element.warp_weights[i] * element.warp_weights[j];
+    const double uv = factor * element.weft_weights[i] * element.warp_weights[j];
+    const double vu = factor * element.warp_weights[i] * element.weft_weights[j];
+    Matrix3d result = (slope[0] * uu + slope[2] * vv) * weft_weft +
+                      (slope[1] * vv + slope[2] * uu) * warp_warp + (slope[2] * uv) * warp_weft +
+                      (slope[2] * vu) * warp_weft.transpose();
+    result.diagonal().array() += stress[0] * uu + stress[1] * vv + stress[2] * (uv + vu);
+    return result;
+  };
+  const Matrix3d b11 = block(1, 1);
+  const Matrix3d b21 = block(2, 1);
+  const Matrix3d b22 = block(2, 2);
+  const Matrix3d b10 = -b11 - b21.transpose();
+  const Matrix3d b20 = -b21 - b22;
+  matrix.diagonal(element.particles[0]) -= b10 + b20;
+  matrix.diagonal(element.particles[1]) += b11;
+  matrix.diagonal(element.particles[2]) += b22;
+  matrix.lower(element.slots[0]) += b10;
+  matrix.lower(element.slots[1]) += b20;
+  matrix.lower(element.slots[2]) += b21;
+}
+
+/// Distributes the tractions conjugate to U and V (times the rest area) to the particles.
+template <typename Target>
+void addScattered(const MembraneElement& element, const Vector3d& weft_traction,
+                  const Vector3d& warp_traction, Target&& target) {
+  const Vector3d at_1 =
+      element.weft_weights[1] * weft_traction + element.warp_weights[1] * warp_traction;
+  const Vector3d at_2 =
+      element.weft_weights[2] * weft_traction + element.warp_weights[2] * warp_traction;
+  target(element.particles[0]) -= at_1 + at_2;
+  target(element.particles[1]) += at_1;
+  target(element.particles[2]) += at_2;
+}
+
+Vector3d clampedToNonNegative(const Vector3d& slope) { return slope.cwiseMax(0.0); }
+
+}  // namespace
+
+Vector3d projectStress(const Vector3d& stress) {
+  const double mean = 0.5 * (stress[0] + stress[1]);
+  const double difference = 0.5 * (stress[0] - stress[1]);
+  const double radius = std::sqrt(difference * difference + stress[2] * stress[2]);
+  if (mean >= radius) return stress;
+  if (mean <= -radius) return Vector3d::Zero();
+  const double half = 0.5 * (mean + radius);  // half the one positive eigenvalue; radius > 0 here
+  return {half * (1.0 + difference / radius), half * (1.0 - difference / radius),
+          half * stress[2] / radius};
+}
+
+Membrane::Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool viscosity)
+    : viscosity_(viscosity) {
+  const SymmetricBlockMatrix pattern(static_cast<int>(mesh.rest_coordinates.size()),
+                                     mesh.triangles);
+  elements_.reserve(mesh.triangles.size());
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    elements_.push_back(restElement(mesh, pattern, triangle));
+  }
+  setFabric(fabric);
+}
+
+void Membrane::setFabric(const material::Fabric& fabric) {
+  elastic_ = {fabric.weft.elastic, fabric.warp.elastic, fabric.shear.elastic};
+  viscous_ = {fabric.weft.viscous, fabric.warp.viscous, fabric.shear.viscous};
+}
+
+Membrane::Frame Membrane::frame(const MembraneElement& element,
+                                const std::vector<Vector3d>& points) {
+  const Vector3d& origin = points[element.particles[0]];
+  const Vector3d edge_1 = points[element.particles[1]] - origin;
+  const Vector3d edge_2 = points[element.particles[2]] - origin;
+  return {element.weft_weights[1] * edge_1 + element.weft_weights[2] * edge_2,
+          element.warp_weights[1] * edge_1 + element.warp_weights[2] * edge_2};
+}
+
+MembraneStrain Membrane::strain(const MembraneElement& element, const Positions& positions) const {
+  return frame(element, positions).strain();
+}
+
+std::array<material::CurveValue, 3> Membrane::elasticResponse(const MembraneStrain& strain) const {
+  return {elastic_[0].evaluate(strain[0]), elastic_[1].evaluate(strain[1]),
+          elastic_[2].evaluate(strain[2])};
+}
+
+std::array<material::CurveValue, 3> Membrane::viscousResponse(const MembraneStrain& rate) const {
+  return {viscous_[0].evaluate(rate[0]), viscous_[1].evaluate(rate[1]),
+          viscous_[2].evaluate(rate[2])};
+}
+
+void Membrane::addForces(const Positions& positions, const Velocities& velocities,
+                         std::vector<Vector3d>& forces) const {
+  for (const MembraneElement& element : elements_) {
+    const Frame at = frame(element, positions);
+    const auto elastic = elasticResponse(at.strain());
+    Vector3d stress(elastic[0].stress, elastic[1].stress, elastic[2].stress);
+    if (viscosity_) {
+      const auto viscous = viscousResponse(at.rate(frame(element, velocities)));
+      stress += Vector3d(viscous[0].stress, viscous[1].stress, viscous[2].stress);
+    }
+    stress *= -element.area;
+    addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
+                 stress[1] * at.warp + stress[2] * at.weft,
+                 [&](int particle) -> Vector3d& { return forces[particle]; });
+  }
+}
+
+double Membrane::elasticEnergy(const Positions& positions) const {
+  double energy = 0.0;
+  for (const MembraneElement& element : elements_) {
+    const MembraneStrain strain = frame(element, positions).strain();
+    for (int m = 0; m < 3; ++m) energy += element.area * elastic_[m].energy(strain[m]);
+  }
+  return energy;
+}
+
+void Membrane::addStep(const Positions& positions, const Velocities& velocities, double h,
+                       SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
+  if (viscosity_) {
+    addStepOf<true>(positions, velocities, h, matrix, rhs);
+  } else {
+    addStepOf<false>(positions, velocities, h, matrix, rhs);
+  }
+}
+
+template <bool kViscous>
+void Membrane::addStepOf(const Positions& positions, const Velocities& velocities, double h,
+                         SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
+  for (const MembraneElement& element : elements_) {
+    const Frame at = frame(element, positions);
+    const Frame derivative = frame(element, velocities);
+    const MembraneStrain rate = at.rate(derivative);
+    const auto elastic = elasticResponse(at.strain());
+    Vector3d stress(elastic[0].stress, elastic[1].stress, elastic[2].stress);
+    Vector3d slope = clampedToNonNegative({elastic[0].slope, elastic[1].slope, elastic[2].slope});
+    const Vector3d stress_increment = h * slope.cwiseProduct(rate);
+    if constexpr (kViscous) {
+      const auto viscous = viscousResponse(rate);
+      stress += Vector3d(viscous[0].stress, viscous[1].stress, viscous[2].stress);
+      slope += clampedToNonNegative({viscous[0].slope, viscous[1].slope, viscous[2].slope}) / h;
+    }
+    const Vector3d geometric = projectStress(stress);
+    addTangent(element, at.weft, at.warp, slope, geometric, element.area * h * h, matrix);
+
+    const double factor = -element.area * h;
+    const Vector3d end = factor * (stress + stress_increment);
+    const Vector3d turning = factor * h * geometric;
+    addScattered(element,
+                 end[0] * at.weft + end[2] * at.warp + turning[0] * derivative.weft +
+                     turning[2] * derivative.warp,
+                 end[1] * at.warp + end[2] * at.weft + turning[1] * derivative.warp +
+                     turning[2] * derivative.weft,
+                 [&](int particle) { return rhs.col(particle); });
+  }
+}
+
+void Membrane::addNewton(const Positions& positions,
+                         const std::vector<MembraneStrain>& begin_strains, double h,
+                         SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const MembraneElement& element = elements_[t];
+    const Frame at = frame(element, positions);
+    const MembraneStrain strain = at.strain();
+    const auto elastic = elasticResponse(strain);
+    Vector3d stress(elastic[0].stress, elastic[1].stress, elastic[2].stress);
+    Vector3d slope(elastic[0].slope, elastic[1].slope, elastic[2].slope);
+    if (viscosity_) {
+      const auto viscous = viscousResponse((strain - begin_strains[t]) / h);
+      stress += Vector3d(viscous[0].stress, viscous[1].stress, viscous[2].stress);
+      slope += Vector3d(viscous[0].slope, viscous[1].slope, viscous[2].slope) / h;
+    }
+    addTangent(element, at.weft, at.warp, clampedToNonNegative(slope), projectStress(stress),
+               element.area * h * h, matrix);
+    stress *= -element.area * h;
+    addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
+                 stress[1] * at.warp + stress[2] * at.weft,
+                 [&](int particle) { return rhs.col(particle); });
+  }
+}
+
+double Membrane::incrementalPotential(const Positions& positions,
+                                      const std::vector<MembraneStrain>& begin_strains,
+                                      double h) const {
+  double potential = 0.0;
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const MembraneStrain strain = frame(elements_[t], positions).strain();
+    for (int m = 0; m < 3; ++m) {
+      double density = elastic_[m].energy(strain[m]);
+      if (viscosity_) density += h * viscous_[m].energy((strain[m] - begin_strains[t][m]) / h);
+      potential += elements_[t].area * density;
+    }
+  }
+  return potential;
+}
+
+void Membrane::computeStrains(const Positions& positions,
+                              std::vector<MembraneStrain>& strains) const {
+  strains.resize(elements_.size());
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    strains[t] = frame(elements_[t], positions).strain();
+  }
+}
+
+Membrane::Jacobian Membrane::exactJacobian(const MembraneElement& element,
+                                           const Positions& positions,
+                                           const Velocities& velocities) const {
+  const Frame at = frame(element, positions);
+  const auto elastic = elasticResponse(at.strain());
+  Vector3d stress(elastic[0].stress, elastic[1].stress, elastic[2].stress);
+  const Vector3d slope(elastic[0].slope, elastic[1].slope, elastic[2].slope);
+  Vector3d viscous_slope = Vector3d::Zero();
+  Frame derivative{Vector3d::Zero(), Vector3d::Zero()};
+  if (viscosity_) {
+    derivative = frame(element, velocities);
+    const auto viscous = viscousResponse(at.rate(derivative));
+    stress += Vector3d(viscous[0].stress, viscous[1].stress, viscous[2].stress);
+    viscous_slope = {viscous[0].slope, viscous[1].slope, viscous[2].slope};
+  }
+  // Column m is the derivative of strain m by the position of particle i, which is also the
+  // derivative of its rate by the velocity; with the velocity's frame it is the derivative of the
+  // rate by the position.
+  const auto gradients = [&](const Frame& f, int i) {
+    const double ru = element.weft_weights[i];
+    const double rv = element.warp_weights[i];
+    Matrix3d columns;
+    columns << ru * f.weft, rv * f.warp, ru * f.warp + rv * f.weft;
+    return columns;
+  };
+  Jacobian result;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const Matrix3d g_i = -element.area * gradients(at, i);
+      const Matrix3d g_j = gradients(at, j);
+      const double ru_i = element.weft_weights[i], ru_j = element.weft_weights[j];
+      const double rv_i = element.warp_weights[i], rv_j = element.warp_weights[j];
+      const double geometric = -element.area * (stress[0] * ru_i * ru_j + stress[1] * rv_i * rv_j +
+                                                stress[2] * (ru_i * rv_j + rv_i * ru_j));
+      result.by_velocity[i][j] = g_i * viscous_slope.asDiagonal() * g_j.transpose();
+      result.by_position[i][j] =
+          g_i * slope.asDiagonal() * g_j.transpose() +
+          g_i * viscous_slope.asDiagonal() * gradients(derivative, j).transpose() +
+          geometric * Matrix3d::Identity();
+    }
+  }
+  return result;
+}
+
+}  // namespace haptex::cloth
