@@ -27,10 +27,11 @@ struct MembraneCurves {
 
 struct Fabric {
   std::string name;
-  double areal_density = 0.0;  ///< kg/m^2, > 0
-  MembraneCurves weft;         ///< along the rest coordinate u
-  MembraneCurves warp;         ///< along the rest coordinate v
-  MembraneCurves shear;        ///< against U.V, without the factor 1/2
+  std::string description;                       ///< for people; may be empty
+  double areal_density = 0.0;                    ///< kg/m^2, > 0
+  MembraneCurves weft;                           ///< along the rest coordinate u
+  MembraneCurves warp;                           ///< along the rest coordinate v
+  MembraneCurves shear;                          ///< against U.V, without the factor 1/2
   std::map<std::string, Provenance> provenance;  ///< by key, for example "warp.elastic"
 };
 

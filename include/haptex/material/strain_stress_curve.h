@@ -26,19 +26,28 @@ enum class NegativeBranch {
   kOdd,     ///< stress(-e) = -stress(e): shear of a fabric that is alike to both sides
 };
 
+/// Checks that a curve can be fitted to the points.
+/// @throws std::invalid_argument naming the first offending point by index and value unless every
+///   number is finite, strains are strictly increasing, one of them is not 0, and the stress at
+///   strain 0 (if sampled) is 0
+void requireFitPoints(const std::vector<CurvePoint>& points);
+
 /// Stress as a C1 piecewise cubic function of strain, zero at zero strain.
 ///
 /// Between the outermost knots each interval [knot_i, knot_i+1] carries
 ///   stress(e) = c0 + c1 x + c2 x^2 + c3 x^3,  x = e - knot_i.
 /// Outside of the outermost knots the curve continues as a straight line with the value and slope
-/// that it has there, so it stays C1 and its stress stays finite for every finite strain.
+/// that it has there, so it stays C1.
 /// That covers both ends of a measurement: beyond the last sample the fabric keeps its last
 /// measured stiffness, and below strain 0 (compression, which tensile testers do not measure) it
 /// keeps its initial one. With stress = k e the compressive force per rest width l k (l^2 - 1)/2
 /// has its maximum 0.192 k at stretch l = 0.577 and returns to zero at collapse (l = 0): a sheet
 /// gives way in the plane before that, as real fabric does by buckling.
 ///
-/// Evaluation takes O(1) time, allocates nothing and returns NaN for NaN.
+/// Evaluation allocates nothing and takes O(1) time: bins no wider than the narrowest interval lead
+/// to the right one within three comparisons. (Their number is limited to kMaxBins, so a curve
+/// whose intervals differ in width by a factor of hundreds takes a few more.) It returns NaN for a
+/// strain that is NaN or infinite.
 class StrainStressCurve {
  public:
   /// The curve that is zero everywhere (no stress, no slope).
@@ -52,9 +61,11 @@ class StrainStressCurve {
   /// A curve from its intervals and coefficients.
   /// @param knots        n+1 strictly increasing, finite strains, n >= 1
   /// @param coefficients n rows (c0, c1, c2, c3) as in the class description, finite
-  /// @throws std::invalid_argument if sizes or order are wrong, a number is not finite, value or
-  ///   slope jump at an inner knot by more than 1e-9 of the largest magnitude on the curve, or the
-  ///   curve is not zero at zero strain
+  /// @throws std::invalid_argument naming the first offending knot or coefficient by index and
+  /// value
+  ///   if sizes or order are wrong, a number is not finite, stress or slope jump at an inner knot
+  ///   by more than kJumpTolerance of its largest magnitude at the knots, the stress at zero strain
+  ///   is not zero to the same tolerance, or the numbers are too large for double arithmetic
   static StrainStressCurve fromPolynomials(const std::vector<double>& knots,
                                            const std::vector<std::array<double, 4>>& coefficients);
 
@@ -64,7 +75,8 @@ class StrainStressCurve {
   /// end is that of the outermost interval. The origin is added if the points do not contain it.
   /// @param points at least one with strain != 0, strains strictly increasing, all finite,
   ///   stress 0 at strain 0
-  /// @throws std::invalid_argument naming the first offending point by index and value
+  /// @throws std::invalid_argument as requireFitPoints(), or if the numbers are too large for
+  ///   double arithmetic
   static StrainStressCurve fit(std::vector<CurvePoint> points, NegativeBranch negative_branch);
 
   /// Stress (N/m) and slope (N/m) at `strain`.
@@ -81,9 +93,15 @@ class StrainStressCurve {
   /// True if the stress is zero for every strain.
   bool isZero() const;
 
+  /// The smallest slope anywhere (N/m): >= 0 exactly if the curve nowhere falls.
+  double minimumSlope() const;
+
   /// Outermost knots: outside of them the curve is a straight line.
   double firstKnot() const;
   double lastKnot() const;
+
+  static constexpr double kJumpTolerance = 1e-9;
+  static constexpr std::size_t kMaxBins = 1024;
 
  private:
   struct Segment {
@@ -95,19 +113,27 @@ class StrainStressCurve {
   StrainStressCurve(const std::vector<double>& knots,
                     const std::vector<std::array<double, 4>>& coefficients);
 
+  double energyFromBegin(std::size_t segment, double strain) const;
+  void integrateEnergy();
+  void makeBins();
+
+  // Only for first knot <= strain <= last knot. Rises with the strain in floating point too,
+  // because rounding is monotone; makeBins() relies on that.
+  std::size_t binIndex(double strain) const {
+    return static_cast<std::size_t>((strain - knots_.front()) * bins_per_strain_);
+  }
   std::size_t segmentIndex(double strain) const;
 
   std::vector<Segment> segments_;  // line before the first knot, intervals, line after the last
   std::vector<double> knots_;
-  std::vector<std::size_t> first_segment_of_bin_;  // uniform bins over the knots
+  std::vector<std::size_t> first_segment_of_bin_;  // uniform bins from first to last knot
   double bins_per_strain_ = 0.0;
 };
 
 inline std::size_t StrainStressCurve::segmentIndex(double strain) const {
   if (!(strain >= knots_.front())) return 0;  // NaN too
   if (strain >= knots_.back()) return knots_.size();
-  const auto bin = static_cast<std::size_t>((strain - knots_.front()) * bins_per_strain_);
-  std::size_t index = first_segment_of_bin_[bin];
+  std::size_t index = first_segment_of_bin_[binIndex(strain)];
   while (strain >= knots_[index]) ++index;
   return index;
 }

@@ -1,0 +1,35 @@
+// What scripts/validate prints: the oracles of each room.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "haptex/evaluation/quantity.h"
+#include "haptex/material/strain_stress_curve.h"
+
+namespace haptex::evaluation {
+
+using Sink = std::function<void(const Quantity&)>;
+
+/// A room and its oracles, which read fabrics from a configuration directory (config/ of the
+/// package) and hand each quantity to the sink as soon as it is known.
+struct Validation {
+  std::string room;
+  std::function<void(const std::string& config_directory, const Sink& sink)> run;
+};
+
+/// All rooms with oracles, in the order in which they build on each other.
+const std::vector<Validation>& validations();
+
+/// Conversions of strain and stress, and the shipped fabrics' curves against their samples.
+void validateMaterial(const std::string& config_directory, const Sink& sink);
+
+/// Virtual tensile and shear tests, hanging strip, patch test, Jacobian.
+void validateCloth(const std::string& config_directory, const Sink& sink);
+
+/// The [strain, stress] samples of a fabric file as they stand in it, as Green-Lagrange strain and
+/// second Piola-Kirchhoff stress. @param curve for example "warp.elastic"
+std::vector<material::CurvePoint> fabricSamples(const std::string& path, const std::string& curve);
+
+}  // namespace haptex::evaluation

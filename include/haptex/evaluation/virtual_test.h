@@ -1,0 +1,46 @@
+// Virtual tensile and shear tests of a fabric, as a tester would run them on the simulated cloth.
+#pragma once
+
+#include <vector>
+
+#include "haptex/cloth/mesh.h"
+#include "haptex/material/fabric.h"
+
+namespace haptex::evaluation {
+
+/// A rectangle whose interior rest coordinates (and initial positions with them) are moved at
+/// random by up to 0.3 of a cell in u and v, so that no two triangles are alike.
+cloth::ClothMesh irregularRectangle(double width, double height, int cells_u, int cells_v,
+                                    unsigned seed);
+
+/// One reading of a test.
+struct Reading {
+  double strain;  ///< tensile: engineering strain; shear: tangent of the shear angle
+  double force;   ///< N on the moving jaw, in the direction in which it moves
+};
+
+enum class Direction { kWeft, kWarp };
+
+/// Sample of the virtual tests: 200 mm wide, 100 mm between the jaws, 2500 elements on an irregular
+/// mesh.
+constexpr double kSampleWidth = 0.2;
+constexpr double kSampleLength = 0.1;
+
+/// Tensile test: both jaws hold a full edge, the sides are free, and every reading is taken in
+/// static equilibrium, which is solved for from the disturbed equilibrium before.
+/// Exact force: width l s((l^2 - 1)/2) at stretch l = 1 + strain.
+/// @param strains > -1, in the order of the test
+/// @throws std::runtime_error if the equilibrium is not reached
+std::vector<Reading> tensileTest(const material::Fabric& fabric, Direction direction,
+                                 const std::vector<double>& strains);
+
+/// Shear test along weft at constant distance of the jaws, the sides guided on straight lines.
+/// Exact force: width P12 with P12 = fs(g) + g fv(g^2 / 2) at shear g.
+/// @throws std::runtime_error if the equilibrium is not reached
+std::vector<Reading> shearTest(const material::Fabric& fabric, const std::vector<double>& shears);
+
+/// The exact forces of the two tests above (N).
+double exactTensileForce(const material::Fabric& fabric, Direction direction, double strain);
+double exactShearForce(const material::Fabric& fabric, double shear);
+
+}  // namespace haptex::evaluation

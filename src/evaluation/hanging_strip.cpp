@@ -1,0 +1,59 @@
+#include "haptex/evaluation/hanging_strip.h"
+
+#include <cmath>
+
+#include "haptex/cloth/backward_euler.h"
+#include "haptex/cloth/cloth.h"
+
+namespace haptex::evaluation {
+
+using cloth::BackwardEuler;
+using cloth::Cloth;
+using material::StrainStressCurve;
+
+double exactElongation(const HangingStrip& strip) {
+  const double load = strip.areal_density * strip.gravity / strip.modulus;
+  const double right = 2.0 * load * strip.length;
+  double q = right / 2.0;  // Newton on 2 q + 3 q^2 + q^3 = right, convex from above
+  for (int i = 0; i < 50; ++i) {
+    q -= (q * (2.0 + q * (3.0 + q)) - right) / (2.0 + q * (6.0 + 3.0 * q));
+  }
+  return q * q * (1.0 + q * (2.0 + 0.75 * q)) / (2.0 * load * strip.length);
+}
+
+double simulatedElongation(const HangingStrip& strip, int cells, double time_step) {
+  // Viscosity near the critical damping of the slowest longitudinal mode: it shortens the way to
+  // the state of rest and does not change it.
+  const double slowest = 0.5 * M_PI / strip.length * std::sqrt(strip.modulus / strip.areal_density);
+  material::Fabric fabric;
+  fabric.name = "linear strip";
+  fabric.areal_density = strip.areal_density;
+  fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(strip.modulus);
+  fabric.shear.elastic = StrainStressCurve::linear(0.5 * strip.modulus);
+  fabric.weft.viscous = fabric.warp.viscous = StrainStressCurve::linear(strip.modulus / slowest);
+  fabric.shear.viscous = StrainStressCurve::linear(0.5 * strip.modulus / slowest);
+
+  cloth::ModelledEffects effects;
+  effects.viscosity = true;
+  effects.gravity = {0.0, 0.0, -strip.gravity};
+  Cloth cloth(cloth::makeRectangle(strip.length / 5.0, strip.length, cells / 5, cells,
+                                   cloth::Triangulation::kAlternating),
+              fabric, effects);
+  cloth::ClothState state = cloth.initialState();
+  for (int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) {
+    cloth::AttachmentPath place;
+    place.start = state.positions[particle];
+    cloth.attach(particle, place);
+  }
+  BackwardEuler integrator(cloth, {});
+  constexpr double kTimeConstants = 30.0;  // e^-30 is below rounding
+  while (state.time * slowest < kTimeConstants || state.time < 10.0 * time_step) {
+    integrator.step(cloth, state, time_step);
+  }
+  const std::vector<int> bottom = sideParticles(cloth.mesh(), cloth::Side::kBottom);
+  double lower_end = 0.0;
+  for (int particle : bottom) lower_end += state.positions[particle].z() / bottom.size();
+  return -lower_end / strip.length - 1.0;
+}
+
+}  // namespace haptex::evaluation

@@ -1,0 +1,22 @@
+#include "haptex/evaluation/quantity.h"
+
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+#include <utility>
+
+namespace haptex::evaluation {
+
+Quantity relativeTo(double scale, std::string name, double exact, double measured,
+                    double tolerance) {
+  return {std::move(name), exact, measured, std::abs(measured - exact) / std::abs(scale),
+          tolerance};
+}
+
+void print(std::ostream& out, const Quantity& quantity) {
+  out << quantity.name << '\t' << std::setprecision(10) << quantity.exact << '\t'
+      << quantity.measured << '\t' << std::setprecision(3) << quantity.error << '\t'
+      << quantity.tolerance << '\t' << (quantity.pass() ? "pass" : "FAIL") << std::endl;
+}
+
+}  // namespace haptex::evaluation

@@ -1,0 +1,27 @@
+#include "haptex/evaluation/validation.h"
+
+#include "haptex/material/strain_measures.h"
+#include "haptex/material/yaml_reader.h"
+
+namespace haptex::evaluation {
+
+const std::vector<Validation>& validations() {
+  static const std::vector<Validation> all = {{"material", validateMaterial},
+                                              {"cloth", validateCloth}};
+  return all;
+}
+
+std::vector<material::CurvePoint> fabricSamples(const std::string& path, const std::string& curve) {
+  const std::size_t dot = curve.find('.');
+  const material::YamlValue value =
+      material::YamlValue::load(path).at(curve.substr(0, dot)).at(curve.substr(dot + 1));
+  std::vector<material::CurvePoint> samples;
+  for (const material::YamlValue& item : value.at("points").items()) {
+    const std::vector<material::YamlValue> pair = item.items(2);
+    samples.push_back({pair[0].number(), pair[1].number()});
+  }
+  const bool from_tester = value.at("quantity").text() == "force_per_width_over_engineering_strain";
+  return from_tester ? material::curvePointsFromTester(samples) : samples;
+}
+
+}  // namespace haptex::evaluation

@@ -1,0 +1,178 @@
+#include "haptex/material/fabric_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "haptex/material/strain_measures.h"
+#include "haptex/material/yaml_reader.h"
+
+namespace haptex::material {
+namespace {
+
+constexpr const char* kPiolaOverGreen = "second_piola_kirchhoff_over_green_lagrange";
+constexpr const char* kForceOverEngineering = "force_per_width_over_engineering_strain";
+
+enum class CurveKind { kElastic, kViscous };
+
+// What the place of a curve in the file asks of it.
+struct CurveRules {
+  CurveKind kind;
+  NegativeBranch negative_branch;
+  bool from_tester;  // may state force per width over engineering strain
+};
+
+Provenance readProvenance(const YamlValue& value) {
+  const bool measured = value.at("provenance").oneOf({"measured", "representative"}) == "measured";
+  return {measured ? Provenance::Kind::kMeasured : Provenance::Kind::kRepresentative,
+          value.at("source").text()};
+}
+
+// Runs `make` and gives what it refuses the file and key of `value`.
+template <typename Make>
+auto namingKey(const YamlValue& value, Make make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    const std::string message = error.what();
+    const bool starts_with_key = message.find(": ") != std::string::npos;
+    throw std::invalid_argument(value.file() + ": " + value.keyPath() +
+                                (starts_with_key ? "." : ": ") + message);
+  }
+}
+
+double readModulus(const YamlValue& value) {
+  const double modulus = value.number();
+  if (modulus < 0.0) value.refuse("must be a finite number >= 0");
+  return modulus;
+}
+
+std::vector<CurvePoint> readPoints(const YamlValue& value) {
+  std::vector<CurvePoint> points;
+  for (const YamlValue& item : value.items()) {
+    const std::vector<YamlValue> pair = item.items(2);
+    points.push_back({pair[0].number(), pair[1].number()});
+  }
+  return points;
+}
+
+// With stress 0 at rate 0, a curve that nowhere falls has the sign of the rate: it takes energy
+// out.
+void requireDissipative(const YamlValue& value, const std::vector<CurvePoint>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double before = i > 0 ? points[i - 1].stress : points[0].stress;
+    const bool wrong_sign = points[i].stress * points[i].strain < 0.0;
+    if (points[i].stress < before || wrong_sign) {
+      value.at("points").items()[i].items()[1].refuse(
+          "must have the sign of the rate and not be less than the stress before: a viscous curve "
+          "must dissipate");
+    }
+  }
+}
+
+StrainStressCurve readPointCurve(const YamlValue& value, const CurveRules& rules) {
+  const std::string quantity =
+      rules.from_tester ? value.at("quantity").oneOf({kPiolaOverGreen, kForceOverEngineering})
+                        : value.at("quantity").oneOf({kPiolaOverGreen});
+  std::vector<CurvePoint> points = readPoints(value.at("points"));
+  // Before the conversion, so that a message has the numbers as written.
+  namingKey(value, [&] { requireFitPoints(points); });
+  if (rules.kind == CurveKind::kViscous) requireDissipative(value, points);
+  return namingKey(value, [&] {
+    if (quantity == kForceOverEngineering) points = curvePointsFromTester(points);
+    return StrainStressCurve::fit(points, rules.negative_branch);
+  });
+}
+
+// More than rounding in a curve that is level somewhere does.
+bool falls(const StrainStressCurve& curve, const std::vector<double>& knots) {
+  double largest_slope = 0.0;
+  for (const double knot : knots) {
+    largest_slope = std::max(largest_slope, std::abs(curve.evaluate(knot).slope));
+  }
+  return curve.minimumSlope() < -StrainStressCurve::kJumpTolerance * largest_slope;
+}
+
+StrainStressCurve readPolynomialCurve(const YamlValue& value, CurveKind kind) {
+  value.requireKeys({"knots", "coefficients"});
+  std::vector<double> knots;
+  for (const YamlValue& knot : value.at("knots").items()) knots.push_back(knot.number());
+  std::vector<std::array<double, 4>> coefficients;
+  for (const YamlValue& row : value.at("coefficients").items()) {
+    const std::vector<YamlValue> numbers = row.items(4);
+    coefficients.push_back(
+        {numbers[0].number(), numbers[1].number(), numbers[2].number(), numbers[3].number()});
+  }
+  const auto curve =
+      namingKey(value, [&] { return StrainStressCurve::fromPolynomials(knots, coefficients); });
+  if (kind == CurveKind::kViscous && falls(curve, knots)) {
+    value.refuseBecause("the slope falls to " + std::to_string(curve.minimumSlope()) +
+                        ", it must be >= 0 everywhere: a viscous curve must dissipate");
+  }
+  return curve;
+}
+
+StrainStressCurve readCurve(const YamlValue& value, const CurveRules& rules) {
+  value.requireKeys({"unit", "provenance", "source"},
+                    {"modulus", "points", "polynomials", "quantity"});
+  value.at("unit").oneOf({rules.kind == CurveKind::kElastic ? "N/m" : "N.s/m"});
+  const bool has_points = value.has("points");
+  if (value.has("modulus") + has_points + value.has("polynomials") != 1) {
+    value.refuseBecause("must have exactly one of modulus, points, polynomials");
+  }
+  if (value.has("quantity") && !has_points) {
+    value.at("quantity").refuseBecause("is allowed only together with points");
+  }
+  if (has_points && !value.has("quantity")) {
+    value.refuseBecause("the key 'quantity' is missing, required together with points");
+  }
+  if (has_points) return readPointCurve(value, rules);
+  if (value.has("modulus")) return StrainStressCurve::linear(readModulus(value.at("modulus")));
+  return readPolynomialCurve(value.at("polynomials"), rules.kind);
+}
+
+double readArealDensity(const YamlValue& value) {
+  value.requireKeys({"value", "unit", "provenance", "source"});
+  value.at("unit").oneOf({"kg/m2"});
+  const double density = value.at("value").number();
+  if (density <= 0.0) value.at("value").refuse("must be a finite number > 0");
+  return density;
+}
+
+// Reads the curves of the direction `key` and their provenance into the fabric.
+MembraneCurves readDirection(const YamlValue& fabric_value, const std::string& key,
+                             NegativeBranch negative_branch, Fabric& fabric) {
+  const YamlValue value = fabric_value.at(key);
+  value.requireKeys({"elastic"}, {"viscous"});
+  MembraneCurves curves;
+  const bool thread_direction = negative_branch == NegativeBranch::kLinear;
+  curves.elastic =
+      readCurve(value.at("elastic"), {CurveKind::kElastic, negative_branch, thread_direction});
+  fabric.provenance[key + ".elastic"] = readProvenance(value.at("elastic"));
+  if (value.has("viscous")) {
+    curves.viscous = readCurve(value.at("viscous"), {CurveKind::kViscous, negative_branch, false});
+    fabric.provenance[key + ".viscous"] = readProvenance(value.at("viscous"));
+  }
+  return curves;
+}
+
+}  // namespace
+
+Fabric loadFabric(const std::string& path) {
+  const YamlValue file = YamlValue::load(path);
+  file.requireKeys({"name", "areal_density", "weft", "warp", "shear"}, {"description"});
+  Fabric fabric;
+  fabric.name = file.at("name").text();
+  if (file.has("description")) fabric.description = file.at("description").text();
+  fabric.areal_density = readArealDensity(file.at("areal_density"));
+  fabric.provenance["areal_density"] = readProvenance(file.at("areal_density"));
+  fabric.weft = readDirection(file, "weft", NegativeBranch::kLinear, fabric);
+  fabric.warp = readDirection(file, "warp", NegativeBranch::kLinear, fabric);
+  fabric.shear = readDirection(file, "shear", NegativeBranch::kOdd, fabric);
+  return fabric;
+}
+
+}  // namespace haptex::material

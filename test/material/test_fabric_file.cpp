@@ -1,0 +1,347 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "haptex/material/fabric_file.h"
+#include "haptex/material/strain_measures.h"
+
+namespace haptex::material {
+namespace {
+
+// A file that lives as long as the test.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& text)
+      : path_(testing::TempDir() + "haptex_fabric_" +
+              testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    for (char& c : path_) {
+      if (c == '/' && &c > path_.data() + testing::TempDir().size()) c = '_';
+    }
+    path_ += ".yaml";
+    std::ofstream(path_) << text;
+  }
+  ~TemporaryFile() { std::remove(path_.c_str()); }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+const std::string kHead = R"(name: sample
+areal_density: {value: 0.2, unit: kg/m2, provenance: measured, source: scales}
+)";
+const std::string kWeft = R"(weft:
+  elastic: {unit: N/m, provenance: measured, source: tester, modulus: 100}
+)";
+const std::string kWarp = R"(warp:
+  elastic:
+    unit: N/m
+    provenance: measured
+    source: tester
+    quantity: force_per_width_over_engineering_strain
+    points: [[0, 0], [0.1, 11], [0.2, 24]]
+  viscous: {unit: N.s/m, provenance: representative, source: a guess, modulus: 2.5}
+)";
+const std::string kShear = R"(shear:
+  elastic:
+    unit: N/m
+    provenance: representative
+    source: a similar fabric
+    quantity: second_piola_kirchhoff_over_green_lagrange
+    points: [[0.1, 4], [0.2, 10]]
+)";
+const std::string kValid = kHead + kWeft + kWarp + kShear;
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << "the test replaces what is not there: " << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(FabricFile, ReadsEveryProperty) {
+  const TemporaryFile file(kValid);
+  const Fabric fabric = loadFabric(file.path());
+  EXPECT_EQ(fabric.name, "sample");
+  EXPECT_EQ(fabric.description, "");
+  EXPECT_EQ(fabric.areal_density, 0.2);
+  EXPECT_DOUBLE_EQ(fabric.weft.elastic.evaluate(0.3).stress, 30.0);
+  EXPECT_TRUE(fabric.weft.viscous.isZero());
+  EXPECT_DOUBLE_EQ(fabric.warp.viscous.evaluate(2.0).stress, 5.0);
+  EXPECT_TRUE(fabric.shear.viscous.isZero());
+}
+
+TEST(FabricFile, ReadsTheDescription) {
+  const TemporaryFile file("description: worn\n" + kValid);
+  EXPECT_EQ(loadFabric(file.path()).description, "worn");
+}
+
+TEST(FabricFile, KeepsTheProvenanceOfEveryProperty) {
+  const TemporaryFile file(kValid);
+  const auto provenance = loadFabric(file.path()).provenance;
+  ASSERT_EQ(provenance.size(), 5u);
+  EXPECT_EQ(provenance.at("areal_density").kind, Provenance::Kind::kMeasured);
+  EXPECT_EQ(provenance.at("areal_density").source, "scales");
+  EXPECT_EQ(provenance.at("weft.elastic").kind, Provenance::Kind::kMeasured);
+  EXPECT_EQ(provenance.at("warp.elastic").source, "tester");
+  EXPECT_EQ(provenance.at("warp.viscous").kind, Provenance::Kind::kRepresentative);
+  EXPECT_EQ(provenance.at("shear.elastic").source, "a similar fabric");
+}
+
+TEST(FabricFile, ConvertsTesterPointsExactly) {
+  const TemporaryFile file(kValid);
+  const StrainStressCurve curve = loadFabric(file.path()).warp.elastic;
+  EXPECT_NEAR(curve.evaluate(0.105).stress, 10.0, 1e-13);  // 11 N/m at l = 1.1
+  EXPECT_NEAR(curve.evaluate(0.22).stress, 20.0, 1e-13);   // 24 N/m at l = 1.2
+  EXPECT_DOUBLE_EQ(curve.lastKnot(), 0.22);
+}
+
+TEST(FabricFile, ContinuesShearOddlyAndThreadDirectionsLinearly) {
+  const TemporaryFile file(kValid);
+  const Fabric fabric = loadFabric(file.path());
+  EXPECT_NEAR(fabric.shear.elastic.evaluate(-0.2).stress, -10.0, 1e-13);
+  EXPECT_NEAR(fabric.shear.elastic.evaluate(-0.1).stress, -4.0, 1e-13);
+  EXPECT_DOUBLE_EQ(fabric.warp.elastic.evaluate(-0.2).stress, -0.2 * 10.0 / 0.105);
+}
+
+TEST(FabricFile, ReadsPolynomials) {
+  const TemporaryFile file(
+      replaced(kValid, "modulus: 100",
+               "polynomials: {knots: [0, 0.5, 1], coefficients: [[0, 1, 1, 0], [0.75, 2, 1, 0]]}"));
+  const StrainStressCurve curve = loadFabric(file.path()).weft.elastic;
+  for (const double strain : {0.1, 0.6, 1.0}) {
+    EXPECT_NEAR(curve.evaluate(strain).stress, strain + strain * strain, 1e-15);
+  }
+}
+
+TEST(FabricFile, AcceptsViscousCurvesThatDissipate) {
+  const std::string levels = replaced(
+      kValid, "modulus: 2.5",
+      "quantity: second_piola_kirchhoff_over_green_lagrange, points: [[-1, -2], [1, 2], [2, 2]]");
+  EXPECT_NO_THROW(loadFabric(TemporaryFile(levels).path()));
+  const std::string cubic = replaced(
+      kValid, "modulus: 2.5", "polynomials: {knots: [-1, 1], coefficients: [[-1, 3, -3, 1]]}");
+  EXPECT_NO_THROW(loadFabric(TemporaryFile(cubic).path()));  // rate^3, level at zero
+}
+
+struct Refusal {
+  std::string name;
+  std::string from, to;   // the change that makes the valid file invalid
+  std::string key_path;   // named in the message
+  std::string complaint;  // the rest of it
+};
+
+void PrintTo(const Refusal& refusal, std::ostream* stream) { *stream << refusal.name; }
+
+class FabricFileRefuses : public testing::TestWithParam<Refusal> {};
+
+TEST_P(FabricFileRefuses, NamingFileKeyValueAndWhatIsAllowed) {
+  const Refusal& refusal = GetParam();
+  const TemporaryFile file(replaced(kValid, refusal.from, refusal.to));
+  Fabric fabric;
+  fabric.name = "before";
+  fabric.areal_density = 0.7;
+  try {
+    fabric = loadFabric(file.path());
+    ADD_FAILURE() << "not refused";
+  } catch (const std::invalid_argument& error) {
+    const std::string key = refusal.key_path.empty() ? "" : refusal.key_path + ": ";
+    EXPECT_EQ(error.what(), file.path() + ": " + key + refusal.complaint);
+  }
+  // Nothing half-read reaches the caller.
+  EXPECT_EQ(fabric.name, "before");
+  EXPECT_EQ(fabric.areal_density, 0.7);
+  EXPECT_TRUE(fabric.provenance.empty());
+}
+
+const std::string kCurveKeys = "unit, provenance, source, modulus, points, polynomials, quantity";
+const std::string kPiola = "second_piola_kirchhoff_over_green_lagrange";
+const std::string kDissipate =
+    "must have the sign of the rate and not be less than the stress before: a viscous curve must "
+    "dissipate";
+
+INSTANTIATE_TEST_SUITE_P(
+    Keys, FabricFileRefuses,
+    testing::Values(
+        Refusal{"UnknownProperty", "name:", "colour: red\nname:", "colour",
+                "unknown key, allowed here: name, areal_density, weft, warp, shear, description"},
+        Refusal{"UnknownDirectionKey", "viscous:", "plastic:", "warp.plastic",
+                "unknown key, allowed here: elastic, viscous"},
+        Refusal{"UnknownCurveKey", "modulus: 100", "moduls: 100", "weft.elastic.moduls",
+                "unknown key, allowed here: " + kCurveKeys},
+        Refusal{"UnknownDensityKey", "value: 0.2", "value: 0.2, error: 0.1", "areal_density.error",
+                "unknown key, allowed here: value, unit, provenance, source"},
+        Refusal{"KeyGivenTwice", "name: sample", "name: sample\nname: other", "name",
+                "the key is given twice"},
+        Refusal{"MissingName", "name: sample", "", "",
+                "the key 'name' is missing, required here: name, areal_density, weft, warp, shear"},
+        Refusal{"MissingDirection", kShear, "", "",
+                "the key 'shear' is missing, required here: name, areal_density, weft, warp, "
+                "shear"},
+        Refusal{"MissingElastic", kWeft,
+                "weft:\n  viscous: {unit: N.s/m, provenance: measured, source: x, modulus: 1}\n",
+                "weft", "the key 'elastic' is missing, required here: elastic"},
+        Refusal{"MissingUnit", "unit: kg/m2, ", "", "areal_density",
+                "the key 'unit' is missing, required here: value, unit, provenance, source"},
+        Refusal{"MissingProvenance", "provenance: measured, source: tester", "source: tester",
+                "weft.elastic",
+                "the key 'provenance' is missing, required here: unit, provenance, source"},
+        Refusal{"MissingQuantity", "    quantity: " + kPiola + "\n", "", "shear.elastic",
+                "the key 'quantity' is missing, required together with points"},
+        Refusal{"QuantityWithoutPoints", "modulus: 100", "modulus: 100, quantity: " + kPiola,
+                "weft.elastic.quantity", "is allowed only together with points"},
+        Refusal{"NoCurve", ", modulus: 100", "", "weft.elastic",
+                "must have exactly one of modulus, points, polynomials"},
+        Refusal{"TwoCurves", "modulus: 100", "modulus: 100, polynomials: {}", "weft.elastic",
+                "must have exactly one of modulus, points, polynomials"},
+        Refusal{"DirectionNotAMap", kWeft, "weft: 100\n", "weft",
+                "'100' must be a map with the keys elastic, viscous"},
+        Refusal{"FileNotAMap", kValid, "- name\n", "",
+                "a list of 1 must be a map with the keys name, areal_density, weft, warp, shear, "
+                "description"},
+        Refusal{"EmptyFile", kValid, "---\n", "",
+                "nothing must be a map with the keys name, areal_density, weft, warp, shear, "
+                "description"}),
+    [](const auto& info) { return info.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Values, FabricFileRefuses,
+    testing::Values(
+        Refusal{"NegativeDensity", "value: 0.2", "value: -0.2", "areal_density.value",
+                "'-0.2' must be a finite number > 0"},
+        Refusal{"ZeroDensity", "value: 0.2", "value: 0", "areal_density.value",
+                "'0' must be a finite number > 0"},
+        Refusal{"NanDensity", "value: 0.2", "value: .nan", "areal_density.value",
+                "'.nan' must be a finite number"},
+        Refusal{"OverflowingDensity", "value: 0.2", "value: 1e999", "areal_density.value",
+                "'1e999' must be a finite number"},
+        Refusal{"TextForANumber", "value: 0.2", "value: light", "areal_density.value",
+                "'light' must be a finite number"},
+        Refusal{"QuotedNumber", "value: 0.2", "value: '0.2'", "areal_density.value",
+                "'0.2' must be a finite number"},
+        Refusal{"NumberWithUnit", "value: 0.2", "value: 0.2 kg", "areal_density.value",
+                "'0.2 kg' must be a finite number"},
+        Refusal{"WrongDensityUnit", "unit: kg/m2", "unit: g/m2", "areal_density.unit",
+                "'g/m2' must be kg/m2"},
+        Refusal{"WrongElasticUnit", "unit: N/m", "unit: gf/cm", "weft.elastic.unit",
+                "'gf/cm' must be N/m"},
+        Refusal{"WrongViscousUnit", "unit: N.s/m", "unit: N/m", "warp.viscous.unit",
+                "'N/m' must be N.s/m"},
+        Refusal{"UnknownProvenance", "provenance: measured, source: scales",
+                "provenance: guessed, source: scales", "areal_density.provenance",
+                "'guessed' must be one of measured, representative"},
+        Refusal{"EmptySource", "source: scales", "source: ''", "areal_density.source",
+                "'' must be a text that is not empty"},
+        Refusal{"BlankSource", "source: a similar fabric", "source: '  '", "shear.elastic.source",
+                "'  ' must be a text that is not empty"},
+        Refusal{"NoSource", "source: scales", "source: ", "areal_density.source",
+                "nothing must be a text that is not empty"},
+        Refusal{"NameNotAText", "name: sample", "name: [a]", "name",
+                "a list of 1 must be a text that is not empty"},
+        Refusal{"NegativeModulus", "modulus: 100", "modulus: -100", "weft.elastic.modulus",
+                "'-100' must be a finite number >= 0"},
+        Refusal{"InfiniteModulus", "modulus: 100", "modulus: .inf", "weft.elastic.modulus",
+                "'.inf' must be a finite number"},
+        Refusal{"NegativeViscousModulus", "modulus: 2.5", "modulus: -1", "warp.viscous.modulus",
+                "'-1' must be a finite number >= 0"},
+        Refusal{"UnknownQuantity", "quantity: force_per_width_over_engineering_strain",
+                "quantity: force", "warp.elastic.quantity",
+                "'force' must be one of " + kPiola + ", force_per_width_over_engineering_strain"},
+        Refusal{"TesterQuantityForShear", "quantity: " + kPiola,
+                "quantity: force_per_width_over_engineering_strain", "shear.elastic.quantity",
+                "'force_per_width_over_engineering_strain' must be " + kPiola}),
+    [](const auto& info) { return info.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Curves, FabricFileRefuses,
+    testing::Values(
+        Refusal{"PointsNotAList", "points: [[0.1, 4], [0.2, 10]]", "points: 4",
+                "shear.elastic.points", "'4' must be a list"},
+        Refusal{"NoPoints", "points: [[0.1, 4], [0.2, 10]]", "points: []", "shear.elastic.points",
+                "has 0 points, must have at least one at a strain other than 0"},
+        Refusal{"PointNotAPair", "[0.2, 10]", "[0.2, 10, 1]", "shear.elastic.points[1]",
+                "a list of 3 must be a list of 2"},
+        Refusal{"PointNotANumber", "[0.2, 10]", "[0.2, ten]", "shear.elastic.points[1][1]",
+                "'ten' must be a finite number"},
+        Refusal{"NanStrain", "[0.2, 24]", "[.nan, 24]", "warp.elastic.points[2][0]",
+                "'.nan' must be a finite number"},
+        Refusal{"DecreasingStrain", "[0.2, 24]", "[0.05, 24]", "warp.elastic.points[2]",
+                "strain 0.05 must be greater than the one before, 0.1"},
+        Refusal{"RepeatedStrain", "[0.2, 24]", "[0.1, 24]", "warp.elastic.points[2]",
+                "strain 0.1 must be greater than the one before, 0.1"},
+        Refusal{"StressAtZero", "[0, 0]", "[0, 3]", "warp.elastic.points[0]",
+                "stress 3 at strain 0 must be 0"},
+        Refusal{"CollapsedSample", "[0, 0]", "[-1, -5]", "warp.elastic.points[0]",
+                "engineering strain -1 must be finite and > -1"},
+        Refusal{"TooSteep", "[0.1, 4]", "[1e-300, 1e300]", "shear.elastic",
+                "the curve near strain -0.2 is too steep or too large for double arithmetic"},
+        Refusal{"FallingViscousPoints", "modulus: 2.5",
+                "quantity: " + kPiola + ", points: [[1, 2], [2, 1.5]]", "warp.viscous.points[1][1]",
+                "'1.5' " + kDissipate},
+        Refusal{"ViscousPointsWithTheWrongSign", "modulus: 2.5",
+                "quantity: " + kPiola + ", points: [[1, -2], [2, -1]]", "warp.viscous.points[0][1]",
+                "'-2' " + kDissipate},
+        Refusal{"TesterQuantityForViscous", "modulus: 2.5",
+                "quantity: force_per_width_over_engineering_strain, points: [[1, 2]]",
+                "warp.viscous.quantity",
+                "'force_per_width_over_engineering_strain' must be " + kPiola},
+        Refusal{"FallingViscousPolynomials", "modulus: 2.5",
+                "polynomials: {knots: [0, 1], coefficients: [[0, 1, -3, 2]]}",
+                "warp.viscous.polynomials",
+                "the slope falls to -0.500000, it must be >= 0 everywhere: a viscous curve must "
+                "dissipate"},
+        Refusal{"PolynomialsWithoutKnots", "modulus: 100", "polynomials: {coefficients: []}",
+                "weft.elastic.polynomials",
+                "the key 'knots' is missing, required here: knots, coefficients"},
+        Refusal{"UnknownPolynomialKey", "modulus: 100",
+                "polynomials: {knots: [0, 1], coefficients: [[0, 1, 0, 0]], degree: 3}",
+                "weft.elastic.polynomials.degree",
+                "unknown key, allowed here: knots, coefficients"},
+        Refusal{"ThreeCoefficients", "modulus: 100",
+                "polynomials: {knots: [0, 1], coefficients: [[0, 1, 0]]}",
+                "weft.elastic.polynomials.coefficients[0]", "a list of 3 must be a list of 4"},
+        Refusal{"DecreasingKnots", "modulus: 100",
+                "polynomials: {knots: [1, 0], coefficients: [[0, 1, 0, 0]]}",
+                "weft.elastic.polynomials.knots[1]", "0 must be greater than the one before, 1"},
+        Refusal{"JumpAtAKnot", "modulus: 100",
+                "polynomials: {knots: [0, 1, 2], coefficients: [[0, 1, 0, 0], [2, 1, 0, 0]]}",
+                "weft.elastic.polynomials.knots[1]",
+                "the stress jumps by 1 at strain 1, it must be continuous"}),
+    [](const auto& info) { return info.param.name; });
+
+std::string runtimeErrorOf(const std::string& path) {
+  try {
+    loadFabric(path);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "(not refused)";
+}
+
+TEST(FabricFile, NamesTheFileThatCannotBeRead) {
+  const std::string path = testing::TempDir() + "haptex_there_is_no_such_fabric.yaml";
+  EXPECT_EQ(runtimeErrorOf(path), path + ": there is no such file");
+  EXPECT_EQ(runtimeErrorOf(testing::TempDir()),
+            testing::TempDir() + ": is a directory, not a file");
+}
+
+TEST(FabricFile, NamesFileAndLineOfASyntaxError) {
+  const TemporaryFile file("name: sample\nweft: [1, 2\nwarp: 3\n");
+  const std::string message = runtimeErrorOf(file.path());
+  EXPECT_EQ(message.rfind(file.path() + ": line 3: is not YAML: ", 0), 0u) << message;
+}
+
+TEST(FabricFile, RefusesMoreThanOneDocument) {
+  const TemporaryFile file(kValid + "---\n" + kValid);
+  EXPECT_EQ(runtimeErrorOf(file.path()), file.path() + ": has 2 YAML documents, must have one");
+  const TemporaryFile empty("");
+  EXPECT_EQ(runtimeErrorOf(empty.path()), empty.path() + ": has 0 YAML documents, must have one");
+}
+
+}  // namespace
+}  // namespace haptex::material

@@ -1,0 +1,179 @@
+// The fabric files that the package ships, against their own numbers read without the loader.
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "haptex/material/fabric_file.h"
+#include "haptex/material/strain_measures.h"
+
+namespace haptex::material {
+namespace {
+
+const std::filesystem::path kFabrics =
+    std::filesystem::path(__FILE__).parent_path() / "../../config/fabrics";
+
+Fabric shipped(const std::string& name) {
+  return loadFabric((kFabrics / (name + ".yaml")).string());
+}
+
+std::vector<CurvePoint> pointsInFile(const std::string& name, const std::string& direction) {
+  const YAML::Node file = YAML::LoadFile((kFabrics / (name + ".yaml")).string());
+  std::vector<CurvePoint> points;
+  for (const YAML::Node& point : file[direction]["elastic"]["points"]) {
+    points.push_back({point[0].as<double>(), point[1].as<double>()});
+  }
+  return points;
+}
+
+struct WoolCurve {
+  std::string direction;
+  StrainStressCurve curve;
+  std::vector<CurvePoint> points;
+};
+
+std::vector<WoolCurve> woolCurves() {
+  const Fabric wool = shipped("wool");
+  return {{"weft", wool.weft.elastic, pointsInFile("wool", "weft")},
+          {"warp", wool.warp.elastic, pointsInFile("wool", "warp")},
+          {"shear", wool.shear.elastic, pointsInFile("wool", "shear")}};
+}
+
+TEST(ShippedFabrics, LoadUnderTheirFileNames) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(kFabrics)) {
+    if (entry.path().extension() != ".yaml") continue;
+    names.push_back(entry.path().stem().string());
+    const Fabric fabric = loadFabric(entry.path().string());
+    EXPECT_EQ(fabric.name, names.back());
+    EXPECT_FALSE(fabric.description.empty()) << names.back();
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"acrylic_knit", "cotton_knit", "linear", "wool"}));
+}
+
+TEST(ShippedFabrics, CallMeasuredOnlyWhatWasMeasured) {
+  const auto measured = [](const std::string& name) {
+    std::vector<std::string> keys;
+    for (const auto& [key, provenance] : shipped(name).provenance) {
+      if (provenance.kind == Provenance::Kind::kMeasured) keys.push_back(key);
+    }
+    return keys;
+  };
+  using Keys = std::vector<std::string>;
+  EXPECT_EQ(measured("wool"),
+            (Keys{"areal_density", "shear.elastic", "warp.elastic", "weft.elastic"}));
+  EXPECT_EQ(measured("acrylic_knit"), (Keys{"warp.elastic", "weft.elastic"}));
+  EXPECT_EQ(measured("cotton_knit"), (Keys{"warp.elastic", "weft.elastic"}));
+  EXPECT_EQ(measured("linear"), Keys{});
+}
+
+TEST(ShippedFabrics, WoolPassesThroughEveryMeasuredPoint) {
+  for (const auto& [direction, curve, points] : woolCurves()) {
+    ASSERT_EQ(points.size(), 29u) << direction;
+    for (const CurvePoint& point : points) {
+      EXPECT_NEAR(curve.evaluate(point.strain).stress, point.stress, 1e-12 * std::abs(point.stress))
+          << direction << " at " << point.strain;
+    }
+  }
+}
+
+TEST(ShippedFabrics, WoolHasTheEndsOfTheMeasurement) {
+  // The last rows of the published table.
+  const Fabric wool = shipped("wool");
+  EXPECT_EQ(wool.areal_density, 0.15);
+  EXPECT_NEAR(wool.weft.elastic.evaluate(0.114184).stress, 1052.1583, 1e-9);
+  EXPECT_NEAR(wool.warp.elastic.evaluate(0.01361192).stress, 2998.0276, 1e-9);
+  EXPECT_NEAR(wool.shear.elastic.evaluate(0.14).stress, 59.986, 1e-12);
+}
+
+TEST(ShippedFabrics, WoolRisesEverywhereAsItsDataDo) {
+  for (const auto& [direction, curve, points] : woolCurves()) {
+    EXPECT_GT(curve.minimumSlope(), 0.0) << direction;
+    double before = curve.evaluate(points.front().strain - 0.01).stress;
+    for (double strain = points.front().strain; strain < points.back().strain + 0.01;
+         strain += 1e-5) {
+      const double stress = curve.evaluate(strain).stress;
+      ASSERT_GT(stress, before) << direction << " at " << strain;
+      before = stress;
+    }
+  }
+}
+
+TEST(ShippedFabrics, WoolIsContinuouslyDifferentiableAtEveryKnot) {
+  for (const auto& [direction, curve, points] : woolCurves()) {
+    const double stress_scale = points.back().stress;
+    const double slope_scale = curve.evaluate(curve.lastKnot()).slope;
+    for (const CurvePoint& point : points) {
+      const CurveValue below = curve.evaluate(std::nextafter(point.strain, -1.0));
+      const CurveValue above = curve.evaluate(point.strain);
+      EXPECT_NEAR(below.stress, above.stress, 1e-14 * stress_scale) << direction << point.strain;
+      EXPECT_NEAR(below.slope, above.slope, 1e-13 * slope_scale) << direction << point.strain;
+    }
+  }
+}
+
+TEST(ShippedFabrics, WoolShearIsOdd) {
+  const StrainStressCurve shear = shipped("wool").shear.elastic;
+  for (double strain = 0.0; strain < 0.2; strain += 0.00131) {
+    EXPECT_NEAR(shear.evaluate(-strain).stress, -shear.evaluate(strain).stress, 1e-12);
+  }
+}
+
+TEST(ShippedFabrics, KnitsReturnTheForceThatTheTesterRecorded) {
+  int checked = 0;
+  for (const std::string name : {"acrylic_knit", "cotton_knit"}) {
+    const Fabric fabric = shipped(name);
+    for (const std::string direction : {"weft", "warp"}) {
+      const auto& curve = (direction == "weft" ? fabric.weft : fabric.warp).elastic;
+      for (const auto& [strain, force] : pointsInFile(name, direction)) {
+        const double green = greenStrain(strain);
+        EXPECT_NEAR(forcePerWidth(curve.evaluate(green).stress, green), force, 1e-12 * force)
+            << name << ' ' << direction << " at " << strain;
+        ++checked;
+      }
+    }
+  }
+  EXPECT_EQ(checked, 26 + 14 + 30 + 11);  // loading rows of the tests
+}
+
+TEST(ShippedFabrics, LinearReferenceIsIsotropic) {
+  // The energy of a strain must not depend on the angle between fabric and strain.
+  const Fabric linear = shipped("linear");
+  EXPECT_EQ(linear.areal_density, 0.1);
+  EXPECT_EQ(linear.weft.elastic.evaluate(0.0).slope, 100.0);
+  const double uu = 0.07, vv = -0.02, uv = 0.03;  // tensor components
+  const auto energy = [&](double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const double turned_uu = c * c * uu + 2 * c * s * uv + s * s * vv;
+    const double turned_vv = s * s * uu - 2 * c * s * uv + c * c * vv;
+    const double turned_uv = (c * c - s * s) * uv + c * s * (vv - uu);
+    return linear.weft.elastic.energy(turned_uu) + linear.warp.elastic.energy(turned_vv) +
+           linear.shear.elastic.energy(2 * turned_uv);
+  };
+  for (double angle = 0.1; angle < 3.2; angle += 0.1) {
+    EXPECT_NEAR(energy(angle), energy(0.0), 1e-14) << angle;
+  }
+}
+
+TEST(ShippedFabrics, ViscosityIsAHundredthOfASecondTimesTheInitialSlope) {
+  for (const std::string name : {"wool", "acrylic_knit", "cotton_knit"}) {
+    const Fabric fabric = shipped(name);
+    for (const MembraneCurves* curves : {&fabric.weft, &fabric.warp, &fabric.shear}) {
+      // Stated values are rounded to two digits.
+      EXPECT_NEAR(curves->viscous.evaluate(0.0).slope, 0.01 * curves->elastic.evaluate(0.0).slope,
+                  0.03 * curves->viscous.evaluate(0.0).slope)
+          << name;
+    }
+  }
+  const Fabric linear = shipped("linear");
+  EXPECT_TRUE(linear.weft.viscous.isZero() && linear.warp.viscous.isZero() &&
+              linear.shear.viscous.isZero());
+}
+
+}  // namespace
+}  // namespace haptex::material
