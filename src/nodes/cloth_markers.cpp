@@ -14,8 +14,6 @@ namespace {
 
 enum MarkerIndex { kClothIndex, kEdgesIndex, kParticlesIndex, kScaleIndex, kFirstLabelIndex };
 
-// Fractions of the full scale with a number, nearly evenly spaced on the square root scale.
-constexpr std::array<double, 5> kLabelledFractions = {0.0, 0.05, 0.2, 0.5, 1.0};
 constexpr int kScaleCells = 64;
 
 // Towards the light, from the viewer's side, above and left, so that a hanging cloth is neither
@@ -121,10 +119,11 @@ void ClothMarkers::addScale() {
       bar.colors.push_back(colourMessage(viridis(corner < 2 ? begin : end)));
     }
   }
-  for (const double fraction : kLabelledFractions) {
+  for (int decade = 0; decade <= kStrainDecades; ++decade) {
+    const double strain = full_scale_ * std::pow(10.0, decade - kStrainDecades);
     char text[32];
-    std::snprintf(text, sizeof(text), "%.3g %%", 100.0 * fraction * full_scale_);
-    addLabel(at(strainFraction(fraction, 1.0)) + Eigen::Vector3d(0.0, 0.13 * size_, 0.0),
+    std::snprintf(text, sizeof(text), "%.3g %%", 100.0 * strain);
+    addLabel(at(strainFraction(strain, full_scale_)) + Eigen::Vector3d(0.0, 0.13 * size_, 0.0),
              0.04 * size_, text);
   }
   addLabel(at(1.0) + Eigen::Vector3d(0.0, 0.07 * size_, 0.08 * size_), 0.045 * size_, "strain");

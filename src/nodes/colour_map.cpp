@@ -22,7 +22,7 @@ Eigen::Vector3f viridis(double fraction) {
 }
 
 double strainFraction(double strain, double full_scale) {
-  return strain > 0.0 ? std::sqrt(strain / full_scale) : 0.0;
+  return strain > 0.0 ? 1.0 + std::log10(strain / full_scale) / kStrainDecades : 0.0;
 }
 
 double largestPrincipalStrain(const Eigen::Vector3d& strain) {

@@ -18,7 +18,8 @@ namespace haptex::nodes {
 /// "cloth": triangles coloured by the largest principal Green-Lagrange strain, averaged at the
 ///   particles with the rest areas of the triangles around. rviz does not light triangles that
 ///   have colours of their own, so the shading of a fixed light is part of the colours.
-/// "scale": the colours from strain 0 to the full scale with numbers in percent, beside the place
+/// "scale": the colours of the last four decades to the full scale with numbers in percent, beside
+/// the place
 ///   where the cloth starts.
 /// "attachments": attached particles, joined where an edge joins them.
 class ClothMarkers {

@@ -10,9 +10,11 @@ namespace haptex::nodes {
 /// @param fraction along the map; below 0 and NaN give its begin, above 1 its end
 Eigen::Vector3f viridis(double fraction);
 
-/// Where on the colour map a strain lies: sqrt(strain / full_scale). The square root leaves a
-/// visible difference to strains of a few percent of the full scale, as of a sample that hangs
-/// under its own weight on a scale made for one that is stretched.
+/// Decades that the colour map spans.
+constexpr int kStrainDecades = 4;
+
+/// Where on the colour map a strain lies: logarithmic over kStrainDecades decades up to the full
+/// scale, so that one scale shows a stiff fabric hanging (some 1e-5) and stretched (some 1e-2).
 double strainFraction(double strain, double full_scale);
 
 /// The largest principal value of the Green-Lagrange strain (weft, warp, shear U.V).
