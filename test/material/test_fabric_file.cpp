@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -18,12 +19,7 @@ namespace {
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& text)
-      : path_(testing::TempDir() + "haptex_fabric_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name()) {
-    for (char& c : path_) {
-      if (c == '/' && &c > path_.data() + testing::TempDir().size()) c = '_';
-    }
-    path_ += ".yaml";
+      : path_(testing::TempDir() + "haptex_fabric_" + std::to_string(getpid()) + ".yaml") {
     std::ofstream(path_) << text;
   }
   ~TemporaryFile() { std::remove(path_.c_str()); }
@@ -339,8 +335,11 @@ TEST(FabricFile, NamesFileAndLineOfASyntaxError) {
 TEST(FabricFile, RefusesMoreThanOneDocument) {
   const TemporaryFile file(kValid + "---\n" + kValid);
   EXPECT_EQ(runtimeErrorOf(file.path()), file.path() + ": has 2 YAML documents, must have one");
-  const TemporaryFile empty("");
-  EXPECT_EQ(runtimeErrorOf(empty.path()), empty.path() + ": has 0 YAML documents, must have one");
+}
+
+TEST(FabricFile, RefusesAnEmptyFile) {
+  const TemporaryFile file("");
+  EXPECT_EQ(runtimeErrorOf(file.path()), file.path() + ": has 0 YAML documents, must have one");
 }
 
 }  // namespace

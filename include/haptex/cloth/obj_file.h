@@ -9,8 +9,9 @@ namespace haptex::cloth {
 
 /// Reads triangles ("f"), positions ("v", metres, world frame) and texture coordinates ("vt"),
 /// which are the rest coordinates (u weft, v warp) in metres. Every particle needs exactly one
-/// texture coordinate; a position that faces give two different ones (a seam) is an error, as is a
-/// face that is not a triangle. Other statements are ignored.
+/// texture coordinate; a position that faces give two of different value (a seam) is an error, as
+/// is a face that is not a triangle. Indices count from 1, or backwards if negative, over what
+/// stands before the face in the file. Other statements are ignored.
 /// @throws std::runtime_error if the file cannot be read
 /// @throws std::invalid_argument naming file, line and what is wrong, or the mesh defects by index
 ClothMesh loadObj(const std::string& path);

@@ -22,9 +22,11 @@ struct Scene {
 
 /// Reads a scene file; docs/scene_files.md describes the format. A fabric or mesh name without a
 /// path separator is looked up in the directory of its kind beside the scene's directory
-/// (config/fabrics for config/scenes).
-/// @throws std::runtime_error if the file cannot be read or is not YAML
-/// @throws std::invalid_argument naming file, key, value and what is allowed
+/// (config/fabrics for config/scenes); one with a separator is a path from the scene's directory.
+/// @throws std::runtime_error if the scene file or its mesh cannot be read, or the scene is not
+/// YAML
+/// @throws std::invalid_argument naming file, key, value and what is allowed, or what loadObj()
+/// says
 Scene loadScene(const std::string& path);
 
 }  // namespace haptex::cloth

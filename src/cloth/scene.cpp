@@ -1,0 +1,209 @@
+#include "haptex/cloth/scene.h"
+
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "haptex/cloth/obj_file.h"
+#include "haptex/material/yaml_reader.h"
+
+namespace haptex::cloth {
+namespace {
+
+using material::YamlValue;
+namespace fs = std::filesystem;
+
+constexpr double kLargestSize = 100.0;  // m
+constexpr long long kMostTriangles = 200000;
+constexpr double kShortestTimeStep = 1e-6;  // s
+constexpr double kLongestTimeStep = 10.0;   // s
+constexpr int kMostNewtonIterations = 1000;
+const Eigen::Vector3d kStandardGravity(0.0, 0.0, -9.80665);  // m/s^2
+
+// Names of the files of one kind, for a message that says what there is.
+std::string namesIn(const fs::path& directory, const std::string& extension) {
+  std::set<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error)) {
+    if (entry.path().extension() == extension) names.insert(entry.path().stem().string());
+  }
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return names.empty() ? "none" : list;
+}
+
+// A name without a separator lies in the directory `kind` beside the scene's, a path is relative to
+// the scene's directory.
+std::string resolve(const YamlValue& value, const std::string& kind, const std::string& extension) {
+  const std::string name = value.text();
+  const fs::path scene_directory = fs::path(value.file()).parent_path();
+  const fs::path kind_directory = (scene_directory / ".." / kind).lexically_normal();
+  const bool is_path = name.find('/') != std::string::npos;
+  fs::path path = (is_path ? scene_directory : kind_directory) / name;
+  if (path.extension() != extension) path += extension;
+  path = path.lexically_normal();
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) {
+    value.refuse("must be a name in " + kind_directory.string() + " (" +
+                 namesIn(kind_directory, extension) + ") or a path with a '/'; there is no file " +
+                 path.string());
+  }
+  return path.string();
+}
+
+double readSize(const YamlValue& value) {
+  const double size = value.number();
+  if (size <= 0.0 || size > kLargestSize) value.refuse("must be > 0 and <= 100 m");
+  return size;
+}
+
+int readCells(const YamlValue& value) {
+  const int cells = value.integer();
+  if (cells < 1) value.refuse("must be an integer >= 1");
+  return cells;
+}
+
+void requireTriangleCount(const YamlValue& value, long long triangles) {
+  if (triangles > kMostTriangles) {
+    value.refuseBecause(std::to_string(triangles) + " triangles, at most " +
+                        std::to_string(kMostTriangles) + " are allowed");
+  }
+}
+
+ClothMesh readSheet(const YamlValue& value) {
+  value.requireKeys({"size", "cells", "diagonals"});
+  const auto size = value.at("size").items(2);
+  const auto cells = value.at("cells").items(2);
+  const double width = readSize(size[0]), height = readSize(size[1]);
+  const int cells_u = readCells(cells[0]), cells_v = readCells(cells[1]);
+  // Each factor alone is bounded first, so that the product cannot overflow.
+  requireTriangleCount(cells[0], 2LL * cells_u);
+  requireTriangleCount(value.at("cells"), 2LL * cells_u * cells_v);
+  const bool one_way = value.at("diagonals").oneOf({"one_way", "alternating"}) == "one_way";
+  ClothMesh mesh = makeRectangle(width, height, cells_u, cells_v,
+                                 one_way ? Triangulation::kOneWay : Triangulation::kAlternating);
+  try {
+    requireSound(mesh);
+  } catch (const std::invalid_argument& defects) {
+    value.refuseBecause(defects.what());
+  }
+  return mesh;
+}
+
+ClothMesh readMesh(const YamlValue& scene) {
+  if (scene.has("sheet") == scene.has("mesh")) {
+    scene.refuseBecause("must have exactly one of sheet, mesh");
+  }
+  if (scene.has("sheet")) return readSheet(scene.at("sheet"));
+  ClothMesh mesh = loadObj(resolve(scene.at("mesh"), "meshes", ".obj"));
+  requireTriangleCount(scene.at("mesh"), static_cast<long long>(mesh.triangles.size()));
+  return mesh;
+}
+
+Side readSide(const YamlValue& value) {
+  const std::string side = value.oneOf({"top", "bottom", "left", "right"});
+  if (side == "top") return Side::kTop;
+  if (side == "bottom") return Side::kBottom;
+  return side == "left" ? Side::kLeft : Side::kRight;
+}
+
+int readParticle(const YamlValue& value, const ClothMesh& mesh) {
+  const int particle = value.integer();
+  const int count = static_cast<int>(mesh.rest_coordinates.size());
+  if (particle < 0 || particle >= count) {
+    value.refuse("must be a particle from 0 to " + std::to_string(count - 1));
+  }
+  return particle;
+}
+
+// Ascending, each particle once: sides share their corners.
+std::vector<int> readAttachedParticles(const YamlValue& value, const ClothMesh& mesh) {
+  std::set<int> attached;
+  for (const YamlValue& item : value.items()) {
+    if (item.isMap()) {
+      item.requireKeys({"particles"});
+      for (const YamlValue& particle : item.at("particles").items()) {
+        attached.insert(readParticle(particle, mesh));
+      }
+    } else {
+      const std::vector<int> side = sideParticles(mesh, readSide(item));
+      attached.insert(side.begin(), side.end());
+    }
+  }
+  return std::vector<int>(attached.begin(), attached.end());
+}
+
+ModelledEffects readEffects(const YamlValue& scene) {
+  ModelledEffects effects;
+  bool gravity = false;
+  for (const YamlValue& item : scene.at("model").items()) {
+    const bool is_gravity = item.oneOf({"gravity", "viscosity"}) == "gravity";
+    bool& effect = is_gravity ? gravity : effects.viscosity;
+    if (effect) item.refuse("is listed twice");
+    effect = true;
+  }
+  if (gravity) effects.gravity = kStandardGravity;
+  if (scene.has("gravity")) {
+    if (!gravity) {
+      scene.at("gravity").refuseBecause(
+          "is allowed only if model lists gravity, which it does not");
+    }
+    const auto components = scene.at("gravity").items(3);
+    for (int i = 0; i < 3; ++i) effects.gravity[i] = components[i].number();
+  }
+  return effects;
+}
+
+double readTimeStep(const YamlValue& value) {
+  const double time_step = value.number();
+  if (time_step < kShortestTimeStep || time_step > kLongestTimeStep) {
+    value.refuse("must be from 1e-6 to 10 s");
+  }
+  return time_step;
+}
+
+LinearSolverMethod readMethod(const YamlValue& value) {
+  const std::string method = value.oneOf({"automatic", "conjugate_gradient", "cholesky"});
+  if (method == "automatic") return LinearSolverMethod::kAutomatic;
+  return method == "cholesky" ? LinearSolverMethod::kCholesky
+                              : LinearSolverMethod::kConjugateGradient;
+}
+
+StepSettings readSolver(const YamlValue& value) {
+  value.requireKeys({}, {"method", "tolerance", "newton_iterations"});
+  StepSettings settings;
+  if (value.has("method")) settings.solver = readMethod(value.at("method"));
+  if (value.has("tolerance")) {
+    settings.tolerance = value.at("tolerance").number();
+    if (settings.tolerance <= 0.0 || settings.tolerance >= 1.0) {
+      value.at("tolerance").refuse("must be > 0 and < 1");
+    }
+  }
+  if (value.has("newton_iterations")) {
+    settings.newton_iterations = value.at("newton_iterations").integer();
+    if (settings.newton_iterations < 1 || settings.newton_iterations > kMostNewtonIterations) {
+      value.at("newton_iterations").refuse("must be an integer from 1 to 1000");
+    }
+  }
+  return settings;
+}
+
+}  // namespace
+
+Scene loadScene(const std::string& path) {
+  const YamlValue file = YamlValue::load(path);
+  file.requireKeys({"fabric", "attach", "model", "time_step"},
+                   {"sheet", "mesh", "gravity", "solver"});
+  Scene scene;
+  scene.fabric_path = resolve(file.at("fabric"), "fabrics", ".yaml");
+  scene.mesh = readMesh(file);
+  scene.attached_particles = readAttachedParticles(file.at("attach"), scene.mesh);
+  scene.effects = readEffects(file);
+  scene.time_step = readTimeStep(file.at("time_step"));
+  if (file.has("solver")) scene.step = readSolver(file.at("solver"));
+  return scene;
+}
+
+}  // namespace haptex::cloth
