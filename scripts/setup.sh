@@ -46,8 +46,8 @@ haptex_logged() {
   fi
 }
 
-# haptex_configure DIRECTORY [CMAKE_ARGUMENT...]: configures into build directory DIRECTORY of the
-# package. A build directory that was made for another place is made anew: its paths are wrong.
+# haptex_configure DIRECTORY [CMAKE_ARGUMENT...]: configures into a build directory of the package.
+# One that was made for another place is made anew: its paths are wrong.
 haptex_configure() {
   local build="$haptex_root/$1"
   shift
@@ -88,4 +88,9 @@ haptex_setup() {
   haptex_configure build || haptex_die "configuring failed"
   haptex_compile build || haptex_die "building failed"
   haptex_environment "$haptex_root/build/devel/setup.bash"
+}
+
+# A TCP port that nothing listens on, for a ROS master.
+haptex_free_port() {
+  /usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("", 0)); print(s.getsockname()[1])'
 }

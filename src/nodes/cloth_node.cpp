@@ -1,0 +1,171 @@
+#include "haptex/nodes/cloth_node.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "haptex/material/fabric_file.h"
+#include "haptex/nodes/cloth_messages.h"
+#include "haptex/nodes/config_files.h"
+
+namespace haptex::nodes {
+namespace {
+
+constexpr double kDefaultMarkerRate = 25.0;
+constexpr double kDefaultStrainScale = 0.01;
+
+/// How many steps there are between two messages of a rate, to the nearest whole number.
+std::uint64_t stepsPerMessage(double rate, double time_step) {
+  if (rate == 0.0) return 1;
+  return std::max<std::uint64_t>(1, std::llround(std::min(1.0 / (rate * time_step), 1e9)));
+}
+
+double readPositive(const ros::NodeHandle& node, const std::string& name, double fallback) {
+  if (!node.hasParam(name)) return fallback;
+  double value = 0.0;
+  const std::string full_name = node.resolveName(name);
+  if (!node.getParam(name, value)) {
+    throw std::invalid_argument("parameter " + full_name + " is not a number");
+  }
+  if (!std::isfinite(value) || value <= 0.0) {
+    std::ostringstream message;
+    message << "parameter " << full_name << " = " << value << ": allowed are finite numbers > 0";
+    throw std::invalid_argument(message.str());
+  }
+  return value;
+}
+
+}  // namespace
+
+ClothNodeParameters ClothNodeParameters::read(const ros::NodeHandle& private_node) {
+  ClothNodeParameters parameters;
+  const std::string name = private_node.resolveName("scene");
+  std::string scene;
+  if (!private_node.getParam("scene", scene)) {
+    throw std::invalid_argument("parameter " + name +
+                                " is not set to a string: allowed is the path of a scene file or "
+                                "the name of one in config/scenes");
+  }
+  try {
+    parameters.scene_path = findConfigFile("scenes", scene);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("parameter " + name + ": " + error.what());
+  }
+  parameters.state_rate = readPositive(private_node, "state_rate", 0.0);
+  parameters.marker_rate = readPositive(private_node, "marker_rate", kDefaultMarkerRate);
+  parameters.strain_scale = readPositive(private_node, "strain_scale", kDefaultStrainScale);
+  return parameters;
+}
+
+ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : ClothNode(node, private_node, ClothNodeParameters::read(private_node)) {}
+
+ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                     const ClothNodeParameters& parameters)
+    : ClothNode(node, private_node, parameters, cloth::loadScene(parameters.scene_path)) {}
+
+ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                     const ClothNodeParameters& parameters, cloth::Scene scene)
+    : node_(node),
+      diagnostics_(node, private_node),
+      steps_per_state_(stepsPerMessage(parameters.state_rate, scene.time_step)),
+      steps_per_markers_(stepsPerMessage(parameters.marker_rate, scene.time_step)),
+      markers_(scene.mesh, parameters.strain_scale),
+      state_stamp_(ros::Time::now()),
+      time_step_(scene.time_step),
+      tolerance_(scene.step.tolerance),
+      particle_count_(scene.mesh.initial_positions.size()),
+      triangle_count_(scene.mesh.triangles.size()),
+      loop_(SimulatedCloth(std::move(scene), material::loadFabric(scene.fabric_path)),
+            [this](const SimulatedCloth& simulation, bool rests) {
+              publishStep(simulation, rests);
+            }) {
+  ROS_INFO("Scene %s: %zu particles, %zu triangles, steps of %g ms", parameters.scene_path.c_str(),
+           particle_count_, triangle_count_, 1e3 * time_step_);
+  advertiseTopics();
+  loop_.start();
+  loop_.execute([this](SimulatedCloth& simulation) { publishMesh(simulation.cloth()); });
+  advertiseServices();
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("cloth simulation", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    diagnose(status);
+  });
+  diagnostics_timer_ = node_.createTimer(
+      ros::Duration(1.0), [this](const ros::TimerEvent&) { diagnostics_.force_update(); });
+}
+
+void ClothNode::advertiseTopics() {
+  const ros::SubscriberStatusCallback republish = [this](const ros::SingleSubscriberPublisher&) {
+    republishIfPaused();
+  };
+  mesh_publisher_ = node_.advertise<haptex::ClothMesh>("cloth/mesh", 1, true);
+  state_publisher_ = node_.advertise<haptex::ClothState>("cloth/state", 10, republish);
+  marker_publisher_ =
+      node_.advertise<visualization_msgs::MarkerArray>("cloth/markers", 2, republish);
+}
+
+void ClothNode::publishMesh(const cloth::Cloth& cloth) {
+  mesh_publisher_.publish(meshMessage(cloth, ros::Time::now()));
+}
+
+void ClothNode::publishStep(const SimulatedCloth& simulation, bool rests) {
+  if (stamped_step_ != simulation.steps()) {
+    stamped_step_ = simulation.steps();
+    state_stamp_ = ros::Time::now();
+  }
+  const bool state_due = rests || stamped_step_ % steps_per_state_ == 0;
+  if (state_due && state_publisher_.getNumSubscribers() > 0) {
+    fillStateMessage(simulation, state_stamp_, forces_, state_message_);
+    state_publisher_.publish(state_message_);
+  }
+  const bool markers_due = rests || stamped_step_ % steps_per_markers_ == 0;
+  if (markers_due && marker_publisher_.getNumSubscribers() > 0) {
+    marker_publisher_.publish(markers_.update(simulation, state_stamp_));
+  }
+}
+
+void ClothNode::republishIfPaused() {
+  try {
+    loop_.execute([](SimulatedCloth&) {});  // while paused, every command shows the state
+  } catch (const std::runtime_error&) {
+    // The node is being shut down: there is nothing to show any more.
+  }
+}
+
+void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  const LoopStatus loop = loop_.status();
+  if (loop.last_step_rejected) {
+    status.summary(DiagnosticStatus::ERROR,
+                   "a step was not finite and was rejected: the last good state stays; reset, or "
+                   "undo what led to it");
+  } else if (loop.paused) {
+    status.summary(DiagnosticStatus::OK, "paused");
+  } else if (loop.real_time_factor < 0.99) {
+    status.summaryf(DiagnosticStatus::WARN, "%.1f %% slower than real time",
+                    100.0 * (1.0 - loop.real_time_factor));
+  } else {
+    status.summary(DiagnosticStatus::OK, "in real time");
+  }
+  const bool direct = loop.last_report.solver == cloth::LinearSolverMethod::kCholesky;
+  status.add("simulated time (s)", loop.simulated_time);
+  status.add("steps", loop.steps);
+  status.add("step rate (Hz)", loop.step_rate);
+  status.add("real-time factor", loop.real_time_factor);
+  status.add("dropped simulated time (s)", loop.dropped_seconds);
+  status.add("time step (ms)", 1e3 * time_step_);
+  status.add("mean computing time of a step (ms)", 1e3 * loop.mean_step_seconds);
+  status.add("largest computing time of a step (ms)", 1e3 * loop.largest_step_seconds);
+  status.add("linear solver", direct ? "Cholesky" : "conjugate gradient");
+  status.add("linear iterations", loop.last_report.linear_iterations);
+  status.add("largest residual", loop.largest_residual);
+  status.add("tolerance", tolerance_);
+  status.add("steps that missed the tolerance", loop.unsolved_steps);
+  status.add("rejected steps", loop.rejected_steps);
+  status.add("particles", particle_count_);
+  status.add("triangles", triangle_count_);
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,18 @@
+// The node cloth_simulation, see haptex/nodes/cloth_node.h.
+#include <ros/ros.h>
+
+#include <exception>
+
+#include "haptex/nodes/cloth_node.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "cloth_simulation");
+  try {
+    const haptex::nodes::ClothNode node(ros::NodeHandle(), ros::NodeHandle("~"));
+    ros::MultiThreadedSpinner(4).spin();  // a service that waits must not hold up the others
+  } catch (const std::exception& error) {
+    ROS_FATAL("cloth_simulation: %s", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "haptex/nodes/cloth_markers.h"
+#include "haptex/nodes/cloth_messages.h"
+#include "haptex/nodes/colour_map.h"
+#include "small_scene.h"
+
+namespace haptex::nodes {
+namespace {
+
+using visualization_msgs::Marker;
+
+const Marker& find(const visualization_msgs::MarkerArray& markers, const std::string& name,
+                   int type) {
+  for (const Marker& marker : markers.markers) {
+    if (marker.ns == name && marker.type == type) return marker;
+  }
+  throw std::out_of_range(name);
+}
+
+TEST(ColourMap, GetsBrighterAllTheWay) {
+  const Eigen::Vector3f luminance(0.2126F, 0.7152F, 0.0722F);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_LT(luminance.dot(viridis(i / 100.0)), luminance.dot(viridis((i + 1) / 100.0)));
+  }
+}
+
+TEST(ColourMap, EndsAtItsEndsForEveryNumber) {
+  EXPECT_EQ(viridis(-1.0), viridis(0.0));
+  EXPECT_EQ(viridis(std::numeric_limits<double>::quiet_NaN()), viridis(0.0));
+  EXPECT_EQ(viridis(2.0), viridis(1.0));
+}
+
+TEST(ColourMap, SpansFourDecadesBelowTheFullScale) {
+  EXPECT_DOUBLE_EQ(strainFraction(0.01, 0.01), 1.0);
+  EXPECT_NEAR(strainFraction(1e-6, 0.01), 0.0, 1e-12);
+  EXPECT_EQ(strainFraction(0.0, 0.01), 0.0);
+  EXPECT_EQ(strainFraction(-0.1, 0.01), 0.0);
+}
+
+TEST(ColourMap, LargestPrincipalStrainIsTheLargestEigenvalue) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> strain(-0.1, 0.1);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d e(strain(generator), strain(generator), strain(generator));
+    Eigen::Matrix2d tensor;
+    tensor << e[0], e[2] / 2, e[2] / 2, e[1];
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(tensor);
+    EXPECT_NEAR(largestPrincipalStrain(e), solver.eigenvalues()[1], 1e-15);  // rounding
+  }
+}
+
+TEST(ClothMarkers, ShowEveryTriangleAtItsPlaceWithFiniteColours) {
+  SimulatedCloth simulation = smallSimulation();
+  ClothMarkers markers(simulation.cloth().mesh(), 0.01);
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(simulation.step());
+  const Marker& cloth =
+      find(markers.update(simulation, ros::Time(3)), "cloth", Marker::TRIANGLE_LIST);
+  const auto& triangles = simulation.cloth().mesh().triangles;
+  ASSERT_EQ(cloth.points.size(), 3 * triangles.size());
+  ASSERT_EQ(cloth.colors.size(), cloth.points.size());
+  for (std::size_t i = 0; i < cloth.points.size(); ++i) {
+    const Eigen::Vector3d& position = simulation.state().positions[triangles[i / 3][i % 3]];
+    EXPECT_EQ(Eigen::Vector3d(cloth.points[i].x, cloth.points[i].y, cloth.points[i].z), position);
+    const float sum = cloth.colors[i].r + cloth.colors[i].g + cloth.colors[i].b;
+    EXPECT_TRUE(sum > 0.0F && sum <= 3.0F);
+  }
+}
+
+TEST(ClothMarkers, JoinAttachedParticlesAndVanishWithThem) {
+  SimulatedCloth simulation = smallSimulation();
+  ClothMarkers markers(simulation.cloth().mesh(), 0.01);
+  const auto& with = markers.update(simulation, ros::Time(1));
+  EXPECT_EQ(find(with, "attachments", Marker::LINE_LIST).points.size(), 2u * 4);
+  EXPECT_EQ(find(with, "attachments", Marker::SPHERE_LIST).points.size(), 5u);
+  simulation.release({20, 21, 22, 23, 24});
+  const auto& without = markers.update(simulation, ros::Time(2));
+  EXPECT_EQ(find(without, "attachments", Marker::LINE_LIST).action, Marker::DELETE);
+  EXPECT_EQ(find(without, "attachments", Marker::SPHERE_LIST).action, Marker::DELETE);
+}
+
+TEST(ClothMarkers, AreAllStampedAndInTheFixedFrame) {
+  SimulatedCloth simulation = smallSimulation();
+  ClothMarkers markers(simulation.cloth().mesh(), 0.01);
+  int labels = 0;
+  for (const Marker& marker : markers.update(simulation, ros::Time(7)).markers) {
+    EXPECT_EQ(marker.header.frame_id, kFixedFrame);
+    EXPECT_EQ(marker.header.stamp, ros::Time(7));
+    if (marker.text.find('%') != std::string::npos) ++labels;
+  }
+  EXPECT_EQ(labels, 1 + kStrainDecades);
+}
+
+}  // namespace
+}  // namespace haptex::nodes

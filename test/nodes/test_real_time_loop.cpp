@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <stdexcept>
+
+#include "haptex/nodes/real_time_loop.h"
+#include "small_scene.h"
+
+namespace haptex::nodes {
+namespace {
+
+void ignore(const SimulatedCloth& /*simulation*/, bool /*rests*/) {}
+
+cloth::ClothState stateOf(RealTimeLoop& loop) {
+  cloth::ClothState state;
+  loop.execute([&](SimulatedCloth& simulation) { state = simulation.state(); });
+  return state;
+}
+
+// So stiff that its forces overflow a double.
+void setOverflowingFabric(SimulatedCloth& simulation) {
+  material::Fabric fabric = simulation.cloth().fabric();
+  fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(1e308);
+  simulation.setFabric(fabric);
+}
+
+TEST(RealTimeLoop, StandsStillWhilePaused) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.setPaused(true);
+  const cloth::ClothState before = stateOf(loop);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // ten steps, if it ran
+  const cloth::ClothState after = stateOf(loop);
+  EXPECT_EQ(before.time, after.time);
+  EXPECT_EQ(before.positions, after.positions);
+  EXPECT_TRUE(loop.status().paused);
+}
+
+TEST(RealTimeLoop, TakesExactlyTheStepsAskedFor) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.setPaused(true);
+  loop.execute([](SimulatedCloth& simulation) { simulation.reset(); });
+  const StepsTaken taken = loop.takeSteps(17);
+  EXPECT_EQ(taken.steps, 17u);
+  EXPECT_EQ(taken.end, StepsTaken::End::kAllTaken);
+  SimulatedCloth alone = smallSimulation();
+  for (int i = 0; i < 17; ++i) alone.step();
+  EXPECT_EQ(stateOf(loop).positions, alone.state().positions);
+  EXPECT_EQ(loop.status().steps, 17u);
+}
+
+TEST(RealTimeLoop, RefusesStepsWhileRunning) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  EXPECT_THROW(loop.takeSteps(1), std::invalid_argument);
+}
+
+TEST(RealTimeLoop, CarriesOutCommandsBetweenRequestedSteps) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.setPaused(true);
+  auto steps = std::async(std::launch::async, [&] { return loop.takeSteps(4000000000u); });
+  while (loop.status().steps < 10) std::this_thread::yield();
+  EXPECT_THROW(loop.takeSteps(1), std::invalid_argument);  // one caller at once
+  loop.setPaused(false);
+  EXPECT_EQ(steps.get().end, StepsTaken::End::kInterrupted);
+}
+
+TEST(RealTimeLoop, RethrowsWhatACommandThrows) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  EXPECT_THROW(loop.execute([](SimulatedCloth&) { throw std::domain_error("no"); }),
+               std::domain_error);
+  EXPECT_NO_THROW(stateOf(loop));
+}
+
+TEST(RealTimeLoop, StepsOnUnderAStreamOfCommands) {
+  std::atomic<bool> stop{false};
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  auto stream = std::async(std::launch::async, [&] {
+    while (!stop) loop.execute([](SimulatedCloth&) {});
+  });
+  while (loop.status().steps < 20) std::this_thread::yield();  // a starved loop would hang here
+  stop = true;
+}
+
+TEST(RealTimeLoop, KeepsTheLastGoodStateWhenAStepIsRejected) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.setPaused(true);
+  loop.takeSteps(3);
+  const cloth::ClothState good = stateOf(loop);
+  loop.execute(setOverflowingFabric);
+  const StepsTaken taken = loop.takeSteps(5);
+  EXPECT_EQ(taken.steps, 0u);
+  EXPECT_EQ(taken.end, StepsTaken::End::kRejected);
+  EXPECT_EQ(stateOf(loop).positions, good.positions);
+  EXPECT_TRUE(loop.status().last_step_rejected);
+  EXPECT_EQ(loop.status().rejected_steps, 1u);
+}
+
+TEST(RealTimeLoop, ShowsEveryAcceptedStepOnce) {
+  std::vector<std::uint64_t> seen;
+  RealTimeLoop loop(smallSimulation(), [&](const SimulatedCloth& simulation, bool rests) {
+    if (!rests) seen.push_back(simulation.steps());
+  });
+  loop.start();
+  while (loop.status().steps < 10) std::this_thread::yield();
+  loop.stop();
+  for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i + 1);
+  EXPECT_GE(seen.size(), 10u);
+}
+
+TEST(RealTimeLoop, RefusesCommandsAfterItsEnd) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.stop();
+  EXPECT_THROW(loop.execute([](SimulatedCloth&) {}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace haptex::nodes
