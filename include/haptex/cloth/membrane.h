@@ -1,5 +1,5 @@
 // The Green-Lagrange membrane element of Volino and Magnenat-Thalmann 2005 on every triangle of a
-// cloth: design equations in docs/mechanics.md.
+// cloth; the equations stand in docs/mechanics.md.
 #pragma once
 
 #include <Eigen/Core>
