@@ -76,7 +76,7 @@ StepReport BackwardEuler::step(const Cloth& cloth, ClothState& state, double tim
   prescribe(cloth, state, time_step);
   report.assembly_seconds = seconds(Clock::now() - start);
 
-  solveLinear(report);
+  report.linear_converged = solveLinear(report);
   end_.time = state.time + time_step;
   for (int i = 0; i < matrix_.size(); ++i) {
     end_.velocities[i] = state.velocities[i] + solution_.col(i);
@@ -110,7 +110,8 @@ void BackwardEuler::prescribe(const Cloth& cloth, const ClothState& state, doubl
   if (any_fixed_) matrix_.eliminate(fixed_, prescribed_, rhs_);
 }
 
-void BackwardEuler::solveLinear(StepReport& report) {
+/// Solves matrix_ solution_ = rhs_ from the guess in solution_; false if that did not converge.
+bool BackwardEuler::solveLinear(StepReport& report) {
   const Clock::time_point start = Clock::now();
   for (int i = 0; any_fixed_ && i < matrix_.size(); ++i) {
     if (fixed_[i]) solution_.col(i).setZero();
@@ -121,11 +122,10 @@ void BackwardEuler::solveLinear(StepReport& report) {
   }
   report.solver = solver_.lastMethod();
   report.linear_iterations += result.iterations;
-  report.linear_residual = std::max(report.linear_residual, result.residual);
-  report.linear_converged =
-      result.converged && (report.newton_iterations == 0 || report.linear_converged);
+  report.linear_residual = result.residual;
   ++report.newton_iterations;
   report.solve_seconds += seconds(Clock::now() - start);
+  return result.converged;
 }
 
 double BackwardEuler::incrementalPotential(const Cloth& cloth, const ClothState& begin, double h,
@@ -142,33 +142,45 @@ double BackwardEuler::incrementalPotential(const Cloth& cloth, const ClothState&
   return potential;
 }
 
+void BackwardEuler::assembleNewton(const Cloth& cloth, const ClothState& begin, double h,
+                                   Membrane::Hessian hessian, StepReport& report) {
+  const Clock::time_point start = Clock::now();
+  matrix_.setZero();
+  for (int i = 0; i < matrix_.size(); ++i) {
+    const double mass = cloth.masses()[i];
+    matrix_.diagonal(i).diagonal().setConstant(mass);
+    rhs_.col(i) = h * (cloth.externalForces()[i] + mass * cloth.effects().gravity) -
+                  mass * (end_.velocities[i] - begin.velocities[i]);
+  }
+  cloth.membrane().addNewton(end_.positions, begin_strains_, h, hessian, matrix_, rhs_);
+  if (any_fixed_) matrix_.eliminate(fixed_, prescribed_, rhs_);
+  report.assembly_seconds += seconds(Clock::now() - start);
+}
+
 void BackwardEuler::iterateNewton(const Cloth& cloth, const ClothState& begin, double h,
                                   StepReport& report) {
+  constexpr double kNearMinimum = 1e-2;  // relative residual from which the exact Hessian is tried
   const double reference = rhs_.norm();
   cloth.membrane().computeStrains(begin.positions, begin_strains_);
   double potential = incrementalPotential(cloth, begin, h, end_.positions, end_.velocities);
   prescribed_.setZero();  // the attached particles have reached their places
-  report.newton_converged = false;
+  auto hessian = Membrane::Hessian::kProjected;
   while (true) {
-    const Clock::time_point start = Clock::now();
-    matrix_.setZero();
-    for (int i = 0; i < matrix_.size(); ++i) {
-      const double mass = cloth.masses()[i];
-      matrix_.diagonal(i).diagonal().setConstant(mass);
-      rhs_.col(i) = h * (cloth.externalForces()[i] + mass * cloth.effects().gravity) -
-                    mass * (end_.velocities[i] - begin.velocities[i]);
-    }
-    cloth.membrane().addNewton(end_.positions, begin_strains_, h, matrix_, rhs_);
-    if (any_fixed_) matrix_.eliminate(fixed_, prescribed_, rhs_);
-    report.assembly_seconds += seconds(Clock::now() - start);
-
+    assembleNewton(cloth, begin, h, hessian, report);
     const double norm = rhs_.norm();
     report.newton_residual = reference > 0.0 ? norm / reference : norm;
     report.newton_converged = norm <= settings_.newton_tolerance * reference;
     if (report.newton_converged || report.newton_iterations >= settings_.newton_iterations) return;
     solution_.setZero();
-    solveLinear(report);
-    if (!searchLine(cloth, begin, h, potential)) {
+    const bool solved = solveLinear(report);
+    const bool exact = hessian == Membrane::Hessian::kExact;
+    if (!exact) report.linear_converged = report.linear_converged && solved;
+    if (solved && searchLine(cloth, begin, h, potential)) {
+      hessian = norm <= kNearMinimum * reference ? Membrane::Hessian::kExact
+                                                 : Membrane::Hessian::kProjected;
+    } else if (exact) {  // not positive definite here
+      hessian = Membrane::Hessian::kProjected;
+    } else {
       report.newton_converged = true;  // no descent above rounding is left
       return;
     }

@@ -112,7 +112,8 @@ std::vector<std::vector<int>> factorColumns(const std::vector<std::vector<int>>&
 }
 
 /// Whether a panel of this many columns may hold this share of explicit zeros. Measured with
-/// scripts/bench cholesky: a panel needs about twelve columns of doubles to fill the registers.
+/// scripts/bench linear_solver: a panel needs about twelve columns of doubles to fill the
+/// registers.
 bool worthMerging(int width, double zeros, double entries) {
   if (width <= 4) return true;
   if (width <= 16) return zeros <= 0.4 * entries;

@@ -32,11 +32,11 @@ LinearSolver::LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMeth
 
 SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
                                 double tolerance, BlockVector& x) {
-  // Exact conjugate gradients end after as many iterations as unknowns; twice that allows for
-  // rounding.
-  const int unknowns = 3 * matrix.size();
+  // Exact conjugate gradients end after as many iterations as unknowns; rounding makes it more for
+  // ill-conditioned systems, and beyond this only a matrix that is not positive definite goes on.
+  const int limit = 10 * 3 * matrix.size();
   if (method_ == LinearSolverMethod::kConjugateGradient) {
-    return solveIteratively(matrix, rhs, tolerance, 2 * unknowns, x);
+    return solveIteratively(matrix, rhs, tolerance, limit, x);
   }
   if (method_ == LinearSolverMethod::kAutomatic) {
     if (direct_solves_left_ == 0) {
@@ -52,7 +52,7 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
     }
   }
   const SolveResult result = solveDirectly(matrix, rhs, tolerance, x);
-  return result.converged ? result : solveIteratively(matrix, rhs, tolerance, 2 * unknowns, x);
+  return result.converged ? result : solveIteratively(matrix, rhs, tolerance, limit, x);
 }
 
 SolveResult LinearSolver::solveIteratively(const SymmetricBlockMatrix& matrix,

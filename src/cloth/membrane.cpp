@@ -211,7 +211,7 @@ void Membrane::addStepOf(const Positions& positions, const Velocities& velocitie
 
 void Membrane::addNewton(const Positions& positions,
                          const std::vector<MembraneStrain>& begin_strains, double h,
-                         SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
+                         Hessian hessian, SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
   for (std::size_t t = 0; t < elements_.size(); ++t) {
     const MembraneElement& element = elements_[t];
     const Frame at = frame(element, positions);
@@ -224,8 +224,9 @@ void Membrane::addNewton(const Positions& positions,
       stress += Vector3d(viscous[0].stress, viscous[1].stress, viscous[2].stress);
       slope += Vector3d(viscous[0].slope, viscous[1].slope, viscous[2].slope) / h;
     }
-    addTangent(element, at.weft, at.warp, clampedToNonNegative(slope), projectStress(stress),
-               element.area * h * h, matrix);
+    const bool exact = hessian == Hessian::kExact;
+    addTangent(element, at.weft, at.warp, exact ? slope : clampedToNonNegative(slope),
+               exact ? stress : projectStress(stress), element.area * h * h, matrix);
     stress *= -element.area * h;
     addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
                  stress[1] * at.warp + stress[2] * at.weft,

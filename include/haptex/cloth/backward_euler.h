@@ -26,7 +26,7 @@ struct StepReport {
   bool linear_converged = false;
   LinearSolverMethod solver = LinearSolverMethod::kCholesky;  ///< that gave the last solution
   int linear_iterations = 0;   ///< conjugate gradient iterations of all solves
-  double linear_residual = 0;  ///< relative, the largest of all solves
+  double linear_residual = 0;  ///< relative, of the last solve
   int newton_iterations = 0;   ///< linear solves
   double newton_residual = 0;  ///< nonlinear residual relative to the first; 0 if not asked for
   bool newton_converged = true;
@@ -41,7 +41,8 @@ struct StepReport {
 /// the step. With more than one Newton iteration the step goes on from there to the minimum of the
 /// incremental potential of backward Euler,
 ///   |M^(1/2) (v - v0)|^2 / 2 + Membrane::incrementalPotential(x) - external forces . x,
-/// by Newton iterations with a backtracking line search.
+/// by Newton iterations with a backtracking line search. They use the projected Hessian as long as
+/// the residual is large, and then the exact one where it is positive definite.
 ///
 /// A step allocates nothing: all buffers are made by the constructor.
 class BackwardEuler {
@@ -60,8 +61,10 @@ class BackwardEuler {
 
  private:
   void prescribe(const Cloth& cloth, const ClothState& state, double time_step);
-  void solveLinear(StepReport& report);
+  bool solveLinear(StepReport& report);
   void iterateNewton(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
+  void assembleNewton(const Cloth& cloth, const ClothState& begin, double h,
+                      Membrane::Hessian hessian, StepReport& report);
   bool searchLine(const Cloth& cloth, const ClothState& begin, double h, double& potential);
   double incrementalPotential(const Cloth& cloth, const ClothState& begin, double h,
                               const Positions& positions, const Velocities& velocities) const;

@@ -1,5 +1,5 @@
 // The Green-Lagrange membrane element of Volino and Magnenat-Thalmann 2005 on every triangle of a
-// cloth: design equations in docs/mechanics.md.
+// cloth; the equations stand in docs/mechanics.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -66,11 +66,14 @@ class Membrane {
   /// Adds what the membrane contributes to a Newton iteration on the incremental potential
   ///   sum_elements A [W(e) + h G((e - e0)/h)],  G the integral of the viscous curves,
   /// whose discrete strain rate is exactly zero under rigid motion:
-  ///   matrix += h^2 times its projected Hessian, rhs -= h times its gradient.
+  ///   matrix += h^2 times its Hessian, rhs -= h times its gradient.
   /// @param positions     at the end of the step
   /// @param begin_strains e0 of every element, strains at the beginning of the step
+  /// @param hessian       exact, for fast convergence near a minimum, or projected as in addStep(),
+  ///                      for a descent from everywhere
+  enum class Hessian { kExact, kProjected };
   void addNewton(const Positions& positions, const std::vector<MembraneStrain>& begin_strains,
-                 double h, SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
+                 double h, Hessian hessian, SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
 
   /// The incremental potential of addNewton() (J).
   double incrementalPotential(const Positions& positions,

@@ -1,0 +1,110 @@
+// What does a factorisation cost in iterations of conjugate gradients? The ratio per operation is
+// the constant behind LinearSolver's automatic choice; how supernodes are merged (elimination.cpp)
+// was chosen by the factorisation times printed here. The systems are those of a swinging sheet
+// of the linear reference at 12.5 ms.
+#include "haptex/cloth/linear_solver.h"
+
+#include "haptex/cloth/cloth.h"
+#include "haptex/material/fabric_file.h"
+#include "tab_lines.h"
+
+namespace {
+
+using namespace haptex;
+
+constexpr int kRuns = 20;
+constexpr int kIterations = 50;
+
+struct System {
+  cloth::SymmetricBlockMatrix matrix;
+  cloth::BlockVector rhs;
+};
+
+/// The step of a sheet that is stretched by 2 % and pulled sideways by gravity.
+System makeSystem(int cells) {
+  const cloth::ClothMesh mesh =
+      cloth::makeRectangle(0.5, 0.5, cells, cells, cloth::Triangulation::kAlternating);
+  const material::Fabric fabric =
+      material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/linear.yaml");
+  cloth::ModelledEffects effects;
+  effects.gravity = {-9.80665, 0.0, 0.0};
+  const cloth::Cloth cloth(mesh, fabric, effects);
+  const int size = static_cast<int>(cloth.particleCount());
+  System system{cloth::SymmetricBlockMatrix(size, mesh.triangles),
+                cloth::BlockVector::Zero(3, size)};
+  cloth::ClothState state = cloth.initialState();
+  for (Eigen::Vector3d& position : state.positions) position *= 1.02;
+  for (int i = 0; i < size; ++i) {
+    system.matrix.diagonal(i).diagonal().setConstant(cloth.masses()[i]);
+    system.rhs.col(i) = 0.0125 * cloth.masses()[i] * effects.gravity;
+  }
+  cloth.membrane().addStep(state.positions, state.velocities, 0.0125, system.matrix, system.rhs);
+  return system;
+}
+
+void factorisation(benchmark::State& run, int cells) {
+  const System system = makeSystem(cells);
+  cloth::BlockCholesky cholesky(system.matrix);
+  cloth::BlockVector x(3, system.matrix.size());
+  for (auto _ : run) {
+    if (!cholesky.factorise(system.matrix)) run.SkipWithError("not positive definite");
+    x = system.rhs;
+    cholesky.solve(x);
+  }
+}
+
+void iterations(benchmark::State& run, int cells) {
+  const System system = makeSystem(cells);
+  cloth::ConjugateGradient solver(system.matrix.size());
+  cloth::BlockVector x(3, system.matrix.size());
+  for (auto _ : run) {
+    x.setZero();
+    solver.solve(system.matrix, system.rhs, 1e-15, kIterations, x);
+  }
+}
+
+/// Keeps the time per iteration (s) of the two benchmarks of each size besides printing them.
+class RatioReporter : public bench::TabReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    TabReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      times.push_back(run.real_accumulated_time / static_cast<double>(run.iterations));
+    }
+  }
+  std::vector<double> times;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int cells[] = {22, 32, 50, 71};
+  for (int count : cells) {
+    const std::string triangles = std::to_string(2 * count * count);
+    benchmark::RegisterBenchmark(("linear_solver/factorise_and_solve/" + triangles).c_str(),
+                                 factorisation, count)
+        ->Iterations(kRuns);
+    benchmark::RegisterBenchmark(("linear_solver/50_iterations/" + triangles).c_str(), iterations,
+                                 count)
+        ->Iterations(kRuns);
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  RatioReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  if (reporter.failed() || reporter.times.size() != 2 * std::size(cells)) return 1;
+  for (std::size_t i = 0; i < std::size(cells); ++i) {
+    const System system = makeSystem(cells[i]);
+    const cloth::BlockCholesky cholesky(system.matrix);
+    const double per_operation = reporter.times[2 * i] / cholesky.cost();
+    const double blocks = system.matrix.size() + 2.0 * system.matrix.lowerCount();
+    const double per_block = reporter.times[2 * i + 1] / kIterations / blocks;
+    const std::string triangles = std::to_string(2 * cells[i] * cells[i]);
+    bench::printLine("linear_solver/iterations_per_factorisation/" + triangles,
+                     reporter.times[2 * i] / (reporter.times[2 * i + 1] / kIterations),
+                     "iterations");
+    bench::printLine("linear_solver/operation_over_block/" + triangles, per_operation / per_block,
+                     "ratio");
+  }
+  return 0;
+}

@@ -1,0 +1,76 @@
+// An executable of its own, because it counts every call of malloc in the process.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "fixtures.h"
+#include "haptex/cloth/backward_euler.h"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+#ifndef __SANITIZE_ADDRESS__  // which brings its own malloc
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+}
+#endif
+
+namespace haptex::cloth {
+namespace {
+
+class StepAllocation : public testing::TestWithParam<LinearSolverMethod> {};
+
+TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  for (int newton_iterations : {1, 5}) {
+    ModelledEffects effects;
+    effects.viscosity = true;
+    effects.gravity = {0.0, 0.0, -9.81};
+    Cloth cloth(square(16), stiffeningFabric(), effects);
+    for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+      AttachmentPath path;
+      path.start = cloth.mesh().initial_positions[particle];
+      cloth.attach(particle, path);
+    }
+    StepSettings settings;
+    settings.solver = GetParam();
+    settings.newton_iterations = newton_iterations;
+    BackwardEuler integrator(cloth, settings);
+    ClothState state = randomState(cloth, 1e-4, 0.1);
+    std::vector<Eigen::Vector3d> forces;
+    cloth.computeForces(state, forces);
+
+    const long before = allocations;
+    for (double h : {0.0125, 0.001, 0.04, 1e-5}) {
+      EXPECT_TRUE(integrator.step(cloth, state, h).accepted);
+      cloth.computeForces(state, forces);
+    }
+    EXPECT_EQ(allocations - before, 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BackwardEuler, StepAllocation,
+                         testing::Values(LinearSolverMethod::kConjugateGradient,
+                                         LinearSolverMethod::kCholesky,
+                                         LinearSolverMethod::kAutomatic));
+
+TEST(StepAllocation, TheCounterCounts) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  const long before = allocations;
+  std::free(std::malloc(100000));
+  Eigen::VectorXd vector(1000);
+  EXPECT_GE(allocations - before, 1);
+}
+
+}  // namespace
+}  // namespace haptex::cloth

@@ -1,0 +1,142 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numeric>
+
+#include "fixtures.h"
+#include "haptex/cloth/cloth.h"
+
+namespace haptex::cloth {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+template <typename Action>
+std::string refusal(Action action) {
+  try {
+    action();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+AttachmentPath pathAt(const Eigen::Vector3d& place) {
+  AttachmentPath path;
+  path.start = place;
+  return path;
+}
+
+TEST(Cloth, MassesSumToDensityTimesArea) {
+  const Cloth cloth(makeRectangle(0.3, 0.2, 7, 5, Triangulation::kOneWay), linearFabric(), {});
+  const double mass = std::accumulate(cloth.masses().begin(), cloth.masses().end(), 0.0);
+  EXPECT_NEAR(mass, 0.1 * 0.3 * 0.2, 1e-15);
+}
+
+TEST(Cloth, RefusesWhatCannotBeSimulated) {
+  ClothMesh bad = square(2);
+  bad.triangles.push_back({0, 0, 1});
+  EXPECT_EQ(refusal([&] { Cloth(bad, linearFabric(), {}); }), "degenerate triangles: 8");
+  material::Fabric weightless = linearFabric();
+  weightless.areal_density = 0.0;
+  EXPECT_NE(refusal([&] { Cloth(square(2), weightless, {}); }).find("areal density"),
+            std::string::npos);
+  ModelledEffects effects;
+  effects.gravity.z() = kNaN;
+  EXPECT_NE(refusal([&] { Cloth(square(2), linearFabric(), effects); }).find("gravity"),
+            std::string::npos);
+}
+
+TEST(Cloth, ARefusedFabricLeavesTheOldOne) {
+  Cloth cloth(square(2), linearFabric(), {});
+  material::Fabric bad = stiffeningFabric();
+  bad.name = "bad";
+  bad.areal_density = kNaN;
+  EXPECT_THROW(cloth.setFabric(bad), std::invalid_argument);
+  EXPECT_EQ(cloth.fabric().name, "linear");
+}
+
+TEST(Cloth, SetFabricChangesMassesAndCurvesOnly) {
+  Cloth cloth(square(2), linearFabric(), {});
+  material::Fabric heavy = linearFabric();
+  heavy.areal_density = 0.3;
+  heavy.weft.elastic = material::StrainStressCurve::linear(500.0);
+  const double before = cloth.masses()[4];
+  cloth.setFabric(heavy);
+  EXPECT_NEAR(cloth.masses()[4], 3.0 * before, 1e-15);
+  ClothState state = cloth.initialState();
+  for (auto& position : state.positions) position.y() *= 1.1;
+  // 500 N/m against 100 N/m, everything else being equal.
+  EXPECT_NEAR(cloth.potentialEnergy(state), 0.5 * 500.0 * 0.105 * 0.105 * 0.01, 1e-12);
+}
+
+TEST(Cloth, ExternalForcesAndGravityEnterForcesAndEnergy) {
+  ModelledEffects effects;
+  effects.gravity = {0.0, 0.0, -10.0};
+  Cloth cloth(square(2), linearFabric(), effects);
+  cloth.setExternalForce(4, {1.0, 2.0, 3.0});
+  const ClothState state = cloth.initialState();
+  std::vector<Eigen::Vector3d> forces;
+  cloth.computeForces(state, forces);
+  const Eigen::Vector3d exact(1.0, 2.0, 3.0 - 10.0 * cloth.masses()[4]);
+  EXPECT_LT((forces[4] - exact).norm(), 1e-12);
+  ClothState moved = state;
+  for (auto& position : moved.positions) position += Eigen::Vector3d(0.0, 0.0, 0.5);
+  EXPECT_NEAR(cloth.potentialEnergy(moved) - cloth.potentialEnergy(state),
+              0.5 * (0.1 * 0.01 * 10.0 - 3.0), 1e-12);
+}
+
+TEST(Cloth, RefusesLoadsAndAttachmentsByName) {
+  Cloth cloth(square(2), linearFabric(), {});
+  EXPECT_NE(refusal([&] {
+              cloth.setExternalForce(9, {0, 0, 0});
+            }).find("particles 0 to 8"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] {
+              cloth.setExternalForce(1, {0, kNaN, 0});
+            }).find("not finite"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { cloth.attach(-1, {}); }).find("particle -1"), std::string::npos);
+  EXPECT_NE(refusal([&] {
+              cloth.attach(0, pathAt({kNaN, 0, 0}));
+            }).find("finite"),
+            std::string::npos);
+  AttachmentPath backward;
+  backward.duration = -1.0;
+  EXPECT_NE(refusal([&] { cloth.attach(0, backward); }).find("at least 0"), std::string::npos);
+  EXPECT_EQ(refusal([&] { cloth.release(3); }), "particle 3 is not attached");
+  EXPECT_FALSE(cloth.isAttached(0));
+}
+
+TEST(AttachmentPath, StartsAndEndsAtRestAndIsThereInTime) {
+  AttachmentPath path;
+  path.start = {1.0, 0.0, 0.0};
+  path.displacement = {0.0, 2.0, 0.0};
+  path.start_time = 3.0;
+  path.duration = 4.0;
+  EXPECT_EQ(path.position(0.0), path.start);
+  EXPECT_TRUE(path.position(5.0).isApprox(Eigen::Vector3d(1.0, 1.0, 0.0)));  // half way
+  EXPECT_EQ(path.position(7.0), Eigen::Vector3d(1.0, 2.0, 0.0));
+  const double h = 1e-4;  // the path leaves its ends with the third power of time
+  EXPECT_LT((path.position(3.0 + h) - path.start).norm(), 1e-12);
+  EXPECT_LT((path.position(7.0 - h) - path.position(7.0)).norm(), 1e-12);
+  path.duration = 0.0;
+  EXPECT_EQ(path.position(3.0), Eigen::Vector3d(1.0, 2.0, 0.0));
+}
+
+TEST(Cloth, JacobianRowsAreSortedAndHoldEveryNeighbour) {
+  const Cloth cloth(square(2), linearFabric(), {});
+  const std::vector<JacobianBlock> blocks = cloth.jacobian(cloth.initialState(), {4, 0});
+  ASSERT_GE(blocks.size(), 2u);
+  EXPECT_EQ(blocks.front().row, 4);
+  EXPECT_EQ(blocks.back().row, 0);
+  for (std::size_t i = 1; i < blocks.size(); ++i) {
+    if (blocks[i].row == blocks[i - 1].row) {
+      EXPECT_LT(blocks[i - 1].column, blocks[i].column);
+    }
+  }
+  EXPECT_THROW(cloth.jacobian(cloth.initialState(), {99}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace haptex::cloth

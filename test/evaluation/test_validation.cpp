@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "haptex/evaluation/hanging_strip.h"
+#include "haptex/evaluation/validation.h"
+#include "haptex/evaluation/virtual_test.h"
+
+namespace haptex::evaluation {
+namespace {
+
+TEST(Quantity, FailsBeyondItsToleranceAndOnNaN) {
+  EXPECT_TRUE(relativeTo(2.0, "a", 2.0, 2.0002, 1.1e-4).pass());
+  EXPECT_FALSE(relativeTo(2.0, "a", 2.0, 2.0002, 0.9e-4).pass());
+  EXPECT_FALSE(relativeTo(2.0, "a", 2.0, std::numeric_limits<double>::quiet_NaN(), 1.0).pass());
+}
+
+TEST(Quantity, PrintsSixFieldsSeparatedByTabs) {
+  std::ostringstream out;
+  print(out, {"room/what", 1.5, 1.25, 0.25, 0.125});
+  EXPECT_EQ(out.str(), "room/what\t1.5\t1.25\t0.25\t0.125\tFAIL\n");
+}
+
+TEST(HangingStrip, ExactElongationIsThePublishedOne) {
+  EXPECT_NEAR(exactElongation({0.5, 100.0, 0.1, 9.81}), 0.2440587e-2, 0.5e-9);
+  EXPECT_NEAR(exactElongation({0.5, 10.0, 0.1, 9.81}), 2.342682e-2, 0.5e-8);
+}
+
+TEST(HangingStrip, ExactElongationIntegratesTheStretchOfEveryHeight) {
+  const HangingStrip strip{0.7, 3.0, 0.2, 9.81};
+  double sum = 0.0;
+  constexpr int kParts = 20000;
+  for (int i = 0; i < kParts; ++i) {
+    const double below = strip.length * (i + 0.5) / kParts;
+    const double right = 2.0 * strip.areal_density * strip.gravity * below / strip.modulus;
+    double low = 1.0, high = 3.0;  // l^3 - l - right grows on this interval
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (low + high);
+      (middle * middle * middle - middle < right ? low : high) = middle;
+    }
+    sum += (low - 1.0) / kParts;
+  }
+  EXPECT_NEAR(exactElongation(strip), sum, 1e-9);  // the midpoint rule's own error
+}
+
+TEST(VirtualTest, IrregularMeshHasNoTwoTrianglesAlikeAndNoDefect) {
+  const cloth::ClothMesh mesh = irregularRectangle(0.2, 0.1, 50, 25, 2);
+  EXPECT_EQ(mesh.triangles.size(), 2500u);
+  EXPECT_TRUE(findDefects(mesh).none());
+}
+
+TEST(Validation, EveryQuantityOfEveryRoomPasses) {
+  ASSERT_EQ(validations().size(), 2u);
+  for (const Validation& validation : validations()) {
+    int quantities = 0;
+    validation.run(HAPTEX_CONFIG_DIRECTORY, [&](const Quantity& quantity) {
+      ++quantities;
+      EXPECT_TRUE(quantity.pass())
+          << quantity.name << ": error " << quantity.error << " above " << quantity.tolerance;
+      EXPECT_EQ(quantity.name.rfind(validation.room + "/", 0), 0u) << quantity.name;
+    });
+    EXPECT_GT(quantities, 10);
+  }
+}
+
+}  // namespace
+}  // namespace haptex::evaluation
