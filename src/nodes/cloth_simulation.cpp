@@ -7,8 +7,9 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "cloth_simulation");
+  const ros::NodeHandle node;  // outlives the exception: without a node ROS_FATAL prints nothing
   try {
-    const haptex::nodes::ClothNode node(ros::NodeHandle(), ros::NodeHandle("~"));
+    const haptex::nodes::ClothNode cloth_node(node, ros::NodeHandle("~"));
     ros::MultiThreadedSpinner(4).spin();  // a service that waits must not hold up the others
   } catch (const std::exception& error) {
     ROS_FATAL("cloth_simulation: %s", error.what());

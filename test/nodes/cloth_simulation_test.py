@@ -1,0 +1,276 @@
+#!/usr/bin/python3
+"""The promises of cloth_simulation's topics and services, and every request that it refuses."""
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Point, Vector3
+from haptex.msg import ClothMesh, ClothState
+from haptex.srv import (AttachParticles, GetJacobian, MoveParticles, ReleaseParticles, SetFabric,
+                        StepCloth)
+from std_msgs.msg import Header
+from std_srvs.srv import SetBool, Trigger
+from visualization_msgs.msg import MarkerArray
+
+WAIT = 20.0  # s
+WORLD = Header(frame_id='world')
+PARTICLES = 33 * 33
+TRIANGLES = 2 * 32 * 32
+TIME_STEP = 0.0125  # s, of config/scenes/wool_sample.yaml
+CORNER, TOP_CORNER = 0, PARTICLES - 1
+NAN, INFINITY = float('nan'), float('inf')
+
+
+def message(topic, message_class):
+    return rospy.wait_for_message(topic, message_class, WAIT)
+
+
+def positions(state):
+    return np.array([(p.x, p.y, p.z) for p in state.positions])
+
+
+class ClothSimulation(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        services = {'reset': Trigger, 'pause': SetBool, 'step': StepCloth,
+                    'set_fabric': SetFabric, 'attach': AttachParticles, 'move': MoveParticles,
+                    'release': ReleaseParticles, 'get_jacobian': GetJacobian}
+        for name, service in services.items():
+            rospy.wait_for_service('cloth/' + name, WAIT)
+            setattr(cls, name, rospy.ServiceProxy('cloth/' + name, service))
+
+    def setUp(self):
+        self.assertTrue(self.pause(True).success)
+        self.accepted(self.set_fabric('wool'))
+        self.accepted(self.reset())
+
+    def state(self):
+        """The present state; a new subscriber gets it at once, also while paused."""
+        return message('cloth/state', ClothState)
+
+    def accepted(self, response):
+        self.assertTrue(response.success, response.message)
+        return response
+
+    def refused(self, call, *arguments, says):
+        before = self.state()
+        response = call(*arguments)
+        self.assertFalse(response.success, f'accepted instead of refused: {says}')
+        self.assertIn(says, response.message)
+        after = self.state()
+        for state in (before, after):
+            state.header.seq = 0
+        self.assertEqual(before, after)  # bit by bit, stamp and forces included
+        return response
+
+    def test_starts_from_the_scene(self):
+        state = self.state()
+        self.assertEqual((state.step, state.simulated_time), (0, 0.0))
+        for array in (state.positions, state.velocities, state.forces):
+            self.assertEqual(len(array), PARTICLES)
+        self.assertEqual(state.header.frame_id, 'world')
+        self.assertEqual(state.positions[TOP_CORNER], Point(0.0, 0.1, 0.0))
+
+    def test_mesh_reaches_late_subscribers(self):
+        for _ in range(2):
+            mesh = message('cloth/mesh', ClothMesh)
+            self.assertEqual(mesh.fabric, 'wool')
+            self.assertEqual(len(mesh.triangles), 3 * TRIANGLES)
+            self.assertEqual(max(mesh.triangles), PARTICLES - 1)
+            for array in (mesh.rest_weft_coordinates, mesh.rest_warp_coordinates, mesh.masses):
+                self.assertEqual(len(array), PARTICLES)
+            self.assertEqual(mesh.header.frame_id, 'world')
+
+    def test_masses_sum_to_the_density_times_the_area(self):
+        mesh = message('cloth/mesh', ClothMesh)
+        self.accepted(self.set_fabric('linear'))
+        linear = message('cloth/mesh', ClothMesh)
+        self.assertEqual(linear.fabric, 'linear')
+        self.assertAlmostEqual(sum(linear.masses), 0.1 * 0.2 * 0.2, delta=1e-12)  # kg
+        self.assertNotAlmostEqual(sum(mesh.masses), sum(linear.masses), delta=1e-6)
+
+    def test_markers_show_every_triangle(self):
+        markers = message('cloth/markers', MarkerArray).markers
+        cloth = [marker for marker in markers if marker.ns == 'cloth']
+        self.assertEqual(len(cloth[0].points), 3 * TRIANGLES)
+        self.assertTrue(any('%' in marker.text for marker in markers))
+
+    def test_diagnostics_tell_rate_residual_and_size(self):
+        self.accepted(self.pause(False))
+        rospy.sleep(2.5)
+        values = {item.key: item.value
+                  for item in message('/diagnostics', DiagnosticArray).status[0].values}
+        self.assertGreater(float(values['step rate (Hz)']), 0.0)
+        self.assertGreater(float(values['real-time factor']), 0.0)
+        self.assertLessEqual(float(values['largest residual']), float(values['tolerance']))
+        self.assertEqual(int(values['triangles']), TRIANGLES)
+        self.assertEqual(int(values['rejected steps']), 0)
+        self.assertIn(values['linear solver'], ('Cholesky', 'conjugate gradient'))
+
+    def test_runs_and_pauses(self):
+        self.accepted(self.pause(False))
+        subscriber_saw = message('cloth/state', ClothState).step
+        later = message('cloth/state', ClothState).step
+        self.assertGreater(later, subscriber_saw)
+        self.accepted(self.pause(True))
+        before = self.state()
+        rospy.sleep(0.1)
+        self.assertEqual(positions(before).tolist(), positions(self.state()).tolist())
+
+    def test_takes_exactly_the_steps_asked_for(self):
+        self.accepted(self.step(7))
+        state = self.state()
+        self.assertEqual(state.step, 7)
+        self.assertAlmostEqual(state.simulated_time, 7 * TIME_STEP, delta=1e-12)  # rounding
+
+    def test_reset_restores_the_start(self):
+        before = self.state()
+        self.accepted(self.release([TOP_CORNER]))
+        self.accepted(self.step(10))
+        self.assertNotEqual(positions(before).tolist(), positions(self.state()).tolist())
+        self.accepted(self.reset())
+        after = self.state()
+        self.assertEqual((after.step, after.simulated_time), (0, 0.0))
+        self.assertEqual(positions(before).tolist(), positions(after).tolist())
+        self.accepted(self.move(WORLD, [TOP_CORNER], Vector3(), 0))  # attached again
+
+    def test_fabric_changes_without_a_jump(self):
+        self.accepted(self.step(20))
+        before = self.state()
+        self.accepted(self.set_fabric('linear'))
+        after = self.state()
+        self.assertEqual(positions(before).tolist(), positions(after).tolist())
+        self.assertEqual(before.velocities, after.velocities)
+        self.assertNotEqual(before.forces, after.forces)
+        self.accepted(self.step(1))
+        # Free fall for one step from rest moves g h^2 = 1.5 mm; nothing here may move faster.
+        moved = np.linalg.norm(positions(self.state()) - positions(before), axis=1).max()
+        self.assertLess(moved, 9.81 * TIME_STEP ** 2)
+
+    def test_attached_particle_goes_where_it_is_told(self):
+        self.accepted(self.attach(WORLD, [CORNER], [Point(0.01, -0.1, -0.19)]))
+        self.accepted(self.step(1))
+        self.assertEqual(self.state().positions[CORNER], Point(0.01, -0.1, -0.19))
+
+    def test_particle_is_attached_where_it_is(self):
+        self.accepted(self.step(5))
+        place = self.state().positions[CORNER]
+        self.accepted(self.attach(WORLD, [CORNER], []))
+        self.accepted(self.step(20))
+        self.assertEqual(self.state().positions[CORNER], place)
+
+    def test_move_ends_exactly_at_its_target(self):
+        start = positions(self.state())[TOP_CORNER]
+        displacement = np.array([0.02, 0.0, 0.01])
+        self.accepted(self.move(WORLD, [TOP_CORNER], Vector3(*displacement), 10 * TIME_STEP))
+        self.accepted(self.step(5))
+        half = positions(self.state())[TOP_CORNER]
+        # A minimum-jerk path is half way after half of its time.
+        np.testing.assert_allclose(half, start + displacement / 2, rtol=0, atol=1e-12)
+        self.accepted(self.step(6))
+        self.assertEqual(positions(self.state())[TOP_CORNER].tolist(),
+                         (start + displacement).tolist())
+
+    def test_move_without_duration_is_made_in_one_step(self):
+        start = positions(self.state())[TOP_CORNER]
+        self.accepted(self.move(WORLD, [TOP_CORNER], Vector3(0.001, 0.0, 0.0), 0.0))
+        self.accepted(self.step(1))
+        self.assertEqual(positions(self.state())[TOP_CORNER].tolist(),
+                         (start + np.array([0.001, 0, 0])).tolist())
+
+    def test_released_particle_falls(self):
+        top = list(range(PARTICLES - 33, PARTICLES))
+        self.accepted(self.release(top))
+        self.accepted(self.step(1))
+        fallen = positions(self.state())[TOP_CORNER][2]
+        # Backward Euler falls g h^2 in its first step from rest, strain-free as the cloth starts.
+        self.assertAlmostEqual(fallen, -9.80665 * TIME_STEP ** 2, delta=1e-6)
+
+    def test_jacobian_has_its_blocks_and_their_sum_is_zero(self):
+        self.accepted(self.step(5))
+        response = self.accepted(self.get_jacobian([CORNER, 500]))
+        self.assertEqual(set(response.rows), {CORNER, 500})
+        blocks = len(response.rows)
+        self.assertEqual(len(response.columns), blocks)
+        self.assertEqual(len(response.by_position), 9 * blocks)
+        self.assertEqual(len(response.by_velocity), 9 * blocks)
+        self.assertEqual(response.header.frame_id, 'world')
+        self.assertEqual(response.simulated_time, self.state().simulated_time)
+        # Internal forces do not change when the whole cloth is displaced.
+        matrix = np.array(response.by_position).reshape(blocks, 3, 3)
+        for row in (CORNER, 500):
+            own = matrix[np.array(response.rows) == row]
+            self.assertLess(np.abs(own.sum(axis=0)).max(), 1e-9 * np.abs(own).max())
+            self.assertGreater(np.abs(own).max(), 0.0)
+
+    def test_refuses_steps(self):
+        self.refused(self.step, 0, says='steps = 0: allowed are 1 to 100000')
+        self.refused(self.step, 100001, says='steps = 100001: allowed are 1 to 100000')
+        self.accepted(self.pause(False))
+        response = self.step(1)
+        self.assertFalse(response.success)
+        self.assertIn('while it is paused', response.message)
+
+    def test_refuses_fabrics(self):
+        self.refused(self.set_fabric, 'tweed', says="there is no 'tweed'")
+        self.refused(self.set_fabric, '', says="there is no ''")
+        self.refused(self.set_fabric, '/no/such/fabric.yaml', says='/no/such/fabric.yaml')
+        scene = rospy.get_param('/scene_path')
+        self.refused(self.set_fabric, scene, says=scene)  # YAML, but not of a fabric
+        self.assertEqual(message('cloth/mesh', ClothMesh).fabric, 'wool')
+
+    def refuses_particles(self, call):
+        """`call` takes a list of particles."""
+        self.refused(call, [], says='particles is empty')
+        self.refused(call, [CORNER, PARTICLES],
+                     says=f'particles[1] = {PARTICLES} does not exist: allowed are 0 to '
+                          f'{PARTICLES - 1}')
+        self.refused(call, [CORNER, CORNER], says='named twice')
+
+    def refuses_frames(self, call):
+        """`call` takes a header."""
+        self.refused(call, Header(), says="header.frame_id = '': allowed is 'world'")
+        self.refused(call, Header(frame_id='map'), says="header.frame_id = 'map'")
+
+    def test_refuses_to_attach(self):
+        self.refuses_particles(lambda particles: self.attach(WORLD, particles, []))
+        self.refuses_frames(lambda header: self.attach(header, [CORNER], []))
+        self.refused(self.attach, WORLD, [0, 1], [Point()], says='positions has 1 elements')
+        self.refused(self.attach, WORLD, [0], [Point(), Point()], says='positions has 2 elements')
+        for number in (NAN, INFINITY, -INFINITY, 101.0):
+            self.refused(self.attach, WORLD, [0, 1], [Point(), Point(0, 0, number)],
+                         says='positions[1] = ')
+        self.accepted(self.step(1))
+        self.refused(self.release, [CORNER], says='is not attached')  # none has been attached
+
+    def test_refuses_to_move(self):
+        self.refuses_particles(lambda particles: self.move(WORLD, particles, Vector3(), 1))
+        self.refuses_frames(lambda header: self.move(header, [TOP_CORNER], Vector3(), 1))
+        self.refused(self.move, WORLD, [TOP_CORNER, CORNER], Vector3(), 1,
+                     says='particles[1] = 0 is not attached')
+        for number in (NAN, INFINITY):
+            self.refused(self.move, WORLD, [TOP_CORNER], Vector3(number, 0, 0), 1,
+                         says='displacement = ')
+        self.refused(self.move, WORLD, [TOP_CORNER], Vector3(0, 0, 1000), 1,
+                     says='the end of the path')
+        for duration in (-1.0, NAN, INFINITY):
+            self.refused(self.move, WORLD, [TOP_CORNER], Vector3(), duration, says='duration = ')
+        place = positions(self.state())[TOP_CORNER].tolist()
+        self.accepted(self.step(5))
+        self.assertEqual(positions(self.state())[TOP_CORNER].tolist(), place)
+
+    def test_refuses_to_release(self):
+        self.refuses_particles(self.release)
+        self.refused(self.release, [TOP_CORNER, CORNER], says='particles[1] = 0 is not attached')
+        self.accepted(self.release([TOP_CORNER]))  # so it had stayed attached
+
+    def test_refuses_jacobians(self):
+        self.refuses_particles(self.get_jacobian)
+        self.assertEqual(len(self.get_jacobian([]).rows), 0)
+
+
+if __name__ == '__main__':
+    rospy.init_node('cloth_simulation_test')
+    rostest.rosrun('haptex', 'topics_and_services', ClothSimulation)
