@@ -90,9 +90,9 @@ ClothMarkers::ClothMarkers(const cloth::ClothMesh& mesh, double full_scale)
   markers.back().points.resize(3 * triangles_.size());
   markers.back().colors.resize(3 * triangles_.size());
   markers.push_back(makeMarker("attachments", 0, Marker::LINE_LIST));
-  markers.back().scale.x = 0.015 * size_;
+  markers.back().scale.x = 0.02 * size_;
   markers.push_back(makeMarker("attachments", 1, Marker::SPHERE_LIST));
-  markers.back().scale.x = markers.back().scale.y = markers.back().scale.z = 0.018 * size_;
+  markers.back().scale.x = markers.back().scale.y = markers.back().scale.z = 0.025 * size_;
   for (const int index : {kEdgesIndex, kParticlesIndex}) {
     markers[index].color = colourMessage(Eigen::Vector3f(0.25F, 0.27F, 0.30F));
   }
@@ -122,8 +122,8 @@ void ClothMarkers::addScale() {
   for (int decade = 0; decade <= kStrainDecades; ++decade) {
     const double strain = full_scale_ * std::pow(10.0, decade - kStrainDecades);
     char text[32];
-    std::snprintf(text, sizeof(text), "%.3g %%", 100.0 * strain);
-    addLabel(at(strainFraction(strain, full_scale_)) + Eigen::Vector3d(0.0, 0.13 * size_, 0.0),
+    std::snprintf(text, sizeof(text), "%.3g%%", 100.0 * strain);
+    addLabel(at(strainFraction(strain, full_scale_)) + Eigen::Vector3d(0.0, 0.15 * size_, 0.0),
              0.04 * size_, text);
   }
   addLabel(at(1.0) + Eigen::Vector3d(0.0, 0.07 * size_, 0.08 * size_), 0.045 * size_, "strain");
@@ -202,15 +202,17 @@ void ClothMarkers::updateAttachments(const SimulatedCloth& simulation) {
   const auto& attachments = simulation.cloth().attachments();
   Marker& bars = markers_.markers[kEdgesIndex];
   bars.points.clear();
+  joined_.assign(positions.size(), false);
   for (const auto& [first, second] : edges_) {
     if (!attachments[first] || !attachments[second]) continue;
     bars.points.push_back(pointMessage(positions[first]));
     bars.points.push_back(pointMessage(positions[second]));
+    joined_[first] = joined_[second] = true;
   }
   Marker& particles = markers_.markers[kParticlesIndex];
   particles.points.clear();
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (attachments[i]) particles.points.push_back(pointMessage(positions[i]));
+    if (attachments[i] && !joined_[i]) particles.points.push_back(pointMessage(positions[i]));
   }
   // rviz warns of empty lists.
   for (Marker* marker : {&bars, &particles}) {

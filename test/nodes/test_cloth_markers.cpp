@@ -72,13 +72,14 @@ TEST(ClothMarkers, ShowEveryTriangleAtItsPlaceWithFiniteColours) {
   }
 }
 
-TEST(ClothMarkers, JoinAttachedParticlesAndVanishWithThem) {
+TEST(ClothMarkers, ShowAttachedParticlesAndVanishWithThem) {
   SimulatedCloth simulation = smallSimulation();
   ClothMarkers markers(simulation.cloth().mesh(), 0.01);
+  simulation.attach({0});
   const auto& with = markers.update(simulation, ros::Time(1));
   EXPECT_EQ(find(with, "attachments", Marker::LINE_LIST).points.size(), 2u * 4);
-  EXPECT_EQ(find(with, "attachments", Marker::SPHERE_LIST).points.size(), 5u);
-  simulation.release({20, 21, 22, 23, 24});
+  EXPECT_EQ(find(with, "attachments", Marker::SPHERE_LIST).points.size(), 1u);
+  simulation.release({0, 20, 21, 22, 23, 24});
   const auto& without = markers.update(simulation, ros::Time(2));
   EXPECT_EQ(find(without, "attachments", Marker::LINE_LIST).action, Marker::DELETE);
   EXPECT_EQ(find(without, "attachments", Marker::SPHERE_LIST).action, Marker::DELETE);

@@ -21,7 +21,7 @@ namespace haptex::nodes {
 /// "scale": the colours of the last four decades to the full scale with numbers in percent, beside
 /// the place
 ///   where the cloth starts.
-/// "attachments": attached particles, joined where an edge joins them.
+/// "attachments": attached particles as bars along the edges that join them, or as balls.
 class ClothMarkers {
  public:
   /// @param full_scale strain with the last colour of the scale, finite and > 0
@@ -52,6 +52,7 @@ class ClothMarkers {
   std::vector<double> particle_areas_;          // m^2
   std::vector<Eigen::Vector3d> normals_;        // per particle, unit length
   std::vector<Eigen::Vector3f> colours_;        // per particle
+  std::vector<bool> joined_;                    // per particle: end of a bar
   visualization_msgs::MarkerArray markers_;
 };
 
