@@ -41,6 +41,7 @@ bool allFinite(const std::vector<Eigen::Vector3d>& vectors) {
 
 BackwardEuler::BackwardEuler(const Cloth& cloth, const StepSettings& settings)
     : settings_(requireSound(settings)),
+      element_count_(cloth.membrane().elements().size()),
       matrix_(static_cast<int>(cloth.particleCount()), cloth.mesh().triangles),
       solver_(matrix_, settings.solver),
       rhs_(3, cloth.particleCount()),
@@ -61,8 +62,9 @@ StepReport BackwardEuler::step(const Cloth& cloth, ClothState& state, double tim
     throw std::invalid_argument(message.str());
   }
   if (state.positions.size() != cloth.particleCount() ||
-      state.velocities.size() != cloth.particleCount() || fixed_.size() != cloth.particleCount()) {
-    throw std::invalid_argument("the state, the cloth and the integrator differ in particles");
+      state.velocities.size() != cloth.particleCount() || fixed_.size() != cloth.particleCount() ||
+      cloth.membrane().elements().size() != element_count_) {
+    throw std::invalid_argument("the state, the cloth and the integrator differ in size");
   }
   StepReport report;
   const Clock::time_point start = Clock::now();
@@ -85,7 +87,8 @@ StepReport BackwardEuler::step(const Cloth& cloth, ClothState& state, double tim
   }
   if (settings_.newton_iterations > 1) iterateNewton(cloth, state, time_step, report);
 
-  report.accepted = allFinite(end_.positions) && allFinite(end_.velocities);
+  report.accepted = std::isfinite(report.linear_residual) && std::isfinite(end_.time) &&
+                    allFinite(end_.positions) && allFinite(end_.velocities);
   if (report.accepted) {
     std::swap(state.positions, end_.positions);
     std::swap(state.velocities, end_.velocities);
@@ -175,26 +178,28 @@ void BackwardEuler::iterateNewton(const Cloth& cloth, const ClothState& begin, d
     const bool solved = solveLinear(report);
     const bool exact = hessian == Membrane::Hessian::kExact;
     if (!exact) report.linear_converged = report.linear_converged && solved;
-    if (solved && searchLine(cloth, begin, h, potential)) {
+    const Descent descent = solved ? searchLine(cloth, begin, h, potential) : Descent::kNone;
+    if (descent == Descent::kFound) {
       hessian = norm <= kNearMinimum * reference ? Membrane::Hessian::kExact
                                                  : Membrane::Hessian::kProjected;
-    } else if (exact) {  // not positive definite here
+    } else if (descent == Descent::kNone && exact) {  // not positive definite here
       hessian = Membrane::Hessian::kProjected;
     } else {
-      report.newton_converged = true;  // no descent above rounding is left
+      report.newton_converged = descent == Descent::kBelowRounding;
       return;
     }
   }
 }
 
-/// Moves end_ along solution_ to a lower potential; false if there is none to rounding.
-bool BackwardEuler::searchLine(const Cloth& cloth, const ClothState& begin, double h,
-                               double& potential) {
+/// Moves end_ along solution_ to a lower potential.
+BackwardEuler::Descent BackwardEuler::searchLine(const Cloth& cloth, const ClothState& begin,
+                                                 double h, double& potential) {
   constexpr double kSufficientDecrease = 1e-4;
   constexpr double kRounding = 1e-14;
   constexpr int kMostHalvings = 40;
   const double descent = rhs_.cwiseProduct(solution_).sum();
-  if (!(descent > 0.0)) return false;
+  const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
+  if (!(descent > 0.0)) return below_rounding ? Descent::kBelowRounding : Descent::kNone;
   double step = 1.0;
   for (int halving = 0; halving < kMostHalvings; ++halving, step *= 0.5) {
     for (int i = 0; i < matrix_.size(); ++i) {
@@ -203,15 +208,14 @@ bool BackwardEuler::searchLine(const Cloth& cloth, const ClothState& begin, doub
       trial_.positions[i] = end_.positions[i] + h * change;
     }
     const double trial = incrementalPotential(cloth, begin, h, trial_.positions, trial_.velocities);
-    const bool below_rounding = descent <= kRounding * std::abs(potential);
     if (trial <= potential - kSufficientDecrease * step * descent || below_rounding) {
       std::swap(end_.positions, trial_.positions);
       std::swap(end_.velocities, trial_.velocities);
       potential = trial;
-      return !below_rounding;
+      return below_rounding ? Descent::kBelowRounding : Descent::kFound;
     }
   }
-  return false;
+  return Descent::kNone;
 }
 
 }  // namespace haptex::cloth

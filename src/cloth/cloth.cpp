@@ -34,8 +34,8 @@ std::vector<double> lumpedMasses(const Membrane& membrane, std::size_t particles
 }  // namespace
 
 Eigen::Vector3d AttachmentPath::position(double time) const {
-  if (duration <= 0.0 || time >= start_time + duration) return start + displacement;
-  if (time <= start_time) return start;
+  if (time < start_time) return start;
+  if (time >= start_time + duration) return start + displacement;
   const double s = (time - start_time) / duration;
   return start + s * s * s * (10.0 + s * (-15.0 + 6.0 * s)) * displacement;
 }
@@ -115,7 +115,18 @@ bool Cloth::isAttached(int particle) const {
   return attachments_[particle].has_value();
 }
 
+void Cloth::requireState(const ClothState& state) const {
+  if (state.positions.size() != particleCount() || state.velocities.size() != particleCount()) {
+    std::ostringstream message;
+    message << "the state has " << state.positions.size() << " positions and "
+            << state.velocities.size() << " velocities; the cloth has " << particleCount()
+            << " particles";
+    throw std::invalid_argument(message.str());
+  }
+}
+
 void Cloth::computeForces(const ClothState& state, std::vector<Eigen::Vector3d>& forces) const {
+  requireState(state);
   forces.resize(particleCount());
   for (std::size_t i = 0; i < particleCount(); ++i) {
     forces[i] = external_forces_[i] + masses_[i] * effects_.gravity;
@@ -124,6 +135,7 @@ void Cloth::computeForces(const ClothState& state, std::vector<Eigen::Vector3d>&
 }
 
 double Cloth::potentialEnergy(const ClothState& state) const {
+  requireState(state);
   double energy = membrane_.elasticEnergy(state.positions);
   for (std::size_t i = 0; i < particleCount(); ++i) {
     energy -= (external_forces_[i] + masses_[i] * effects_.gravity).dot(state.positions[i]);
@@ -132,6 +144,7 @@ double Cloth::potentialEnergy(const ClothState& state) const {
 }
 
 double Cloth::kineticEnergy(const ClothState& state) const {
+  requireState(state);
   double energy = 0.0;
   for (std::size_t i = 0; i < particleCount(); ++i) {
     energy += 0.5 * masses_[i] * state.velocities[i].squaredNorm();
@@ -141,6 +154,7 @@ double Cloth::kineticEnergy(const ClothState& state) const {
 
 std::vector<JacobianBlock> Cloth::jacobian(const ClothState& state,
                                            const std::vector<int>& particles) const {
+  requireState(state);
   std::vector<std::map<int, JacobianBlock>> rows(particles.size());
   std::map<int, std::vector<std::size_t>> rows_of_particle;
   for (std::size_t r = 0; r < particles.size(); ++r) {

@@ -45,6 +45,7 @@ SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, const B
     restart();
   }
   while (!result.converged && result.iterations < max_iterations) {
+    const double before = result.residual;
     precondition();
     direction_ = preconditioned_;
     double slope = dot(residual_, preconditioned_);
@@ -52,10 +53,7 @@ SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, const B
     while (recurrence > tolerance && result.iterations < max_iterations) {
       matrix.multiply(direction_, product_);
       const double curvature = dot(direction_, product_);
-      if (!(curvature > 0.0)) {  // not positive definite to rounding, or not a number
-        restart();
-        return result;
-      }
+      if (!(curvature > 0.0)) break;  // not positive definite to rounding, or not a number
       const double step = slope / curvature;
       x += step * direction_;
       residual_ -= step * product_;
@@ -66,10 +64,13 @@ SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, const B
       direction_ = preconditioned_ + (next_slope / slope) * direction_;
       slope = next_slope;
     }
-    const double before = result.residual;
     restart();
     // Below the rounding of the matrix-vector product another round cannot help.
     if (!(result.residual < 0.5 * before)) break;
+  }
+  if (!(result.residual <= 1.0)) {  // diverged: no change at all is nearer to the solution
+    x.setZero();
+    restart();
   }
   return result;
 }

@@ -32,11 +32,10 @@ LinearSolver::LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMeth
 
 SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
                                 double tolerance, BlockVector& x) {
-  // Exact conjugate gradients end after as many iterations as unknowns; rounding makes it more for
-  // ill-conditioned systems, and beyond this only a matrix that is not positive definite goes on.
-  const int limit = 10 * 3 * matrix.size();
   if (method_ == LinearSolverMethod::kConjugateGradient) {
-    return solveIteratively(matrix, rhs, tolerance, limit, x);
+    // Exact conjugate gradients end after as many iterations as unknowns; rounding makes it more
+    // for ill-conditioned systems.
+    return solveIteratively(matrix, rhs, tolerance, 10 * 3 * matrix.size(), x);
   }
   if (method_ == LinearSolverMethod::kAutomatic) {
     if (direct_solves_left_ == 0) {
@@ -52,7 +51,9 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
     }
   }
   const SolveResult result = solveDirectly(matrix, rhs, tolerance, x);
-  return result.converged ? result : solveIteratively(matrix, rhs, tolerance, limit, x);
+  if (result.converged) return result;
+  // Not positive definite to rounding: a last try that costs a few factorisations at most.
+  return solveIteratively(matrix, rhs, tolerance, std::max(iteration_budget_, 100), x);
 }
 
 SolveResult LinearSolver::solveIteratively(const SymmetricBlockMatrix& matrix,

@@ -1,6 +1,8 @@
 #include "haptex/evaluation/hanging_strip.h"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
@@ -22,6 +24,10 @@ double exactElongation(const HangingStrip& strip) {
 }
 
 double simulatedElongation(const HangingStrip& strip, int cells, double time_step) {
+  if (cells <= 0 || cells % 5 != 0) {
+    throw std::invalid_argument("cells is " + std::to_string(cells) +
+                                "; it must be a positive multiple of 5");
+  }
   // Viscosity near the critical damping of the slowest longitudinal mode: it shortens the way to
   // the state of rest and does not change it.
   const double slowest = 0.5 * M_PI / strip.length * std::sqrt(strip.modulus / strip.areal_density);

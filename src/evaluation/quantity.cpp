@@ -7,6 +7,16 @@
 
 namespace haptex::evaluation {
 
+double largerOrNaN(double a, double b) {
+  if (std::isnan(a)) return a;
+  return b <= a ? a : b;
+}
+
+void keepWorse(Quantity& worst, const Quantity& candidate) {
+  if (std::isnan(worst.error)) return;
+  if (!(candidate.error < worst.error)) worst = candidate;
+}
+
 Quantity relativeTo(double scale, std::string name, double exact, double measured,
                     double tolerance) {
   return {std::move(name), exact, measured, std::abs(measured - exact) / std::abs(scale),

@@ -21,11 +21,11 @@ void validateConversions(const Sink& sink) {
   for (double strain = -0.9; strain < 2.0; strain += 0.01) {
     const double green = material::greenStrain(strain);
     back_and_forth =
-        std::max(back_and_forth, std::abs(material::engineeringStrain(green) - strain));
+        largerOrNaN(back_and_forth, std::abs(material::engineeringStrain(green) - strain));
     const double force = 100.0;
     const double stress = material::secondPiolaStress(force, strain);
     back_and_forth =
-        std::max(back_and_forth, std::abs(material::forcePerWidth(stress, green) / force - 1.0));
+        largerOrNaN(back_and_forth, std::abs(material::forcePerWidth(stress, green) / force - 1.0));
   }
   sink({"material/conversion/back_and_forth", 0.0, back_and_forth, back_and_forth, kRounding});
   // Stretch 1.25: strain (1.25^2 - 1)/2 and stress 490/1.25, both exact in binary.
@@ -43,9 +43,8 @@ void validateSamples(const std::string& fabric, const std::string& name,
   for (const CurvePoint& sample : samples) peak = std::max(peak, std::abs(sample.stress));
   Quantity worst{"", 0.0, 0.0, -1.0, 0.0};
   for (const CurvePoint& sample : samples) {
-    const Quantity here = relativeTo(peak, "material/samples/" + fabric + "/" + name, sample.stress,
-                                     curve.evaluate(sample.strain).stress, kRounding);
-    if (!(here.error < worst.error)) worst = here;
+    keepWorse(worst, relativeTo(peak, "material/samples/" + fabric + "/" + name, sample.stress,
+                                curve.evaluate(sample.strain).stress, kRounding));
   }
   sink(worst);
 }

@@ -1,5 +1,6 @@
 #include "haptex/evaluation/validation.h"
 
+#include "haptex/material/fabric_file.h"
 #include "haptex/material/strain_measures.h"
 #include "haptex/material/yaml_reader.h"
 
@@ -12,9 +13,11 @@ const std::vector<Validation>& validations() {
 }
 
 std::vector<material::CurvePoint> fabricSamples(const std::string& path, const std::string& curve) {
+  material::loadFabric(path);  // names what is wrong with the file
   const std::size_t dot = curve.find('.');
   const material::YamlValue value =
       material::YamlValue::load(path).at(curve.substr(0, dot)).at(curve.substr(dot + 1));
+  if (!value.has("points")) value.refuseBecause("has no points");
   std::vector<material::CurvePoint> samples;
   for (const material::YamlValue& item : value.at("points").items()) {
     const std::vector<material::YamlValue> pair = item.items(2);

@@ -7,6 +7,7 @@
 
 #include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
+#include "haptex/evaluation/quantity.h"
 #include "haptex/material/strain_measures.h"
 
 namespace haptex::evaluation {
@@ -74,13 +75,13 @@ class Tester {
   }
   double largestForce() const {
     double largest = 0.0;
-    for (const Vector3d& force : forces_) largest = std::max(largest, force.norm());
+    for (const Vector3d& force : forces_) largest = largerOrNaN(largest, force.norm());
     return largest;
   }
   double largestFreeForce() const {
     double largest = 0.0;
     for (std::size_t i = 0; i < forces_.size(); ++i) {
-      if (!cloth_.attachments()[i]) largest = std::max(largest, forces_[i].norm());
+      if (!cloth_.attachments()[i]) largest = largerOrNaN(largest, forces_[i].norm());
     }
     return largest;
   }

@@ -73,6 +73,37 @@ void requireDissipative(const YamlValue& value, const std::vector<CurvePoint>& p
   }
 }
 
+// An elastic stress against its strain would do work on the cloth without end.
+void requireRestoring(const YamlValue& value, const std::vector<CurvePoint>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].stress * points[i].strain < 0.0) {
+      value.at("points").items()[i].items()[1].refuse(
+          "must have the sign of the strain: an elastic curve must pull back");
+    }
+  }
+}
+
+// The curve goes on with its outermost slopes, so a fall there would have no end either.
+void requireRisingEnds(const YamlValue& value, const StrainStressCurve& curve) {
+  for (const double knot : {curve.firstKnot(), curve.lastKnot()}) {
+    const double slope = curve.evaluate(knot).slope;
+    if (slope < 0.0) {
+      value.refuseBecause("the curve ends at " + std::to_string(knot) + " with the slope " +
+                          std::to_string(slope) + ", it must be >= 0: the curve continues with it");
+    }
+  }
+}
+
+// Of a thread direction: no stretch has a smaller Green-Lagrange strain than none.
+void requirePossibleStrains(const YamlValue& value, const std::vector<CurvePoint>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].strain < -0.5) {
+      value.at("points").items()[i].items()[0].refuse(
+          "must be >= -0.5, the Green-Lagrange strain of collapse");
+    }
+  }
+}
+
 StrainStressCurve readPointCurve(const YamlValue& value, const CurveRules& rules) {
   const std::string quantity =
       rules.from_tester ? value.at("quantity").oneOf({kPiolaOverGreen, kForceOverEngineering})
@@ -80,11 +111,18 @@ StrainStressCurve readPointCurve(const YamlValue& value, const CurveRules& rules
   std::vector<CurvePoint> points = readPoints(value.at("points"));
   // Before the conversion, so that a message has the numbers as written.
   namingKey(value, [&] { requireFitPoints(points); });
-  if (rules.kind == CurveKind::kViscous) requireDissipative(value, points);
-  return namingKey(value, [&] {
+  if (rules.kind == CurveKind::kViscous) {
+    requireDissipative(value, points);
+  } else {
+    requireRestoring(value, points);
+    if (rules.from_tester && quantity == kPiolaOverGreen) requirePossibleStrains(value, points);
+  }
+  const StrainStressCurve curve = namingKey(value, [&] {
     if (quantity == kForceOverEngineering) points = curvePointsFromTester(points);
     return StrainStressCurve::fit(points, rules.negative_branch);
   });
+  requireRisingEnds(value, curve);
+  return curve;
 }
 
 // More than rounding in a curve that is level somewhere does.
@@ -112,6 +150,7 @@ StrainStressCurve readPolynomialCurve(const YamlValue& value, CurveKind kind) {
     value.refuseBecause("the slope falls to " + std::to_string(curve.minimumSlope()) +
                         ", it must be >= 0 everywhere: a viscous curve must dissipate");
   }
+  requireRisingEnds(value, curve);
   return curve;
 }
 

@@ -173,6 +173,9 @@ StrainStressCurve StrainStressCurve::fromPolynomials(const std::vector<double>& 
   requireKnots(knots);
   requireCoefficients(coefficients, knots.size() - 1);
   const Magnitudes largest = largestAtKnots(knots, coefficients);
+  if (!std::isfinite(largest.stress) || !std::isfinite(largest.slope)) {
+    refuse("coefficients: the curve is too steep or too large for double arithmetic");
+  }
   requireContinuity(knots, coefficients, largest);
   StrainStressCurve curve(knots, coefficients);
   const double stress_at_zero = curve.evaluate(0.0).stress;

@@ -171,6 +171,46 @@ TEST(BackwardEuler, NewtonReachesItsToleranceWhereOneSolveDoesNot) {
   }
 }
 
+TEST(BackwardEuler, ANewtonIterationNeverRaisesTheIncrementalPotential) {
+  const Cloth cloth(square(4), stiffeningFabric(), {});
+  const double h = 0.1;
+  int changed = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    ClothState start = randomState(cloth, 0.02, 5.0, seed);
+    for (Vector3d& position : start.positions) position *= 0.5;
+    std::vector<MembraneStrain> begin;
+    cloth.membrane().computeStrains(start.positions, begin);
+    std::vector<double> potentials;
+    for (int iterations : {1, 2}) {
+      StepSettings settings;
+      settings.newton_iterations = iterations;
+      ClothState state = start;
+      BackwardEuler(cloth, settings).step(cloth, state, h);
+      double potential = cloth.membrane().incrementalPotential(state.positions, begin, h);
+      for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+        potential +=
+            0.5 * cloth.masses()[i] * (state.velocities[i] - start.velocities[i]).squaredNorm();
+      }
+      potentials.push_back(potential);
+    }
+    EXPECT_LE(potentials[1], potentials[0]) << seed;
+    changed += potentials[1] < potentials[0];
+  }
+  EXPECT_GT(changed, 30);
+}
+
+TEST(BackwardEuler, DoesNotCallAFailedSolveConverged) {
+  Cloth cloth(square(3), linearFabric(), gravity());
+  ClothState state = cloth.initialState();
+  state.velocities[5].x() = std::numeric_limits<double>::infinity();
+  StepSettings settings;
+  settings.newton_iterations = 5;
+  const StepReport report = BackwardEuler(cloth, settings).step(cloth, state, 0.01);
+  EXPECT_FALSE(report.accepted);
+  EXPECT_FALSE(report.linear_converged);
+  EXPECT_FALSE(report.newton_converged);
+}
+
 TEST(BackwardEuler, BothSolversGiveTheSameMotion) {
   std::vector<ClothState> ends;
   for (LinearSolverMethod method :
@@ -202,6 +242,7 @@ TEST(BackwardEuler, AStateThatIsNotFiniteIsNotAcceptedAndNotTouched) {
   BackwardEuler integrator(cloth, {});
   EXPECT_FALSE(integrator.step(cloth, state, 0.01).accepted);
   EXPECT_EQ(state.positions, before.positions);
+  EXPECT_EQ(state.velocities, before.velocities);
   EXPECT_EQ(state.time, before.time);
   state.velocities[5].setZero();  // and the integrator goes on
   EXPECT_TRUE(integrator.step(cloth, state, 0.01).accepted);
@@ -224,6 +265,12 @@ TEST(BackwardEuler, RefusesBadStepsAndSettings) {
     EXPECT_THROW(BackwardEuler(cloth, settings), std::invalid_argument);
   }
   settings = {};
+  settings.newton_tolerance = nan;
+  EXPECT_THROW(BackwardEuler(cloth, settings), std::invalid_argument);
+  const Cloth coarser(makeRectangle(0.1, 0.1, 2, 1, Triangulation::kOneWay), linearFabric(), {});
+  BackwardEuler other_integrator(coarser, {});
+  EXPECT_THROW(other_integrator.step(cloth, state, 0.01), std::invalid_argument);
+  settings = {};
   settings.newton_iterations = 0;
   EXPECT_THROW(BackwardEuler(cloth, settings), std::invalid_argument);
   EXPECT_EQ(state.time, 0.0);
@@ -234,6 +281,7 @@ TEST(BackwardEuler, DocumentedDefaultsHold) {
   EXPECT_EQ(settings.solver, LinearSolverMethod::kAutomatic);
   EXPECT_EQ(settings.tolerance, 1e-6);
   EXPECT_EQ(settings.newton_iterations, 1);
+  EXPECT_EQ(settings.newton_tolerance, 1e-8);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <numeric>
 
 #include "fixtures.h"
 #include "haptex/cloth/membrane.h"
@@ -173,8 +174,13 @@ TEST(Membrane, StepMatrixIsTheExactJacobianWhereNothingNeedsProjection) {
   }
 }
 
-TEST(Membrane, StepRightHandSideIsForceAndStiffnessTimesVelocity) {
-  const Cloth cloth(square(3), stiffeningFabric(), {});
+class StepRightHandSide : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Viscosity, StepRightHandSide, testing::Bool());
+
+TEST_P(StepRightHandSide, IsForceAndElasticStiffnessTimesVelocity) {
+  ModelledEffects effects;
+  effects.viscosity = GetParam();
+  const Cloth cloth(square(3), stiffeningFabric(), effects);
   ClothState state = randomState(cloth, 1e-4, 1.0);
   for (Vector3d& position : state.positions) position *= 1.06;
   const double h = 0.01;
@@ -183,7 +189,12 @@ TEST(Membrane, StepRightHandSideIsForceAndStiffnessTimesVelocity) {
   BlockVector velocity(3, cloth.particleCount()),
       stiffness_times_velocity(3, cloth.particleCount());
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) velocity.col(i) = state.velocities[i];
-  system.matrix.multiply(velocity, stiffness_times_velocity);  // -h^2 K v without viscosity
+  system.matrix.multiply(velocity, stiffness_times_velocity);  // -h D v - h^2 K v
+  std::vector<int> particles(cloth.particleCount());
+  std::iota(particles.begin(), particles.end(), 0);
+  for (const JacobianBlock& block : cloth.jacobian(state, particles)) {
+    stiffness_times_velocity.col(block.row) += h * block.by_velocity * velocity.col(block.column);
+  }
   const std::vector<Vector3d> forces = membraneForces(cloth, state);
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     const Vector3d exact = h * forces[i] - stiffness_times_velocity.col(i);
@@ -211,6 +222,34 @@ TEST(Membrane, NewtonGradientIsThatOfTheIncrementalPotential) {
       const double gradient = (potential(middle + step) - potential(middle - step)) / (2.0 * step);
       state.positions[i][axis] = middle;
       EXPECT_NEAR(system.rhs(axis, i), -h * gradient, 1e-6 * h);  // gradients near 10 N
+    }
+  }
+}
+
+TEST(Membrane, ExactNewtonHessianIsTheDerivativeOfItsGradient) {
+  const Cloth cloth(square(2), stiffeningFabric(), viscous());
+  const double h = 0.01, step = 1e-8;
+  std::vector<MembraneStrain> begin_strains;
+  cloth.membrane().computeStrains(randomState(cloth, 0.001, 0.0, 9).positions, begin_strains);
+  ClothState state = randomState(cloth, 0.002, 0.0, 4);
+  const auto system = [&] {
+    System result(cloth);
+    cloth.membrane().addNewton(state.positions, begin_strains, h, Membrane::Hessian::kExact,
+                               result.matrix, result.rhs);
+    return result;
+  };
+  const Eigen::MatrixXd hessian = dense(system().matrix);
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double middle = state.positions[i][axis];
+      state.positions[i][axis] = middle + step;
+      const Eigen::VectorXd above = stacked(system().rhs);
+      state.positions[i][axis] = middle - step;
+      const Eigen::VectorXd below = stacked(system().rhs);
+      state.positions[i][axis] = middle;
+      // rhs is -h times the gradient, the matrix h^2 times the Hessian.
+      const Eigen::VectorXd column = -h * (above - below) / (2.0 * step);
+      EXPECT_LT((hessian.col(3 * i + axis) - column).norm(), 1e-6 * hessian.norm());
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <sstream>
 
 #include "haptex/evaluation/hanging_strip.h"
@@ -15,6 +16,22 @@ TEST(Quantity, FailsBeyondItsToleranceAndOnNaN) {
   EXPECT_TRUE(relativeTo(2.0, "a", 2.0, 2.0002, 1.1e-4).pass());
   EXPECT_FALSE(relativeTo(2.0, "a", 2.0, 2.0002, 0.9e-4).pass());
   EXPECT_FALSE(relativeTo(2.0, "a", 2.0, std::numeric_limits<double>::quiet_NaN(), 1.0).pass());
+}
+
+TEST(Quantity, NaNIsNeverHiddenByALargerNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(largerOrNaN(1.0, 2.0), 2.0);
+  EXPECT_EQ(largerOrNaN(2.0, 1.0), 2.0);
+  EXPECT_TRUE(std::isnan(largerOrNaN(nan, 1.0)));
+  EXPECT_TRUE(std::isnan(largerOrNaN(1.0, nan)));
+  Quantity worst{"", 0.0, 0.0, -1.0, 1.0};
+  for (double measured : {0.1, nan, 0.3})
+    keepWorse(worst, relativeTo(1.0, "a", 0.0, measured, 1.0));
+  EXPECT_FALSE(worst.pass());
+  worst = {"", 0.0, 0.0, -1.0, 1.0};
+  for (double measured : {0.1, 0.3, 0.2})
+    keepWorse(worst, relativeTo(1.0, "a", 0.0, measured, 1.0));
+  EXPECT_EQ(worst.error, 0.3);
 }
 
 TEST(Quantity, PrintsSixFieldsSeparatedByTabs) {
@@ -49,6 +66,18 @@ TEST(VirtualTest, IrregularMeshHasNoTwoTrianglesAlikeAndNoDefect) {
   const cloth::ClothMesh mesh = irregularRectangle(0.2, 0.1, 50, 25, 2);
   EXPECT_EQ(mesh.triangles.size(), 2500u);
   EXPECT_TRUE(findDefects(mesh).none());
+  std::set<double> perimeters;
+  for (const auto& t : mesh.triangles) {
+    const Eigen::Vector2d ab = mesh.rest_coordinates[t[1]] - mesh.rest_coordinates[t[0]];
+    const Eigen::Vector2d ac = mesh.rest_coordinates[t[2]] - mesh.rest_coordinates[t[0]];
+    perimeters.insert(ab.norm() + ac.norm() + (ac - ab).norm());
+  }
+  EXPECT_GE(perimeters.size(), 2500u - 3u);  // but for corner cells, with all corners on the rim
+}
+
+TEST(HangingStrip, RefusesCellsThatAreNotAMultipleOfFive) {
+  EXPECT_THROW(simulatedElongation({0.5, 100.0, 0.1, 9.81}, 7, 0.01), std::invalid_argument);
+  EXPECT_THROW(simulatedElongation({0.5, 100.0, 0.1, 9.81}, 0, 0.01), std::invalid_argument);
 }
 
 TEST(Validation, EveryQuantityOfEveryRoomPasses) {

@@ -12,24 +12,27 @@ namespace haptex::cloth {
 
 struct StepSettings {
   LinearSolverMethod solver = LinearSolverMethod::kAutomatic;
-  /// Relative residual |b - A dv| / |b| that every linear solve reaches.
+  /// Relative residual |b - A dv| / |b| that every linear solve aims at;
+  /// StepReport::linear_converged tells whether it was reached.
   double tolerance = 1e-6;
   /// 1: the linearised step alone. More: Newton iterations with line search until the nonlinear
-  /// residual falls below newton_tolerance times the first one, or this number is spent.
+  /// residual falls below newton_tolerance times the right-hand side of the linearised step, or
+  /// cannot fall any more for rounding, or this number is spent.
   int newton_iterations = 1;
   double newton_tolerance = 1e-8;
 };
 
 /// What a step did and took.
 struct StepReport {
-  bool accepted = false;  ///< false: the result was not finite and the state is as before
+  bool accepted = false;  ///< false: system or result was not finite, the state is as before
   bool linear_converged = false;
   LinearSolverMethod solver = LinearSolverMethod::kCholesky;  ///< that gave the last solution
-  int linear_iterations = 0;   ///< conjugate gradient iterations of all solves
-  double linear_residual = 0;  ///< relative, of the last solve
-  int newton_iterations = 0;   ///< linear solves
-  double newton_residual = 0;  ///< nonlinear residual relative to the first; 0 if not asked for
-  bool newton_converged = true;
+  int linear_iterations = 0;     ///< conjugate gradient iterations of all solves
+  double linear_residual = 0;    ///< relative, of the last solve
+  int newton_iterations = 0;     ///< linear solves
+  double newton_residual = 0;    ///< relative to the linearised step's right-hand side, which is
+                                 ///< rounding itself when the cloth is at rest; 0 if not asked for
+  bool newton_converged = true;  ///< to newton_tolerance or to rounding
   double assembly_seconds = 0;
   double solve_seconds = 0;
   double total_seconds = 0;
@@ -53,11 +56,9 @@ class BackwardEuler {
 
   /// Advances `state` by `time_step` seconds; steps need not be uniform.
   /// @param cloth that of the constructor; its fabric, loads and attachments may have changed
-  /// @throws std::invalid_argument if the time step is not finite and > 0 or the state's size is
-  ///   not the cloth's; the state is then as before
+  /// @throws std::invalid_argument if the time step is not finite and > 0, or state and cloth
+  ///   differ in size from each other or from the constructor's; the state is then as before
   StepReport step(const Cloth& cloth, ClothState& state, double time_step);
-
-  const StepSettings& settings() const { return settings_; }
 
  private:
   void prescribe(const Cloth& cloth, const ClothState& state, double time_step);
@@ -65,11 +66,13 @@ class BackwardEuler {
   void iterateNewton(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   void assembleNewton(const Cloth& cloth, const ClothState& begin, double h,
                       Membrane::Hessian hessian, StepReport& report);
-  bool searchLine(const Cloth& cloth, const ClothState& begin, double h, double& potential);
+  enum class Descent { kFound, kBelowRounding, kNone };
+  Descent searchLine(const Cloth& cloth, const ClothState& begin, double h, double& potential);
   double incrementalPotential(const Cloth& cloth, const ClothState& begin, double h,
                               const Positions& positions, const Velocities& velocities) const;
 
   StepSettings settings_;
+  std::size_t element_count_;
   SymmetricBlockMatrix matrix_;
   LinearSolver solver_;
   BlockVector rhs_;

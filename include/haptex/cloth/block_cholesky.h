@@ -25,8 +25,6 @@ class BlockCholesky {
 
   /// Multiply-add operations of one factorisation.
   double cost() const { return cost_; }
-  /// Blocks of the factor, explicit zeros included.
-  std::size_t factorBlocks() const { return panels_.size() / 9; }
 
  private:
   struct Panel {

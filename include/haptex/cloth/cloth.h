@@ -58,7 +58,6 @@ class Cloth {
   std::size_t particleCount() const { return masses_.size(); }
   /// Lumped particle masses (kg): a third of each adjacent triangle.
   const std::vector<double>& masses() const { return masses_; }
-  Membrane& membrane() { return membrane_; }
   const Membrane& membrane() const { return membrane_; }
 
   /// The state at rest in the initial positions at time 0.
@@ -84,6 +83,8 @@ class Cloth {
   /// Empty where the particle is free.
   const std::vector<std::optional<AttachmentPath>>& attachments() const { return attachments_; }
 
+  // The functions below throw std::invalid_argument if the state's size is not the cloth's.
+
   /// Internal and external forces (N) on every particle: membrane, gravity and user-defined, not
   /// the reaction of an attachment. At rest the reaction at an attached particle is the negative.
   /// @param forces resized to particleCount()
@@ -101,6 +102,7 @@ class Cloth {
 
  private:
   void requireParticle(int particle) const;
+  void requireState(const ClothState& state) const;
 
   ClothMesh mesh_;
   material::Fabric fabric_;

@@ -21,6 +21,7 @@ double exactElongation(const HangingStrip& strip);
 /// Relative elongation of a simulated strip one fifth as wide as long, at rest.
 /// @param cells     along the length, a multiple of 5
 /// @param time_step s, of backward Euler with one linear solve per step
+/// @throws std::invalid_argument if cells is not a positive multiple of 5
 double simulatedElongation(const HangingStrip& strip, int cells, double time_step);
 
 }  // namespace haptex::evaluation

@@ -20,6 +20,12 @@ struct Quantity {
   bool pass() const { return error <= tolerance; }
 };
 
+/// The larger number, or NaN if either is one: what std::max() would hide must fail a check.
+double largerOrNaN(double a, double b);
+
+/// Keeps the quantity with the larger error in `worst`, or the first whose error is NaN.
+void keepWorse(Quantity& worst, const Quantity& candidate);
+
 /// error = |measured - exact| / |scale|.
 Quantity relativeTo(double scale, std::string name, double exact, double measured,
                     double tolerance);

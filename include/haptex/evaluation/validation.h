@@ -30,6 +30,8 @@ void validateCloth(const std::string& config_directory, const Sink& sink);
 
 /// The [strain, stress] samples of a fabric file as they stand in it, as Green-Lagrange strain and
 /// second Piola-Kirchhoff stress. @param curve for example "warp.elastic"
+/// @throws what loadFabric() throws for a bad file, std::invalid_argument if the curve has no
+/// points
 std::vector<material::CurvePoint> fabricSamples(const std::string& path, const std::string& curve);
 
 }  // namespace haptex::evaluation

@@ -34,7 +34,9 @@ constexpr double kSampleLength = 0.1;
 std::vector<Reading> tensileTest(const material::Fabric& fabric, Direction direction,
                                  const std::vector<double>& strains);
 
-/// Shear test along weft at constant distance of the jaws, the sides guided on straight lines.
+/// Shear test along weft at constant distance of the jaws, the sides guided on straight lines. The
+/// force is that of the jaw without its two corners, which the guides pull too, scaled up by the
+/// width that the corners stand for.
 /// Exact force: width P12 with P12 = fs(g) + g fv(g^2 / 2) at shear g.
 /// @throws std::runtime_error if the equilibrium is not reached
 std::vector<Reading> shearTest(const material::Fabric& fabric, const std::vector<double>& shears);

@@ -10,8 +10,9 @@ namespace haptex::material {
 /// Reads a fabric file; docs/fabric_files.md describes the format.
 /// @throws std::runtime_error if the file cannot be read or is not YAML
 /// @throws std::invalid_argument naming file, key, value and what is allowed if a key is missing
-///   or unknown, a unit is wrong, a number is not finite or out of range, or samples are not in
-///   strictly increasing order of strain
+///   or unknown, a unit is wrong, a number is not finite or out of range, samples are not in
+///   strictly increasing order of strain, or a curve pushes where it should pull back: a stress
+///   against its strain, or a falling end, with which the curve would continue
 Fabric loadFabric(const std::string& path);
 
 }  // namespace haptex::material

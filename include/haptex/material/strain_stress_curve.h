@@ -93,7 +93,8 @@ class StrainStressCurve {
   /// True if the stress is zero for every strain.
   bool isZero() const;
 
-  /// The smallest slope anywhere (N/m): >= 0 exactly if the curve nowhere falls.
+  /// The smallest slope anywhere (N/m): below 0 by more than rounding (kJumpTolerance of the
+  /// largest slope) if the curve falls somewhere.
   double minimumSlope() const;
 
   /// Outermost knots: outside of them the curve is a straight line.

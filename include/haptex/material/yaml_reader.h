@@ -24,7 +24,6 @@ class YamlValue {
   const std::string& keyPath() const { return key_path_; }
 
   bool isMap() const { return node_.IsMap(); }
-  bool isText() const { return node_.IsScalar(); }
 
   /// Refuses anything but a map with all the required keys and no others than the optional ones,
   /// each once. Call it before at() and has().
