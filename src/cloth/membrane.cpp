@@ -22,6 +22,11 @@ struct Membrane::Frame {
   }
 };
 
+struct Membrane::Response {
+  Vector3d stress;
+  Vector3d slope;
+};
+
 namespace {
 
 MembraneElement restElement(const ClothMesh& mesh, const SymmetricBlockMatrix& pattern,
@@ -133,26 +138,19 @@ MembraneStrain Membrane::strain(const MembraneElement& element, const Positions&
   return frame(element, positions).strain();
 }
 
-std::array<material::CurveValue, 3> Membrane::elasticResponse(const MembraneStrain& strain) const {
-  return {elastic_[0].evaluate(strain[0]), elastic_[1].evaluate(strain[1]),
-          elastic_[2].evaluate(strain[2])};
-}
-
-std::array<material::CurveValue, 3> Membrane::viscousResponse(const MembraneStrain& rate) const {
-  return {viscous_[0].evaluate(rate[0]), viscous_[1].evaluate(rate[1]),
-          viscous_[2].evaluate(rate[2])};
+Membrane::Response Membrane::respond(const Curves& curves, const MembraneStrain& strain) {
+  const material::CurveValue weft = curves[0].evaluate(strain[0]);
+  const material::CurveValue warp = curves[1].evaluate(strain[1]);
+  const material::CurveValue shear = curves[2].evaluate(strain[2]);
+  return {{weft.stress, warp.stress, shear.stress}, {weft.slope, warp.slope, shear.slope}};
 }
 
 void Membrane::addForces(const Positions& positions, const Velocities& velocities,
                          std::vector<Vector3d>& forces) const {
   for (const MembraneElement& element : elements_) {
     const Frame at = frame(element, positions);
-    const auto elastic = elasticResponse(at.strain());
-    Vector3d stress(elastic[0].stress, elastic[1].stress, elastic[2].stress);
-    if (viscosity_) {
-      const auto viscous = viscousResponse(at.rate(frame(element, velocities)));
-      stress += Vector3d(viscous[0].stress, viscous[1].stress, viscous[2].stress);
-    }
+    Vector3d stress = respond(elastic_, at.strain()).stress;
+    if (viscosity_) stress += respond(viscous_, at.rate(frame(element, velocities))).stress;
     stress *= -element.area;
     addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
                  stress[1] * at.warp + stress[2] * at.weft,
@@ -185,14 +183,14 @@ void Membrane::addStepOf(const Positions& positions, const Velocities& velocitie
     const Frame at = frame(element, positions);
     const Frame derivative = frame(element, velocities);
     const MembraneStrain rate = at.rate(derivative);
-    const auto elastic = elasticResponse(at.strain());
-    Vector3d stress(elastic[0].stress, elastic[1].stress, elastic[2].stress);
-    Vector3d slope = clampedToNonNegative({elastic[0].slope, elastic[1].slope, elastic[2].slope});
+    const Response elastic = respond(elastic_, at.strain());
+    Vector3d stress = elastic.stress;
+    Vector3d slope = clampedToNonNegative(elastic.slope);
     const Vector3d stress_increment = h * slope.cwiseProduct(rate);
     if constexpr (kViscous) {
-      const auto viscous = viscousResponse(rate);
-      stress += Vector3d(viscous[0].stress, viscous[1].stress, viscous[2].stress);
-      slope += clampedToNonNegative({viscous[0].slope, viscous[1].slope, viscous[2].slope}) / h;
+      const Response viscous = respond(viscous_, rate);
+      stress += viscous.stress;
+      slope += clampedToNonNegative(viscous.slope) / h;
     }
     const Vector3d geometric = projectStress(stress);
     addTangent(element, at.weft, at.warp, slope, geometric, element.area * h * h, matrix);
@@ -216,13 +214,11 @@ void Membrane::addNewton(const Positions& positions,
     const MembraneElement& element = elements_[t];
     const Frame at = frame(element, positions);
     const MembraneStrain strain = at.strain();
-    const auto elastic = elasticResponse(strain);
-    Vector3d stress(elastic[0].stress, elastic[1].stress, elastic[2].stress);
-    Vector3d slope(elastic[0].slope, elastic[1].slope, elastic[2].slope);
+    auto [stress, slope] = respond(elastic_, strain);
     if (viscosity_) {
-      const auto viscous = viscousResponse((strain - begin_strains[t]) / h);
-      stress += Vector3d(viscous[0].stress, viscous[1].stress, viscous[2].stress);
-      slope += Vector3d(viscous[0].slope, viscous[1].slope, viscous[2].slope) / h;
+      const Response viscous = respond(viscous_, (strain - begin_strains[t]) / h);
+      stress += viscous.stress;
+      slope += viscous.slope / h;
     }
     const bool exact = hessian == Hessian::kExact;
     addTangent(element, at.weft, at.warp, exact ? slope : clampedToNonNegative(slope),
@@ -261,16 +257,14 @@ Membrane::Jacobian Membrane::exactJacobian(const MembraneElement& element,
                                            const Positions& positions,
                                            const Velocities& velocities) const {
   const Frame at = frame(element, positions);
-  const auto elastic = elasticResponse(at.strain());
-  Vector3d stress(elastic[0].stress, elastic[1].stress, elastic[2].stress);
-  const Vector3d slope(elastic[0].slope, elastic[1].slope, elastic[2].slope);
+  auto [stress, slope] = respond(elastic_, at.strain());
   Vector3d viscous_slope = Vector3d::Zero();
   Frame derivative{Vector3d::Zero(), Vector3d::Zero()};
   if (viscosity_) {
     derivative = frame(element, velocities);
-    const auto viscous = viscousResponse(at.rate(derivative));
-    stress += Vector3d(viscous[0].stress, viscous[1].stress, viscous[2].stress);
-    viscous_slope = {viscous[0].slope, viscous[1].slope, viscous[2].slope};
+    const Response viscous = respond(viscous_, at.rate(derivative));
+    stress += viscous.stress;
+    viscous_slope = viscous.slope;
   }
   // Column m is the derivative of strain m by the position of particle i, which is also the
   // derivative of its rate by the velocity; with the velocity's frame it is the derivative of the

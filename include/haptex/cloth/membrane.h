@@ -33,7 +33,8 @@ using MembraneStrain = Eigen::Vector3d;
 /// (Frobenius norm) by clamping its two eigenvalues in closed form.
 Eigen::Vector3d projectStress(const Eigen::Vector3d& stress);
 
-/// Elastic and, if asked for, viscous membrane forces of all elements of a mesh.
+/// Elastic and, if asked for, viscous membrane forces of all elements of a mesh. Positions and
+/// velocities have one entry per particle; their numbers are not checked here (Cloth does).
 class Membrane {
  public:
   /// @param mesh without defects (findDefects())
@@ -59,9 +60,13 @@ class Membrane {
   ///   matrix += -h D - h^2 K,  rhs += h (F + h K v),
   /// with the exact projection: slopes of the curves clamped to >= 0 and the stress of the
   /// geometric part by projectStress(), the same K on both sides.
-  /// @param h time step, s
+  /// @param h time step, s, finite and > 0
   void addStep(const Positions& positions, const Velocities& velocities, double h,
                SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
+
+  /// The Hessian of a Newton iteration: exact, for fast convergence near a minimum, or projected as
+  /// in addStep(), for a descent from everywhere.
+  enum class Hessian { kExact, kProjected };
 
   /// Adds what the membrane contributes to a Newton iteration on the incremental potential
   ///   sum_elements A [W(e) + h G((e - e0)/h)],  G the integral of the viscous curves,
@@ -69,9 +74,7 @@ class Membrane {
   ///   matrix += h^2 times its Hessian, rhs -= h times its gradient.
   /// @param positions     at the end of the step
   /// @param begin_strains e0 of every element, strains at the beginning of the step
-  /// @param hessian       exact, for fast convergence near a minimum, or projected as in addStep(),
-  ///                      for a descent from everywhere
-  enum class Hessian { kExact, kProjected };
+  /// @param h             time step, s, finite and > 0
   void addNewton(const Positions& positions, const std::vector<MembraneStrain>& begin_strains,
                  double h, Hessian hessian, SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
 
@@ -93,17 +96,18 @@ class Membrane {
                          const Velocities& velocities) const;
 
  private:
-  struct Frame;  // U, V of an element, or their rates
+  using Curves = std::array<material::StrainStressCurve, 3>;  // weft, warp, shear
+  struct Frame;                                               // U, V of an element, or their rates
+  struct Response;  // stress and slope of all three curves
   static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
   template <bool kViscous>
   void addStepOf(const Positions& positions, const Velocities& velocities, double h,
                  SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
-  std::array<material::CurveValue, 3> elasticResponse(const MembraneStrain& strain) const;
-  std::array<material::CurveValue, 3> viscousResponse(const MembraneStrain& rate) const;
+  static Response respond(const Curves& curves, const MembraneStrain& strain);
 
   std::vector<MembraneElement> elements_;
-  std::array<material::StrainStressCurve, 3> elastic_;
-  std::array<material::StrainStressCurve, 3> viscous_;
+  Curves elastic_;
+  Curves viscous_;
   bool viscosity_;
 };
 
