@@ -18,7 +18,8 @@ constexpr double kRounding = 1e-12;
 
 void validateConversions(const Sink& sink) {
   double back_and_forth = 0.0;
-  for (double strain = -0.9; strain < 2.0; strain += 0.01) {
+  for (int percent = -90; percent < 200; ++percent) {
+    const double strain = 0.01 * percent;
     const double green = material::greenStrain(strain);
     back_and_forth =
         largerOrNaN(back_and_forth, std::abs(material::engineeringStrain(green) - strain));

@@ -38,8 +38,9 @@ std::string readText(const std::string& path) {
 
 }  // namespace
 
-YamlValue::YamlValue(std::shared_ptr<const std::string> file, std::string key_path, YAML::Node node)
-    : file_(std::move(file)), key_path_(std::move(key_path)), node_(std::move(node)) {}
+YamlValue::YamlValue(std::shared_ptr<const std::string> file, std::string key_path,
+                     const YAML::Node& node)
+    : file_(std::move(file)), key_path_(std::move(key_path)), node_(node) {}
 
 YamlValue YamlValue::load(const std::string& path) {
   const std::string text = readText(path);

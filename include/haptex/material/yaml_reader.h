@@ -51,7 +51,7 @@ class YamlValue {
   [[noreturn]] void refuseBecause(const std::string& reason) const;
 
  private:
-  YamlValue(std::shared_ptr<const std::string> file, std::string key_path, YAML::Node node);
+  YamlValue(std::shared_ptr<const std::string> file, std::string key_path, const YAML::Node& node);
 
   std::string describeValue() const;
 
