@@ -56,7 +56,10 @@ haptex_configure() {
     grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build" "$cache"; }; then
     rm -rf "$build"
   fi
-  mkdir -p "$build"
+  # catkin caches the environment in which it runs the tests while it configures, and leaves out
+  # directories that are not there yet: without this one our messages would be missing from the
+  # Python of the first build's rostests.
+  mkdir -p "$build/devel/lib/python3/dist-packages"
   : >"$build/build.log"
   # Debian's ROS belongs to Debian's Python, which need not be the first on PATH.
   haptex_logged "$build/build.log" cmake -S "$haptex_root" -B "$build" \
