@@ -1,5 +1,6 @@
 #include "haptex/proximity/triangle_pair.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
