@@ -4,6 +4,7 @@
 #include "../malloc_counter.h"
 #include "fixtures.h"
 #include "haptex/proximity/kdop_hierarchy.h"
+#include "haptex/proximity/rigid_obstacle.h"
 
 namespace haptex::proximity {
 namespace {
@@ -31,6 +32,24 @@ TEST(ProximityAllocation, NeitherRefitNorQueryAllocatesAfterTheFirst) {
     }
   }
   EXPECT_EQ(allocations - before, 0);
+}
+
+TEST(ProximityAllocation, ClosestPointOfAnObstacleDoesNotAllocate) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  const cloth::ClothMesh mesh = sheet(20);
+  const std::vector<RigidObstacle> obstacles = {
+      RigidObstacle::sphere(1.0), RigidObstacle::box({1.0, 1.0, 1.0}),
+      RigidObstacle::capsule(1.0, 1.0), RigidObstacle::mesh(restPositions(mesh), mesh.triangles)};
+  const Triangle triangle = {Eigen::Vector3d(3, 0, 2), Eigen::Vector3d(4, 0, 2),
+                             Eigen::Vector3d(3, 1, 2)};
+  const long before = allocations;
+  for (const RigidObstacle& obstacle : obstacles) {
+    EXPECT_GT(obstacle.closestPoint(triangle).distance, 0.0);
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(before, 0) << "the count does not work";
 }
 
 }  // namespace
