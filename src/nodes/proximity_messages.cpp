@@ -129,8 +129,8 @@ RestMesh restMesh(const haptex::ClothMesh& message) {
   for (std::size_t i = 0; i < message.triangles.size(); ++i) {
     const std::uint32_t particle = message.triangles[i];
     if (particle >= weft.size()) {
-      throw std::invalid_argument("triangles[" + std::to_string(i) + "] = " +
-                                  std::to_string(particle) + ": there are " +
+      throw std::invalid_argument("triangles[" + std::to_string(i) +
+                                  "] = " + std::to_string(particle) + ": there are " +
                                   std::to_string(weft.size()) + " particles");
     }
     mesh.triangles[i / 3][i % 3] = static_cast<int>(particle);
