@@ -86,7 +86,9 @@ struct RigidObstacle::Shape {
       for (const int vertex : triangle) used[vertex] = true;
     }
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      if (used[i]) corners.push_back(vertices[i]);
+      if (!used[i]) continue;
+      corners.push_back(vertices[i]);
+      reach = std::max(reach, vertices[i].cwiseAbs().maxCoeff() + radius);
     }
     model.beginModel();
     model.addSubModel(vertices, model_triangles);
@@ -96,6 +98,7 @@ struct RigidObstacle::Shape {
   fcl::BVHModel<fcl::AABBd> model;
   std::vector<Vector3d> corners;       // of the triangles, each once
   double radius;                       // m
+  double reach = 0.0;                  // m, largest coordinate
   std::optional<Vector3d> half_sides;  // of a box
 };
 
@@ -188,7 +191,7 @@ double RigidObstacle::support(const Vector3d& d) const {
 
 TrianglePoint RigidObstacle::closestPoint(const Triangle& triangle) const {
   Triangle own;
-  double farthest = pose_.translation().cwiseAbs().maxCoeff();
+  double farthest = std::max(shape_->reach, pose_.translation().cwiseAbs().maxCoeff());
   for (int i = 0; i < 3; ++i) {
     own[i] = pose_.linear().transpose() * (triangle[i] - pose_.translation());
     if (shape_->half_sides && (own[i].array().abs() <= shape_->half_sides->array()).all()) {
@@ -197,7 +200,7 @@ TrianglePoint RigidObstacle::closestPoint(const Triangle& triangle) const {
     farthest = std::max(farthest, triangle[i].cwiseAbs().maxCoeff());
   }
   TrianglePoint point = NearestTriangle(shape_->model, own).find();
-  // Coordinates of this size differ by so much after a change of frame.
+  // Coordinates of this size are known to so much after a change of frame.
   const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * farthest;
   point.distance -= shape_->radius;
   if (point.distance <= rounding) point.distance = 0.0;
