@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string>
 
-#include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/colour_map.h"
+#include "haptex/nodes/marker_shapes.h"
 
 namespace haptex::nodes {
 namespace {
@@ -20,36 +20,6 @@ constexpr int kScaleCells = 64;
 // the brightest nor the darkest orientation and waves show both ways.
 const Eigen::Vector3d kLight = Eigen::Vector3d(0.62, -0.52, 0.58).normalized();
 constexpr double kAmbient = 0.35;
-
-visualization_msgs::Marker makeMarker(const std::string& name, int id, int type) {
-  visualization_msgs::Marker marker;
-  marker.header.frame_id = kFixedFrame;
-  marker.ns = name;
-  marker.id = id;
-  marker.type = type;
-  marker.action = visualization_msgs::Marker::ADD;
-  marker.pose.orientation.w = 1.0;
-  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
-  marker.color.a = 1.0F;
-  return marker;
-}
-
-geometry_msgs::Point pointMessage(const Eigen::Vector3d& point) {
-  geometry_msgs::Point message;
-  message.x = point.x();
-  message.y = point.y();
-  message.z = point.z();
-  return message;
-}
-
-std_msgs::ColorRGBA colourMessage(const Eigen::Vector3f& colour) {
-  std_msgs::ColorRGBA message;
-  message.r = colour[0];
-  message.g = colour[1];
-  message.b = colour[2];
-  message.a = 1.0F;
-  return message;
-}
 
 std::vector<std::array<int, 2>> uniqueEdges(const std::vector<std::array<int, 3>>& triangles) {
   std::vector<std::array<int, 2>> edges;
@@ -214,10 +184,8 @@ void ClothMarkers::updateAttachments(const SimulatedCloth& simulation) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (attachments[i] && !joined_[i]) particles.points.push_back(pointMessage(positions[i]));
   }
-  // rviz warns of empty lists.
-  for (Marker* marker : {&bars, &particles}) {
-    marker->action = marker->points.empty() ? Marker::DELETE : Marker::ADD;
-  }
+  deleteIfEmpty(bars);
+  deleteIfEmpty(particles);
 }
 
 }  // namespace haptex::nodes
