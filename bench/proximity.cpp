@@ -64,7 +64,7 @@ struct Case {
     for (int i = 0; i < kPlaces; ++i) {
       const int column = static_cast<int>(along(generator) * cells);
       const int row = static_cast<int>(along(generator) * cells);
-      const Vector3d& near = positions[static_cast<std::size_t>(row * (cells + 1) + column)];
+      const Vector3d& near = positions[row * (cells + 1) + column];
       const double x = offset(generator), y = offset(generator), z = offset(generator);
       places.push_back(near + Vector3d(x, y, z));
       nearer_places.push_back(near + scale * Vector3d(x, y, z));
