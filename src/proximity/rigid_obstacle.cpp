@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "haptex/proximity/kdop_hierarchy.h"
 #include "haptex/proximity/triangle_pair.h"
 
 namespace haptex::proximity {
@@ -69,6 +70,21 @@ class NearestTriangle : public fcl::detail::BVHShapeDistanceTraversalNode<fcl::A
  private:
   const Triangle& triangle_;
   mutable TrianglePoint nearest_{std::numeric_limits<double>::infinity(), Vector3d::UnitX()};
+};
+
+class ObstacleBody : public Body {
+ public:
+  explicit ObstacleBody(const RigidObstacle& obstacle) : obstacle_(obstacle) {}
+
+  int parts() const override { return 1; }
+  double least(int, const Vector3d& normal) const override { return -obstacle_.support(-normal); }
+  NearElement near(int index, const Triangle& triangle) const override {
+    const TrianglePoint point = obstacle_.closestPoint(triangle);
+    return {index, 0, point.distance, point.on(triangle), point.barycentric, unitNormal(triangle)};
+  }
+
+ private:
+  const RigidObstacle& obstacle_;
 };
 
 }  // namespace
@@ -205,6 +221,11 @@ TrianglePoint RigidObstacle::closestPoint(const Triangle& triangle) const {
   point.distance -= shape_->radius;
   if (point.distance <= rounding) point.distance = 0.0;
   return point;
+}
+
+void query(const KdopHierarchy& hierarchy, const RigidObstacle& obstacle, const Range& range,
+           std::vector<NearElement>& found) {
+  hierarchy.query(ObstacleBody(obstacle), range, found);
 }
 
 }  // namespace haptex::proximity

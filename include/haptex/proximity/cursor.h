@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <string>
 #include <vector>
 
 namespace haptex::proximity {
@@ -9,6 +11,15 @@ namespace haptex::proximity {
 /// Places, radii and distances may not be larger than this (m): far beyond any workspace, but small
 /// enough that no sum or square overflows.
 constexpr double kLargestLength = 1e9;
+
+/// Whether a place is finite and each coordinate within kLargestLength.
+inline bool isPlace(const Eigen::Vector3d& place) {
+  return std::abs(place.x()) <= kLargestLength && std::abs(place.y()) <= kLargestLength &&
+         std::abs(place.z()) <= kLargestLength;  // false for NaN
+}
+
+/// @throws std::invalid_argument naming the place, called `what`, unless isPlace()
+void requirePlace(const Eigen::Vector3d& place, const std::string& what);
 
 struct Sphere {
   Eigen::Vector3d centre;  ///< m

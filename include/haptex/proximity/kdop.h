@@ -24,10 +24,11 @@ struct HalfSpace {
   double height;           ///< m times the length of the normal
 };
 
+/// Pairs of opposite half-spaces, in the order of kdopAxes().
 using Kdop = std::vector<HalfSpace>;
 
-/// The faces of a bounded intersection of half-spaces as convex polygons, counter-clockwise seen
-/// from outside, for drawing. Faces smaller than `resolution` are left out.
+/// The faces of a volume as convex polygons, counter-clockwise seen from outside, for drawing.
+/// Faces smaller than `resolution` are left out.
 /// @param resolution m, > 0: corners closer together than this are one
 std::vector<std::vector<Eigen::Vector3d>> polytopeFaces(const Kdop& kdop, double resolution);
 

@@ -15,13 +15,18 @@ namespace haptex::proximity {
 /// An element of a mesh near a cursor. A cursor may have several parts; what is said here is of the
 /// nearest part, of the first one if there are several at the same distance.
 struct NearElement {
-  int triangle;                  ///< index in the mesh
-  int part;                      ///< of the cursor, from 0
-  double distance;               ///< m, signed: negative where the element enters the cursor
-  Eigen::Vector3d point;         ///< m, of the element, with that distance
-  Eigen::Vector3d barycentric;   ///< of the point
-  Eigen::Vector3d normal;        ///< unit length; zero for an element without area
+  int triangle;                 ///< index in the mesh
+  int part;                     ///< of the cursor, from 0
+  double distance;              ///< m, signed: negative where the element enters the cursor
+  Eigen::Vector3d point;        ///< m, of the element, with that distance
+  Eigen::Vector3d barycentric;  ///< of the point
+  Eigen::Vector3d normal;       ///< unit length; zero for an element without area
 };
+
+/// The order of answers: by distance, then by index.
+inline bool isNearer(const NearElement& a, const NearElement& b) {
+  return a.distance < b.distance || (a.distance == b.distance && a.triangle < b.triangle);
+}
 
 /// How far and how many.
 struct Range {
@@ -41,8 +46,8 @@ NearElement nearElement(int index, const Triangle& triangle, const Cursor& curso
 /// Asks every triangle: the oracle of KdopHierarchy::query().
 /// @returns sorted by distance, then by index
 /// @throws std::invalid_argument what requireValid() throws
-std::vector<NearElement> nearElementsByBruteForce(
-    const std::vector<std::array<int, 3>>& triangles, const std::vector<Eigen::Vector3d>& positions,
-    const Cursor& cursor, const Range& range);
+std::vector<NearElement> nearElementsByBruteForce(const std::vector<std::array<int, 3>>& triangles,
+                                                  const std::vector<Eigen::Vector3d>& positions,
+                                                  const Cursor& cursor, const Range& range);
 
 }  // namespace haptex::proximity
