@@ -25,7 +25,8 @@ std::string namesIn(const fs::path& directory, const std::string& extension) {
 
 }  // namespace
 
-std::string resolveFile(const YamlValue& value, const std::string& kind, const std::string& extension) {
+std::string resolveFile(const YamlValue& value, const std::string& kind,
+                        const std::string& extension) {
   const std::string name = value.text();
   const fs::path scene_directory = fs::path(value.file()).parent_path();
   const fs::path kind_directory = (scene_directory / ".." / kind).lexically_normal();

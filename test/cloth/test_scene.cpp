@@ -321,9 +321,9 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
     EXPECT_GT(material::loadFabric(scene.fabric_path).areal_density, 0.0) << names.back();
   }
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"acrylic_knit_sample", "cotton_knit_sample",
-                                             "linear_sheet", "wool_among_obstacles",
-                                             "wool_sample"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"acrylic_knit_sample", "cotton_knit_sample", "linear_sheet",
+                                      "wool_among_obstacles", "wool_sample"}));
 }
 
 TEST(ShippedScenes, WoolSampleIsTheTwoHundredMillimetreSquare) {

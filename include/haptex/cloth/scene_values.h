@@ -14,7 +14,7 @@ constexpr double kLargestSize = 100.0;  ///< m, of what a scene file describes
 /// @param extension with the dot; added if the name does not end with it
 /// @throws std::invalid_argument naming the files that there are if there is no such file
 std::string resolveFile(const material::YamlValue& value, const std::string& kind,
-                    const std::string& extension);
+                        const std::string& extension);
 
 /// A length (m), > 0 and at most kLargestSize.
 /// @throws std::invalid_argument naming file, key, value and what is allowed
