@@ -94,7 +94,7 @@ TEST_F(ObstacleList, ReadsEveryShape) {
 // A quarter turn about each axis of its own has a matrix that can be written down; the order shows
 // where all three differ: x is turned first, about the fixed axes.
 TEST_F(ObstacleList, TurnsByRollPitchAndYawAboutTheFixedAxes) {
-  const auto rotation = [&](const std::string& rpy) {
+  const auto rotation = [&](const std::string& rpy) -> Eigen::Matrix3d {
     return load("obstacles: [{name: a, sphere: 1, position: [0, 0, 0], rpy: " + rpy + "}]\n")[0]
         .pose.linear();
   };
