@@ -63,6 +63,12 @@ class Proximity(unittest.TestCase):
         self.assertTrue(self.pause(True).success)
         self.assertTrue(self.reset().success)
 
+        def answers_from_the_start():
+            response = self.query(sphere())
+            return response.success and response.step == 0
+
+        self.eventually(answers_from_the_start, 'an answer from the start')
+
     def eventually(self, happens, what):
         end = rospy.get_time() + WAIT
         while not happens():
@@ -268,4 +274,4 @@ class Proximity(unittest.TestCase):
 
 if __name__ == '__main__':
     rospy.init_node('proximity_test')
-    rostest.rosrun('haptex', 'proximity', Proximity)
+    rostest.rosrun('haptex', 'proximity_queries', Proximity)
