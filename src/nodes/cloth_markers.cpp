@@ -16,11 +16,6 @@ enum MarkerIndex { kClothIndex, kEdgesIndex, kParticlesIndex, kScaleIndex, kFirs
 
 constexpr int kScaleCells = 64;
 
-// Towards the light, from the viewer's side, above and left, so that a hanging cloth is neither
-// the brightest nor the darkest orientation and waves show both ways.
-const Eigen::Vector3d kLight = Eigen::Vector3d(0.62, -0.52, 0.58).normalized();
-constexpr double kAmbient = 0.35;
-
 std::vector<std::array<int, 2>> uniqueEdges(const std::vector<std::array<int, 3>>& triangles) {
   std::vector<std::array<int, 2>> edges;
   for (const auto& triangle : triangles) {
@@ -152,9 +147,7 @@ void ClothMarkers::computeNormals(const std::vector<Eigen::Vector3d>& positions)
 void ClothMarkers::updateCloth(const SimulatedCloth& simulation) {
   const std::vector<Eigen::Vector3d>& positions = simulation.state().positions;
   for (std::size_t i = 0; i < colours_.size(); ++i) {
-    // Lambert's law for both sides of the cloth.
-    const double shade = kAmbient + (1.0 - kAmbient) * std::abs(normals_[i].dot(kLight));
-    colours_[i] *= static_cast<float>(shade);
+    colours_[i] *= shade(normals_[i]);
   }
   visualization_msgs::Marker& marker = markers_.markers[kClothIndex];
   for (std::size_t i = 0; i < triangles_.size(); ++i) {

@@ -1,7 +1,10 @@
 #include "haptex/nodes/cloth_proximity.h"
 
-#include <cstdio>
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -39,31 +42,24 @@ ClothProximity::ClothProximity(double stale_after, Obstacles obstacles)
 
 void ClothProximity::setMesh(const haptex::ClothMesh& message) try {
   RestMesh mesh = restMesh(message);
+  std::shared_ptr<FittedCloth> before;
   {
-    const std::shared_lock<std::shared_mutex> lock(hierarchy_mutex_);
-    if (hierarchy_ && mesh == mesh_) {
-      const std::lock_guard<std::mutex> latest_lock(latest_mutex_);
-      ++status_.meshes;
-      return;
-    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    before = latest_.fitted;
   }
-  std::optional<proximity::KdopHierarchy> hierarchy;
-  hierarchy.emplace(mesh.triangles, mesh.rest_coordinates);
-  const std::unique_lock<std::shared_mutex> lock(hierarchy_mutex_);
-  const std::lock_guard<std::mutex> latest_lock(latest_mutex_);
-  // A state of the mesh before this one may have as many particles. Before the first mesh there is
-  // none.
-  const bool first = !hierarchy_;
-  if (latest_ && (!first || latest_->positions.size() != mesh.rest_coordinates.size())) {
-    latest_.reset();
-  }
-  particle_count_ = mesh.rest_coordinates.size();
-  hierarchy_ = std::move(hierarchy);
-  mesh_ = std::move(mesh);
-  fitted_.reset();
+  const bool same = before && before->mesh() == mesh;
+  const std::size_t particles = mesh.rest_coordinates.size();
+  const auto fitted = same ? before : std::make_shared<FittedCloth>(std::move(mesh));
+  const std::lock_guard<std::mutex> lock(mutex_);
   ++status_.meshes;
+  if (same) return;
+  // A state that came before the first mesh may be of this one, but a state of another mesh is not,
+  // even if it has as many particles.
+  const haptex::ClothStateConstPtr& state = latest_.state.message;
+  if (before || (state && state->positions.size() != particles)) latest_.state.message.reset();
+  latest_.fitted = fitted;
   ++status_.builds;
-  status_.triangles = mesh_.triangles.size();
+  status_.triangles = fitted->mesh().triangles.size();
 } catch (const std::exception& error) {
   drop("cloth/mesh", error.what());
 }
@@ -71,86 +67,62 @@ void ClothProximity::setMesh(const haptex::ClothMesh& message) try {
 void ClothProximity::setState(const haptex::ClothStateConstPtr& message,
                               Clock::time_point arrival) try {
   requireValid(*message);
-  const std::lock_guard<std::mutex> lock(latest_mutex_);
-  if (particle_count_ > 0 && message->positions.size() != particle_count_) {
-    throw std::invalid_argument("positions has " + std::to_string(message->positions.size()) +
-                                " elements: cloth/mesh has " + std::to_string(particle_count_) +
-                                " particles");
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::size_t count = message->positions.size();
+  if (latest_.fitted && count != latest_.fitted->mesh().rest_coordinates.size()) {
+    throw std::invalid_argument(
+        "positions has " + std::to_string(count) + " elements: cloth/mesh has " +
+        std::to_string(latest_.fitted->mesh().rest_coordinates.size()) + " particles");
   }
-  latest_ = message;
-  arrival_ = arrival;
+  ++latest_.state.number;
+  latest_.state.message = message;
+  latest_.arrival = arrival;
   ++status_.states;
 } catch (const std::exception& error) {
   drop("cloth/state", error.what());
 }
 
 void ClothProximity::drop(const std::string& topic, const std::string& why) {
-  const std::lock_guard<std::mutex> lock(latest_mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   ++status_.dropped;
   status_.dropped_why = topic + ": " + why;
 }
 
-/// Why queries are refused now; empty if they are not. Needs latest_mutex_.
+/// Why queries are refused now; empty if they are not. Needs the mutex.
 std::string ClothProximity::trouble(Clock::time_point now) const {
   const std::string dropped =
       status_.dropped == 0 ? "" : "; the last message that was dropped: " + status_.dropped_why;
-  if (particle_count_ == 0) {
-    return "there is no cloth yet, no good message on cloth/mesh: is cloth_simulation running?" +
-           dropped;
+  const char* missing = !latest_.fitted          ? "cloth/mesh"
+                        : !latest_.state.message ? "cloth/state"
+                                                 : nullptr;
+  if (missing) {
+    return std::string("there is no cloth yet, no good message on ") + missing +
+           ": is cloth_simulation running?" + dropped;
   }
-  if (!latest_) {
-    return "there is no cloth yet, no good message on cloth/state: is cloth_simulation running?" +
-           dropped;
-  }
-  const double age = inSeconds(now - arrival_);
+  const double age = inSeconds(now - latest_.arrival);
   if (age <= stale_after_) return "";
-  char text[200];
-  std::snprintf(text, sizeof(text),
-                "the cloth is stale, its last state arrived %.3g s ago, allowed are %.3g s: is "
-                "cloth_simulation running? If it is that slow, set ~stale_after",
-                age, stale_after_);
-  return text + dropped;
+  std::ostringstream message;
+  message << std::setprecision(3) << "the cloth is stale, its last state arrived " << age
+          << " s ago, allowed are " << stale_after_
+          << " s: is cloth_simulation running? If it is that slow, set ~stale_after" << dropped;
+  return message.str();
 }
 
-haptex::ClothStateConstPtr ClothProximity::requireLive(Clock::time_point now) const {
-  const std::lock_guard<std::mutex> lock(latest_mutex_);
+ClothProximity::Cloth ClothProximity::requireLive(Clock::time_point now) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
   const std::string what = trouble(now);
   if (!what.empty()) throw std::runtime_error(what);
   return latest_;
 }
 
-/// Fits the hierarchy to a state or a later one, unless it is. @returns a lock under which it stays
-std::shared_lock<std::shared_mutex> ClothProximity::lockFitted(
-    const haptex::ClothStateConstPtr& state) {
-  std::shared_lock<std::shared_mutex> lock(hierarchy_mutex_);
-  if (fitted_ == state) return lock;
-  lock.unlock();
-  refit();
-  lock.lock();
-  if (!fitted_) throw std::runtime_error("the mesh of the cloth has just changed: ask again");
-  return lock;
-}
-
-void ClothProximity::refit() {
-  const std::unique_lock<std::shared_mutex> lock(hierarchy_mutex_);
-  haptex::ClothStateConstPtr state;
-  {
-    const std::lock_guard<std::mutex> latest_lock(latest_mutex_);
-    state = latest_;
+FittedCloth::View ClothProximity::look(const Cloth& cloth) {
+  FittedCloth::View view = cloth.fitted->look(cloth.state);
+  if (!std::isnan(view.refit_seconds)) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++status_.refits;
+    status_.refit_seconds = view.refit_seconds;
   }
-  if (!state || state == fitted_) return;
-  const Clock::time_point begin = Clock::now();
-  positions_.resize(state->positions.size());
-  for (std::size_t i = 0; i < positions_.size(); ++i) {
-    const geometry_msgs::Point& position = state->positions[i];
-    positions_[i] = {position.x, position.y, position.z};
-  }
-  hierarchy_->refit(positions_);
-  fitted_ = state;
-  const double seconds = secondsSince(begin);
-  const std::lock_guard<std::mutex> latest_lock(latest_mutex_);
-  status_.refit_seconds = seconds;
-  ++status_.refits;
+  return view;
 }
 
 const proximity::RigidObstacle& ClothProximity::requireObstacle(const std::string& name) const {
@@ -170,12 +142,12 @@ haptex::QueryProximity::Response ClothProximity::answer(const Request& request,
   const Clock::time_point begin = Clock::now();
   try {
     Response response = compute(request, world_from_frame, now);
-    const std::lock_guard<std::mutex> lock(latest_mutex_);
+    const std::lock_guard<std::mutex> lock(mutex_);
     ++status_.answered;
     status_.answer_seconds = secondsSince(begin);
     return response;
   } catch (const std::exception& error) {
-    const std::lock_guard<std::mutex> lock(latest_mutex_);
+    const std::lock_guard<std::mutex> lock(mutex_);
     ++status_.refused;
     status_.refused_why = error.what();
     return refusal(error.what());
@@ -194,17 +166,18 @@ haptex::QueryProximity::Response ClothProximity::compute(const Request& request,
   } else if (!request.header.frame_id.empty()) {
     world_from_frame();  // not used, but an unknown one is refused like everywhere
   }
+  const Cloth cloth = requireLive(now);
   Response response;
   std::vector<proximity::NearElement> found;
   {
-    const auto lock = lockFitted(requireLive(now));
+    const FittedCloth::View view = look(cloth);
     if (obstacle) {
-      query(*hierarchy_, *obstacle, rangeOf(request), found);
+      query(view.hierarchy, *obstacle, rangeOf(request), found);
     } else {
-      hierarchy_->query(*cursor, rangeOf(request), found);
+      view.hierarchy.query(*cursor, rangeOf(request), found);
     }
-    response.header.stamp = fitted_->header.stamp;
-    response.step = fitted_->step;
+    response.header.stamp = view.state.header.stamp;
+    response.step = view.state.step;
   }
   response.header.frame_id = kFixedFrame;
   fillResponse(found, request.distance, response);
@@ -212,27 +185,31 @@ haptex::QueryProximity::Response ClothProximity::compute(const Request& request,
 }
 
 std::optional<ProximityScene> ClothProximity::scene(const std::vector<int>& triangles, int level) {
-  refit();
-  const std::shared_lock<std::shared_mutex> lock(hierarchy_mutex_);
-  if (!fitted_) return std::nullopt;
+  Cloth cloth;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    cloth = latest_;
+  }
+  if (!cloth.fitted || !cloth.state.message) return std::nullopt;
+  const FittedCloth::View view = look(cloth);
   ProximityScene scene;
-  scene.stamp = fitted_->header.stamp;
-  const int count = static_cast<int>(hierarchy_->triangles().size());
+  scene.stamp = view.state.header.stamp;
+  const int count = static_cast<int>(view.hierarchy.triangles().size());
   for (const int index : triangles) {
-    if (index < count) scene.triangles.push_back(hierarchy_->triangle(index));
+    if (index < count) scene.triangles.push_back(view.hierarchy.triangle(index));
   }
   if (level >= 0) {
-    const int shown = std::min(level, hierarchy_->levels() - 1);
-    for (int i = 0; i < 1 << shown; ++i) scene.volumes.push_back(hierarchy_->volume(shown, i));
+    const int shown = std::min(level, view.hierarchy.levels() - 1);
+    for (int i = 0; i < 1 << shown; ++i) scene.volumes.push_back(view.hierarchy.volume(shown, i));
   }
   return scene;
 }
 
 ProximityStatus ClothProximity::status(Clock::time_point now) const {
-  const std::lock_guard<std::mutex> lock(latest_mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   ProximityStatus status = status_;
   status.trouble = trouble(now);
-  status.cloth_age = latest_ ? inSeconds(now - arrival_) : kNaN;
+  status.cloth_age = latest_.state.message ? inSeconds(now - latest_.arrival) : kNaN;
   return status;
 }
 

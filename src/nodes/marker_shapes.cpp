@@ -13,6 +13,13 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr int kMeridians = 24;
 constexpr int kParallels = 16;  // of both caps together, about
 
+// Towards the light, from the viewer's side, above and left, so that a hanging cloth is neither
+// the brightest nor the darkest orientation and waves show both ways.
+const Eigen::Vector3d kLight = Eigen::Vector3d(0.62, -0.52, 0.58).normalized();
+constexpr double kAmbient = 0.35;
+
+Eigen::Vector3d vector(const geometry_msgs::Point& point) { return {point.x, point.y, point.z}; }
+
 /// A circle around the axis of a surface of revolution.
 struct Ring {
   Eigen::Vector3d centre;
@@ -78,6 +85,26 @@ std_msgs::ColorRGBA colourMessage(const Eigen::Vector3f& colour, float opacity) 
   return message;
 }
 
+float shade(const Eigen::Vector3d& normal) {
+  return static_cast<float>(kAmbient + (1.0 - kAmbient) * std::abs(normal.dot(kLight)));
+}
+
+void shadeTriangles(visualization_msgs::Marker& marker, const Eigen::Vector3f& colour,
+                    float opacity) {
+  const geometry_msgs::Quaternion& pose = marker.pose.orientation;
+  const Eigen::Quaterniond rotation(pose.w, pose.x, pose.y, pose.z);
+  marker.colors.resize(marker.points.size());
+  for (std::size_t i = 0; i + 2 < marker.points.size(); i += 3) {
+    const Eigen::Vector3d first = vector(marker.points[i]);
+    const Eigen::Vector3d normal =
+        (vector(marker.points[i + 1]) - first).cross(vector(marker.points[i + 2]) - first);
+    // Normalising leaves the zero of a triangle without area.
+    const Eigen::Vector3f shaded = shade(rotation * normal.normalized()) * colour;
+    std::fill_n(marker.colors.begin() + static_cast<std::ptrdiff_t>(i), 3,
+                colourMessage(shaded, opacity));
+  }
+}
+
 void deleteIfEmpty(visualization_msgs::Marker& marker) {
   using visualization_msgs::Marker;
   marker.action = marker.points.empty() ? Marker::DELETE : Marker::ADD;
@@ -103,6 +130,24 @@ void appendSurface(const proximity::TaperedCapsule& capsule,
       const auto far_first = at(ring + 1, meridian), far_second = at(ring + 1, meridian + 1);
       corners.insert(corners.end(), {near_first, far_first, far_second});
       corners.insert(corners.end(), {near_first, far_second, near_second});
+    }
+  }
+}
+
+void appendBox(const Eigen::Vector3d& sides, std::vector<geometry_msgs::Point>& corners) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {0.5, -0.5}) {
+      const Eigen::Vector3d middle = side * sides[axis] * Eigen::Vector3d::Unit(axis);
+      const int first = (axis + 1) % 3, second = (axis + 2) % 3;
+      const Eigen::Vector3d right = 0.5 * sides[first] * Eigen::Vector3d::Unit(first);
+      const Eigen::Vector3d up =
+          (side > 0.0 ? 0.5 : -0.5) * sides[second] * Eigen::Vector3d::Unit(second);
+      for (const Eigen::Vector3d& corner :
+           {Eigen::Vector3d(-right - up), Eigen::Vector3d(right - up), Eigen::Vector3d(right + up),
+            Eigen::Vector3d(-right - up), Eigen::Vector3d(right + up),
+            Eigen::Vector3d(-right + up)}) {
+        corners.push_back(pointMessage(middle + corner));
+      }
     }
   }
 }

@@ -20,34 +20,30 @@ constexpr double kEdgeWidth = 5e-4;      // m
 constexpr double kPointRadius = 1.5e-3;  // m, of the ball that stands for a point
 constexpr double kResolution = 1e-5;     // m, of the polytopes
 constexpr float kFaceOpacity = 0.15F;
+constexpr float kCursorOpacity = 0.5F;
 
 const Eigen::Vector3f kRed(0.9F, 0.05F, 0.05F);
 const Eigen::Vector3f kDarkRed(0.45F, 0.0F, 0.0F);
-const Eigen::Vector3f kCursorColour(0.1F, 0.35F, 0.9F);
-const Eigen::Vector3f kObstacleColour(0.55F, 0.57F, 0.6F);
+const Eigen::Vector3f kCursorColour(0.35F, 0.6F, 1.0F);
+const Eigen::Vector3f kObstacleColour(0.75F, 0.76F, 0.78F);
 
 /// The shape of an obstacle in its own frame.
-struct FillShape {
-  Marker& marker;
+struct AppendShape {
+  std::vector<geometry_msgs::Point>& corners;
 
   void operator()(const cloth::ObstacleSphere& sphere) const {
     const proximity::Sphere centred{Eigen::Vector3d::Zero(), sphere.radius};
-    appendSurface({centred, centred}, marker.points);
+    appendSurface({centred, centred}, corners);
   }
-  void operator()(const cloth::ObstacleBox& box) const {
-    marker.type = Marker::CUBE;
-    marker.scale.x = box.sides.x();
-    marker.scale.y = box.sides.y();
-    marker.scale.z = box.sides.z();
-  }
+  void operator()(const cloth::ObstacleBox& box) const { appendBox(box.sides, corners); }
   void operator()(const cloth::ObstacleCapsule& capsule) const {
     const Eigen::Vector3d end(0.0, 0.0, 0.5 * capsule.length);
-    appendSurface({{-end, capsule.radius}, {end, capsule.radius}}, marker.points);
+    appendSurface({{-end, capsule.radius}, {end, capsule.radius}}, corners);
   }
   void operator()(const cloth::ObstacleMesh& mesh) const {
     for (const auto& triangle : mesh.triangles) {
       for (const int vertex : triangle) {
-        marker.points.push_back(pointMessage(mesh.vertices[vertex]));
+        corners.push_back(pointMessage(mesh.vertices[vertex]));
       }
     }
   }
@@ -55,14 +51,14 @@ struct FillShape {
 
 Marker obstacleMarker(const cloth::Obstacle& obstacle, int id) {
   Marker marker = makeMarker("obstacles", id, Marker::TRIANGLE_LIST);
-  marker.color = colourMessage(kObstacleColour);
   marker.pose.position = pointMessage(obstacle.pose.translation());
   const Eigen::Quaterniond rotation = Eigen::Quaterniond(obstacle.pose.rotation()).normalized();
   marker.pose.orientation.x = rotation.x();
   marker.pose.orientation.y = rotation.y();
   marker.pose.orientation.z = rotation.z();
   marker.pose.orientation.w = rotation.w();
-  std::visit(FillShape{marker}, obstacle.shape);
+  std::visit(AppendShape{marker.points}, obstacle.shape);
+  shadeTriangles(marker, kObstacleColour, 1.0F);
   return marker;
 }
 
@@ -88,7 +84,6 @@ ProximityMarkers::ProximityMarkers(const std::vector<cloth::Obstacle>& obstacles
   markers.push_back(makeMarker("volumes", 1, Marker::LINE_LIST));
   markers[kOutlines].scale.x = kOutlineWidth;
   markers[kOutlines].color = colourMessage(kDarkRed);
-  markers[kCursor].color = colourMessage(kCursorColour, 0.4F);
   markers[kEdges].scale.x = kEdgeWidth;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     markers.push_back(obstacleMarker(obstacles[i], static_cast<int>(i)));
@@ -123,7 +118,7 @@ void ProximityMarkers::updateElements(const std::vector<proximity::Triangle>& tr
       }
     }
   }
-  // Colours of their own keep rviz from lighting them: the red is the same however they lie.
+  // Not shaded: the red is the same however they lie.
   elements.colors.assign(elements.points.size(), colourMessage(kRed));
 }
 
@@ -136,6 +131,7 @@ void ProximityMarkers::updateCursor(const std::vector<proximity::TaperedCapsule>
     }
     appendSurface(part, marker.points);
   }
+  shadeTriangles(marker, kCursorColour, kCursorOpacity);
 }
 
 void ProximityMarkers::updateVolumes(const std::vector<proximity::Kdop>& volumes) {

@@ -26,10 +26,12 @@ void requireVolumeLevel(const ros::NodeHandle& private_node) {
   const int most = haptex::ProximityConfig::__getMax__().volume_level;
   const std::string allowed =
       "allowed are whole numbers from " + std::to_string(least) + " to " + std::to_string(most);
-  int level = 0;
-  if (!private_node.getParam("volume_level", level)) {
+  XmlRpc::XmlRpcValue value;  // getParam() for an int would round
+  if (!private_node.getParam("volume_level", value) ||
+      value.getType() != XmlRpc::XmlRpcValue::TypeInt) {
     throw std::invalid_argument(name + " is not a whole number: " + allowed);
   }
+  const int level = static_cast<int>(value);
   if (level < least || level > most) {
     throw std::invalid_argument(name + " = " + std::to_string(level) + ": " + allowed);
   }

@@ -55,7 +55,7 @@ inline std::vector<Eigen::Vector3d> wavy(std::vector<Eigen::Vector3d> positions)
 /// The stamp tells the step.
 inline haptex::ClothStatePtr testState(std::uint32_t step,
                                        const std::vector<Eigen::Vector3d>& positions) {
-  const auto message = boost::make_shared<haptex::ClothState>();
+  const haptex::ClothStatePtr message(new haptex::ClothState);
   message->header.frame_id = kFixedFrame;
   message->header.stamp = ros::Time(1000 + step);
   message->step = step;

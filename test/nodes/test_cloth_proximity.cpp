@@ -25,7 +25,7 @@ const Clock::time_point kNow = kArrival + std::chrono::milliseconds(10);
 ClothProximity::Obstacles ballAndTable() {
   ClothProximity::Obstacles obstacles;
   auto ball = proximity::RigidObstacle::sphere(0.02);
-  ball.setPose(Eigen::Isometry3d(Eigen::Translation3d(0.03, 0.01, -0.1)));
+  ball.setPose(Eigen::Isometry3d(Eigen::Translation3d(0.06, 0.01, -0.1)));
   obstacles.emplace("ball", ball);
   obstacles.emplace("table", proximity::RigidObstacle::box({0.1, 0.1, 0.1}));
   return obstacles;
@@ -154,14 +154,14 @@ TEST_F(ClothProximityTest, NothingInRangeIsAnAnswerWithInfiniteDistance) {
 
 TEST_F(ClothProximityTest, TellsWhatIsNearAnObstacle) {
   setCloth();
-  Request request = testRequest(Request::OBSTACLE, {}, {}, 0.01);
+  Request request = testRequest(Request::OBSTACLE, {}, {}, 0.05);
   request.obstacle = "ball";
   request.header.frame_id = "";
   const Response response = ask(request);
   ASSERT_TRUE(response.success) << response.message;
   const auto solid = proximity::nearElementsByBruteForce(
       mesh_.triangles, positions_,
-      proximity::Cursor::spheres({{Eigen::Vector3d(0.03, 0.01, -0.1), 0.02}}), {0.01});
+      proximity::Cursor::spheres({{Eigen::Vector3d(0.06, 0.01, -0.1), 0.02}}), {0.05});
   ASSERT_FALSE(solid.empty());
   ASSERT_EQ(response.elements.size(), solid.size());
   for (const proximity::NearElement& element : solid) {

@@ -11,14 +11,14 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
-#include <shared_mutex>
 #include <string>
 #include <vector>
 
-#include "haptex/nodes/proximity_messages.h"
-#include "haptex/proximity/kdop_hierarchy.h"
+#include "haptex/nodes/fitted_cloth.h"
+#include "haptex/proximity/kdop.h"
 #include "haptex/proximity/rigid_obstacle.h"
 
 namespace haptex::nodes {
@@ -87,11 +87,17 @@ class ClothProximity {
   ProximityStatus status(Clock::time_point now) const;
 
  private:
+  /// What an answer is computed on. A state always comes with the mesh that it belongs to.
+  struct Cloth {
+    std::shared_ptr<FittedCloth> fitted;  ///< null without a mesh
+    ArrivedState state;                   ///< without a message if there is none yet
+    Clock::time_point arrival;            ///< of the state
+  };
+
   void drop(const std::string& topic, const std::string& why);
-  haptex::ClothStateConstPtr requireLive(Clock::time_point now) const;
   std::string trouble(Clock::time_point now) const;
-  std::shared_lock<std::shared_mutex> lockFitted(const haptex::ClothStateConstPtr& state);
-  void refit();
+  Cloth requireLive(Clock::time_point now) const;
+  FittedCloth::View look(const Cloth& cloth);
   const proximity::RigidObstacle& requireObstacle(const std::string& name) const;
   haptex::QueryProximity::Response compute(const haptex::QueryProximity::Request& request,
                                            const FrameLookup& world_from_frame,
@@ -100,19 +106,9 @@ class ClothProximity {
   const double stale_after_;  // s
   const Obstacles obstacles_;
 
-  // Locked for moments, after hierarchy_mutex_ where both are needed.
-  mutable std::mutex latest_mutex_;
-  haptex::ClothStateConstPtr latest_;  // fits the mesh, once there is one
-  Clock::time_point arrival_;          // of latest_
-  std::size_t particle_count_ = 0;     // of the mesh; 0 without one
+  mutable std::mutex mutex_;  // guards all below; never held while something is computed
+  Cloth latest_;
   ProximityStatus status_;
-
-  // Shared by queries, exclusive for a refit or a new hierarchy.
-  mutable std::shared_mutex hierarchy_mutex_;
-  RestMesh mesh_;
-  std::optional<proximity::KdopHierarchy> hierarchy_;
-  haptex::ClothStateConstPtr fitted_;  // the state that the hierarchy is fitted to
-  std::vector<Eigen::Vector3d> positions_;
 };
 
 }  // namespace haptex::nodes
