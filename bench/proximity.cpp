@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <random>
 #include <set>
 #include <string>
@@ -32,20 +31,8 @@ constexpr double kSide = 0.2;               // m
 constexpr double kFingertipRadius = 0.012;  // m
 constexpr int kPlaces = 500;
 constexpr double kRefitMargin = 1e-3;  // m, by which leaves might lag behind
-constexpr double kMinTime = 0.15;      // s per benchmark
-
-/// Times (ms) by name, for the ratios.
-class KeepingReporter : public bench::TabReporter {
- public:
-  void ReportRuns(const std::vector<Run>& runs) override {
-    TabReporter::ReportRuns(runs);
-    for (const Run& run : runs) {
-      times[run.run_name.function_name] =
-          1e3 * run.real_accumulated_time / static_cast<double>(run.iterations);
-    }
-  }
-  std::map<std::string, double> times;
-};
+constexpr double kMinTime = 0.04;      // s per repetition
+constexpr int kRepetitions = 5;
 
 /// A sheet, where it is, and where it is asked about.
 struct Case {
@@ -87,6 +74,7 @@ HierarchySettings settingsOf(KdopKind kind, int triangles_per_leaf) {
 void add(const std::string& name, std::function<void(benchmark::State&)> run) {
   benchmark::RegisterBenchmark(name.c_str(), std::move(run))
       ->MinTime(kMinTime)
+      ->Repetitions(kRepetitions)
       ->Unit(benchmark::kMillisecond);
 }
 
@@ -340,7 +328,7 @@ int main(int argc, char** argv) {
   addVariants(middle);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  KeepingReporter reporter;
+  bench::TabReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   if (reporter.failed()) return 1;
   for (const Case& c : cases) printEquality<fcl::KDOP<double, 24>>(c, "_fcl_kdop24");
@@ -348,7 +336,7 @@ int main(int argc, char** argv) {
 
   const auto ratio = [&](const std::string& name, const std::string& a, const std::string& b) {
     bench::printLine("proximity/" + name,
-                     reporter.times["proximity/" + a] / reporter.times["proximity/" + b], "ratio");
+                     reporter.time("proximity/" + a) / reporter.time("proximity/" + b), "ratio");
   };
   for (const Case& c : cases) {
     ratio("refit_ratio/" + c.name, "refit_fcl_kdop24/" + c.name, "refit/" + c.name);
@@ -364,8 +352,8 @@ int main(int argc, char** argv) {
   const double triangles = std::log(static_cast<double>(cases[2].mesh.triangles.size()) /
                                     static_cast<double>(cases[0].mesh.triangles.size()));
   const auto growth = [&](const std::string& name) {
-    return reporter.times["proximity/" + name + "/" + large] /
-           reporter.times["proximity/" + name + "/" + small];
+    return reporter.time("proximity/" + name + "/" + large) /
+           reporter.time("proximity/" + name + "/" + small);
   };
   const std::string from_to = "/" + small + "_" + large;
   bench::printLine("proximity/refit_exponent" + from_to, std::log(growth("refit")) / triangles,
