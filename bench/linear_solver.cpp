@@ -63,18 +63,6 @@ void iterations(benchmark::State& run, int cells) {
   }
 }
 
-/// Keeps the time per iteration (s) of the two benchmarks of each size besides printing them.
-class RatioReporter : public bench::TabReporter {
- public:
-  void ReportRuns(const std::vector<Run>& runs) override {
-    TabReporter::ReportRuns(runs);
-    for (const Run& run : runs) {
-      times.push_back(run.real_accumulated_time / static_cast<double>(run.iterations));
-    }
-  }
-  std::vector<double> times;
-};
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -90,19 +78,22 @@ int main(int argc, char** argv) {
   }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  RatioReporter reporter;
+  bench::TabReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
-  if (reporter.failed() || reporter.times.size() != 2 * std::size(cells)) return 1;
-  for (std::size_t i = 0; i < std::size(cells); ++i) {
-    const System system = makeSystem(cells[i]);
+  if (reporter.failed()) return 1;
+  for (const int count : cells) {
+    const System system = makeSystem(count);
     const cloth::BlockCholesky cholesky(system.matrix);
-    const double per_operation = reporter.times[2 * i] / cholesky.cost();
+    const std::string triangles = std::to_string(2 * count * count);
+    const double factorisation_time =
+        reporter.time("linear_solver/factorise_and_solve/" + triangles);
+    const double iteration_time =
+        reporter.time("linear_solver/50_iterations/" + triangles) / kIterations;
+    const double per_operation = factorisation_time / cholesky.cost();
     const double blocks = system.matrix.size() + 2.0 * system.matrix.lowerCount();
-    const double per_block = reporter.times[2 * i + 1] / kIterations / blocks;
-    const std::string triangles = std::to_string(2 * cells[i] * cells[i]);
+    const double per_block = iteration_time / blocks;
     bench::printLine("linear_solver/iterations_per_factorisation/" + triangles,
-                     reporter.times[2 * i] / (reporter.times[2 * i + 1] / kIterations),
-                     "iterations");
+                     factorisation_time / iteration_time, "iterations");
     bench::printLine("linear_solver/operation_over_block/" + triangles, per_operation / per_block,
                      "ratio");
   }

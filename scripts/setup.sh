@@ -63,7 +63,7 @@ haptex_configure() {
   : >"$build/build.log"
   # Debian's ROS belongs to Debian's Python, which need not be the first on PATH.
   haptex_logged "$build/build.log" cmake -S "$haptex_root" -B "$build" \
-    -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=/usr/bin/python3 \
+    -DCMAKE_BUILD_TYPE=Release -DHAPTEX_SANITIZE= -DPYTHON_EXECUTABLE=/usr/bin/python3 \
     -DCATKIN_DEVEL_PREFIX="$build/devel" -DCMAKE_INSTALL_PREFIX="$build/install" "$@"
 }
 

@@ -22,17 +22,26 @@ bool parseAll(const std::string& text, Number& number) {
   return result.ec == std::errc() && result.ptr == end;
 }
 
+enum class RestCoordinates { kRequired, kIgnored };
+
 class ObjReader {
  public:
-  explicit ObjReader(const std::string& path) : path_(path) {}
+  ObjReader(const std::string& path, RestCoordinates rest_coordinates)
+      : path_(path), with_textures_(rest_coordinates == RestCoordinates::kRequired) {}
 
-  ClothMesh read(std::istream& stream) {
+  ClothMesh read() {
+    std::error_code error;
+    std::ifstream stream(path_);
+    if (!stream.is_open() || std::filesystem::is_directory(path_, error)) {
+      throw std::runtime_error(path_ + ": cannot be read, must be a Wavefront OBJ file");
+    }
     std::string line;
     while (std::getline(stream, line)) {
       ++line_number_;
       readLine(line.substr(0, line.find('#')));
     }
-    takeRestCoordinates();
+    if (stream.bad()) throw std::runtime_error(path_ + ": cannot be read to its end");
+    if (with_textures_) takeRestCoordinates();
     return std::move(mesh_);
   }
 
@@ -50,7 +59,7 @@ class ObjReader {
     if (statement == "v") {
       mesh_.initial_positions.push_back(readNumbers<3>("v", arguments));
       texture_of_particle_.emplace_back();
-    } else if (statement == "vt") {
+    } else if (statement == "vt" && with_textures_) {
       textures_.push_back(readNumbers<2>("vt", arguments));
     } else if (statement == "f") {
       readFace(arguments);
@@ -83,16 +92,23 @@ class ObjReader {
     mesh_.triangles.push_back(triangle);
   }
 
-  // A corner is position/texture or position/texture/normal.
+  // A corner is position/texture or position/texture/normal, for surfaces also position or
+  // position//normal.
   int readCorner(const std::string& corner) {
     const std::size_t first = corner.find('/');
+    const int particle =
+        readIndex(corner.substr(0, first), "position", mesh_.initial_positions.size());
+    if (with_textures_) readTexture(corner, first, particle);
+    return particle;
+  }
+
+  // What follows the first separator of a corner.
+  void readTexture(const std::string& corner, std::size_t first, int particle) {
     const std::size_t second =
         first == std::string::npos ? std::string::npos : corner.find('/', first + 1);
     if (first == std::string::npos || first + 1 == corner.size() || second == first + 1) {
       refuse("corner '" + corner + "' has no texture coordinate, which is its rest coordinate");
     }
-    const int particle =
-        readIndex(corner.substr(0, first), "position", mesh_.initial_positions.size());
     const int texture = readIndex(corner.substr(first + 1, second - first - 1),
                                   "texture coordinate", textures_.size());
     std::optional<int>& known = texture_of_particle_[particle];
@@ -102,7 +118,6 @@ class ObjReader {
              " (a seam), must have one");
     }
     known = texture;
-    return particle;
   }
 
   // Counts from 1, or backwards from the last one with -1.
@@ -124,6 +139,7 @@ class ObjReader {
   }
 
   std::string path_;
+  bool with_textures_;
   int line_number_ = 0;
   ClothMesh mesh_;
   std::vector<Eigen::Vector2d> textures_;
@@ -133,19 +149,19 @@ class ObjReader {
 }  // namespace
 
 ClothMesh loadObj(const std::string& path) {
-  std::error_code error;
-  std::ifstream stream(path);
-  if (!stream.is_open() || std::filesystem::is_directory(path, error)) {
-    throw std::runtime_error(path + ": cannot be read, must be a Wavefront OBJ file");
-  }
-  ClothMesh mesh = ObjReader(path).read(stream);
-  if (stream.bad()) throw std::runtime_error(path + ": cannot be read to its end");
+  ClothMesh mesh = ObjReader(path, RestCoordinates::kRequired).read();
   try {
     requireSound(mesh);
   } catch (const std::invalid_argument& defects) {
     throw std::invalid_argument(path + ": " + defects.what() + " (counted from 0)");
   }
   return mesh;
+}
+
+ObstacleMesh loadObjSurface(const std::string& path) {
+  ClothMesh mesh = ObjReader(path, RestCoordinates::kIgnored).read();
+  if (mesh.triangles.empty()) throw std::invalid_argument(path + ": the mesh has no triangle");
+  return {std::move(mesh.initial_positions), std::move(mesh.triangles)};
 }
 
 }  // namespace haptex::cloth

@@ -1,75 +1,29 @@
 #include "haptex/cloth/scene.h"
 
-#include <filesystem>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "haptex/cloth/obj_file.h"
+#include "haptex/cloth/obstacle_file.h"
+#include "haptex/cloth/scene_values.h"
 #include "haptex/material/yaml_reader.h"
 
 namespace haptex::cloth {
 namespace {
 
 using material::YamlValue;
-namespace fs = std::filesystem;
 
-constexpr double kLargestSize = 100.0;  // m
-constexpr long long kMostTriangles = 200000;
 constexpr double kShortestTimeStep = 1e-6;  // s
 constexpr double kLongestTimeStep = 10.0;   // s
 constexpr int kMostNewtonIterations = 1000;
 const Eigen::Vector3d kStandardGravity(0.0, 0.0, -9.80665);  // m/s^2
 
-// Names of the files of one kind, for a message that says what there is.
-std::string namesIn(const fs::path& directory, const std::string& extension) {
-  std::set<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(directory, error)) {
-    if (entry.path().extension() == extension) names.insert(entry.path().stem().string());
-  }
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return names.empty() ? "none" : list;
-}
-
-// A name without a separator lies in the directory `kind` beside the scene's, a path is relative to
-// the scene's directory.
-std::string resolve(const YamlValue& value, const std::string& kind, const std::string& extension) {
-  const std::string name = value.text();
-  const fs::path scene_directory = fs::path(value.file()).parent_path();
-  const fs::path kind_directory = (scene_directory / ".." / kind).lexically_normal();
-  const bool is_path = name.find('/') != std::string::npos;
-  fs::path path = (is_path ? scene_directory : kind_directory) / name;
-  if (path.extension() != extension) path += extension;
-  path = path.lexically_normal();
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) {
-    value.refuse("must be a name in " + kind_directory.string() + " (" +
-                 namesIn(kind_directory, extension) + ") or a path with a '/'; there is no file " +
-                 path.string());
-  }
-  return path.string();
-}
-
-double readSize(const YamlValue& value) {
-  const double size = value.number();
-  if (size <= 0.0 || size > kLargestSize) value.refuse("must be > 0 and <= 100 m");
-  return size;
-}
-
 int readCells(const YamlValue& value) {
   const int cells = value.integer();
   if (cells < 1) value.refuse("must be an integer >= 1");
   return cells;
-}
-
-void requireTriangleCount(const YamlValue& value, long long triangles) {
-  if (triangles > kMostTriangles) {
-    value.refuseBecause(std::to_string(triangles) + " triangles, at most " +
-                        std::to_string(kMostTriangles) + " are allowed");
-  }
 }
 
 ClothMesh readSheet(const YamlValue& value) {
@@ -97,7 +51,7 @@ ClothMesh readMesh(const YamlValue& scene) {
     scene.refuseBecause("must have exactly one of sheet, mesh");
   }
   if (scene.has("sheet")) return readSheet(scene.at("sheet"));
-  ClothMesh mesh = loadObj(resolve(scene.at("mesh"), "meshes", ".obj"));
+  ClothMesh mesh = loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"));
   requireTriangleCount(scene.at("mesh"), static_cast<long long>(mesh.triangles.size()));
   return mesh;
 }
@@ -195,14 +149,15 @@ StepSettings readSolver(const YamlValue& value) {
 Scene loadScene(const std::string& path) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"fabric", "attach", "model", "time_step"},
-                   {"sheet", "mesh", "gravity", "solver"});
+                   {"sheet", "mesh", "gravity", "solver", "obstacles"});
   Scene scene;
-  scene.fabric_path = resolve(file.at("fabric"), "fabrics", ".yaml");
+  scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.mesh = readMesh(file);
   scene.attached_particles = readAttachedParticles(file.at("attach"), scene.mesh);
   scene.effects = readEffects(file);
   scene.time_step = readTimeStep(file.at("time_step"));
   if (file.has("solver")) scene.step = readSolver(file.at("solver"));
+  if (file.has("obstacles")) scene.obstacles = readObstacles(file.at("obstacles"));
   return scene;
 }
 

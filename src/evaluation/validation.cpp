@@ -7,8 +7,8 @@
 namespace haptex::evaluation {
 
 const std::vector<Validation>& validations() {
-  static const std::vector<Validation> all = {{"material", validateMaterial},
-                                              {"cloth", validateCloth}};
+  static const std::vector<Validation> all = {
+      {"material", validateMaterial}, {"cloth", validateCloth}, {"proximity", validateProximity}};
   return all;
 }
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string>
 
-#include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/colour_map.h"
+#include "haptex/nodes/marker_shapes.h"
 
 namespace haptex::nodes {
 namespace {
@@ -15,41 +15,6 @@ namespace {
 enum MarkerIndex { kClothIndex, kEdgesIndex, kParticlesIndex, kScaleIndex, kFirstLabelIndex };
 
 constexpr int kScaleCells = 64;
-
-// Towards the light, from the viewer's side, above and left, so that a hanging cloth is neither
-// the brightest nor the darkest orientation and waves show both ways.
-const Eigen::Vector3d kLight = Eigen::Vector3d(0.62, -0.52, 0.58).normalized();
-constexpr double kAmbient = 0.35;
-
-visualization_msgs::Marker makeMarker(const std::string& name, int id, int type) {
-  visualization_msgs::Marker marker;
-  marker.header.frame_id = kFixedFrame;
-  marker.ns = name;
-  marker.id = id;
-  marker.type = type;
-  marker.action = visualization_msgs::Marker::ADD;
-  marker.pose.orientation.w = 1.0;
-  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
-  marker.color.a = 1.0F;
-  return marker;
-}
-
-geometry_msgs::Point pointMessage(const Eigen::Vector3d& point) {
-  geometry_msgs::Point message;
-  message.x = point.x();
-  message.y = point.y();
-  message.z = point.z();
-  return message;
-}
-
-std_msgs::ColorRGBA colourMessage(const Eigen::Vector3f& colour) {
-  std_msgs::ColorRGBA message;
-  message.r = colour[0];
-  message.g = colour[1];
-  message.b = colour[2];
-  message.a = 1.0F;
-  return message;
-}
 
 std::vector<std::array<int, 2>> uniqueEdges(const std::vector<std::array<int, 3>>& triangles) {
   std::vector<std::array<int, 2>> edges;
@@ -182,9 +147,7 @@ void ClothMarkers::computeNormals(const std::vector<Eigen::Vector3d>& positions)
 void ClothMarkers::updateCloth(const SimulatedCloth& simulation) {
   const std::vector<Eigen::Vector3d>& positions = simulation.state().positions;
   for (std::size_t i = 0; i < colours_.size(); ++i) {
-    // Lambert's law for both sides of the cloth.
-    const double shade = kAmbient + (1.0 - kAmbient) * std::abs(normals_[i].dot(kLight));
-    colours_[i] *= static_cast<float>(shade);
+    colours_[i] *= shade(normals_[i]);
   }
   visualization_msgs::Marker& marker = markers_.markers[kClothIndex];
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
@@ -214,10 +177,8 @@ void ClothMarkers::updateAttachments(const SimulatedCloth& simulation) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (attachments[i] && !joined_[i]) particles.points.push_back(pointMessage(positions[i]));
   }
-  // rviz warns of empty lists.
-  for (Marker* marker : {&bars, &particles}) {
-    marker->action = marker->points.empty() ? Marker::DELETE : Marker::ADD;
-  }
+  deleteIfEmpty(bars);
+  deleteIfEmpty(particles);
 }
 
 }  // namespace haptex::nodes

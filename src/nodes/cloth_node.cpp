@@ -8,13 +8,14 @@
 
 #include "haptex/material/fabric_file.h"
 #include "haptex/nodes/cloth_messages.h"
-#include "haptex/nodes/config_files.h"
+#include "haptex/nodes/node_parameters.h"
 
 namespace haptex::nodes {
 namespace {
 
 constexpr double kDefaultMarkerRate = 25.0;
 constexpr double kDefaultStrainScale = 0.01;
+constexpr double kRestPeriod = 0.1;  // s, between two messages of a state that does not change
 
 /// How many steps there are between two messages of a rate, to the nearest whole number.
 std::uint64_t stepsPerMessage(double rate, double time_step) {
@@ -22,37 +23,11 @@ std::uint64_t stepsPerMessage(double rate, double time_step) {
   return std::max<std::uint64_t>(1, std::llround(std::min(1.0 / (rate * time_step), 1e9)));
 }
 
-double readPositive(const ros::NodeHandle& node, const std::string& name, double fallback) {
-  if (!node.hasParam(name)) return fallback;
-  double value = 0.0;
-  const std::string full_name = node.resolveName(name);
-  if (!node.getParam(name, value)) {
-    throw std::invalid_argument("parameter " + full_name + " is not a number");
-  }
-  if (!std::isfinite(value) || value <= 0.0) {
-    std::ostringstream message;
-    message << "parameter " << full_name << " = " << value << ": allowed are finite numbers > 0";
-    throw std::invalid_argument(message.str());
-  }
-  return value;
-}
-
 }  // namespace
 
 ClothNodeParameters ClothNodeParameters::read(const ros::NodeHandle& private_node) {
   ClothNodeParameters parameters;
-  const std::string name = private_node.resolveName("scene");
-  std::string scene;
-  if (!private_node.getParam("scene", scene)) {
-    throw std::invalid_argument("parameter " + name +
-                                " is not set to a string: allowed is the path of a scene file or "
-                                "the name of one in config/scenes");
-  }
-  try {
-    parameters.scene_path = findConfigFile("scenes", scene);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("parameter " + name + ": " + error.what());
-  }
+  parameters.scene_path = readScenePath(private_node);
   parameters.state_rate = readPositive(private_node, "state_rate", 0.0);
   parameters.marker_rate = readPositive(private_node, "marker_rate", kDefaultMarkerRate);
   parameters.strain_scale = readPositive(private_node, "strain_scale", kDefaultStrainScale);
@@ -94,11 +69,15 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   });
   diagnostics_timer_ = node_.createTimer(
       ros::Duration(1.0), [this](const ros::TimerEvent&) { diagnostics_.force_update(); });
+  // Whoever judges by the age of the messages whether this node lives shall see that it does.
+  rest_timer_ =
+      node_.createSteadyTimer(ros::WallDuration(kRestPeriod),
+                              [this](const ros::SteadyTimerEvent&) { republishIfResting(); });
 }
 
 void ClothNode::advertiseTopics() {
   const ros::SubscriberStatusCallback republish = [this](const ros::SingleSubscriberPublisher&) {
-    republishIfPaused();
+    republishIfResting();
   };
   mesh_publisher_ = node_.advertise<haptex::ClothMesh>("cloth/mesh", 1, true);
   state_publisher_ = node_.advertise<haptex::ClothState>("cloth/state", 10, republish);
@@ -126,9 +105,11 @@ void ClothNode::publishStep(const SimulatedCloth& simulation, bool rests) {
   }
 }
 
-void ClothNode::republishIfPaused() {
+void ClothNode::republishIfResting() {
+  const LoopStatus loop = loop_.status();
+  if (!loop.paused && !loop.last_step_rejected) return;
   try {
-    loop_.execute([](SimulatedCloth&) {});  // while paused, every command shows the state
+    loop_.execute([](SimulatedCloth&) {});  // then every command shows the state
   } catch (const std::runtime_error&) {
     // The node is being shut down: there is nothing to show any more.
   }

@@ -1,5 +1,6 @@
 #include "haptex/nodes/colour_map.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -28,6 +29,18 @@ double strainFraction(double strain, double full_scale) {
 double largestPrincipalStrain(const Eigen::Vector3d& strain) {
   const double mean = 0.5 * (strain[0] + strain[1]);
   return mean + std::hypot(0.5 * (strain[0] - strain[1]), 0.5 * strain[2]);
+}
+
+Eigen::Vector3f distinctColour(int index) {
+  constexpr double kGoldenSection = 0.6180339887498949;
+  const double hue = std::fmod(index * kGoldenSection, 1.0);
+  Eigen::Vector3f colour;
+  for (int channel = 0; channel < 3; ++channel) {
+    // 1 at the hue of the channel, falling to 0 a third of the circle away.
+    const double distance = std::abs(std::remainder(hue - channel / 3.0, 1.0));
+    colour[channel] = static_cast<float>(std::clamp(2.0 - 6.0 * distance, 0.0, 1.0));
+  }
+  return colour;
 }
 
 }  // namespace haptex::nodes

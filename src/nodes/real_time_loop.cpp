@@ -92,7 +92,8 @@ void RealTimeLoop::run() {
   resume();
   while (running_) {
     const bool carried_out = carryOutRequests(lock);
-    if (carried_out && status_.paused && steps_wanted_ == 0) {
+    const bool rests = status_.paused ? steps_wanted_ == 0 : status_.last_step_rejected;
+    if (carried_out && rests) {
       lock.unlock();
       observer_(simulation_, true);
       lock.lock();

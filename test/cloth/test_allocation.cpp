@@ -1,25 +1,11 @@
 // An executable of its own, because it counts every call of malloc in the process.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstdlib>
 
+#include "../malloc_counter.h"
 #include "fixtures.h"
 #include "haptex/cloth/backward_euler.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-#ifndef __SANITIZE_ADDRESS__  // which brings its own malloc
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-}
-#endif
 
 namespace haptex::cloth {
 namespace {

@@ -222,7 +222,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"UnknownKey", "fabric: silk", "fabric: silk\nwind: 3",
                 "wind: unknown key, allowed here: fabric, attach, model, time_step, sheet, mesh, "
-                "gravity, solver"},
+                "gravity, solver, obstacles"},
         Refusal{"MissingModel", "model: [gravity, viscosity]\n", "",
                 "the key 'model' is missing, required here: fabric, attach, model, time_step"},
         Refusal{"MissingAttach", "attach: [top]\n", "",
@@ -321,8 +321,9 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
     EXPECT_GT(material::loadFabric(scene.fabric_path).areal_density, 0.0) << names.back();
   }
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"acrylic_knit_sample", "cotton_knit_sample",
-                                             "linear_sheet", "wool_sample"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"acrylic_knit_sample", "cotton_knit_sample", "linear_sheet",
+                                      "wool_among_obstacles", "wool_sample"}));
 }
 
 TEST(ShippedScenes, WoolSampleIsTheTwoHundredMillimetreSquare) {

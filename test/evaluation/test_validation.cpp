@@ -81,7 +81,7 @@ TEST(HangingStrip, RefusesCellsThatAreNotAMultipleOfFive) {
 }
 
 TEST(Validation, EveryQuantityOfEveryRoomPasses) {
-  ASSERT_EQ(validations().size(), 2u);
+  ASSERT_EQ(validations().size(), 3u);
   for (const Validation& validation : validations()) {
     int quantities = 0;
     validation.run(HAPTEX_CONFIG_DIRECTORY, [&](const Quantity& quantity) {

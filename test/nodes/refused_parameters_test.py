@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""cloth_simulation ends with an error that names what is wrong with its parameters or files."""
+"""A node ends with an error that names what is wrong with its parameters or files."""
 import subprocess
 import tempfile
 import unittest
@@ -7,17 +7,17 @@ import unittest
 import roslib.packages
 import rostest
 
-NODE = roslib.packages.find_node('haptex', 'cloth_simulation')[0]
 
 
 class RefusedParameters(unittest.TestCase):
     runs = 0
 
-    def refused(self, *parameters, says):
+    def refused(self, *parameters, says, node='cloth_simulation'):
         # A name of its own for each run: parameters of earlier runs stay on the server.
         RefusedParameters.runs += 1
         name = f'refused_{RefusedParameters.runs}'
-        run = subprocess.run([NODE, f'__name:={name}', *parameters], capture_output=True,
+        program = roslib.packages.find_node('haptex', node)[0]
+        run = subprocess.run([program, f'__name:={name}', *parameters], capture_output=True,
                              text=True, timeout=30)
         self.assertEqual(run.returncode, 1, run.stderr)
         for text in says:
@@ -46,6 +46,23 @@ class RefusedParameters(unittest.TestCase):
             for value in ('0', '-1', 'many'):
                 self.refused('_scene:=wool_sample', f'_{name}:={value}',
                              says=[f'~{name}'])
+
+    def test_proximity_scenes(self):
+        self.refused('_scene:=3', node='proximity', says=['~scene', 'is not set to a string'])
+        self.refused('_scene:=velvet', node='proximity', says=["there is no 'velvet'"])
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
+            scene.write('fabric: [')
+            scene.flush()
+            self.refused(f'_scene:={scene.name}', node='proximity', says=[scene.name])
+
+    def test_proximity_ages_that_are_not_positive_numbers(self):
+        for value in ('0', '-1', 'old'):
+            self.refused(f'_stale_after:={value}', node='proximity', says=['~stale_after'])
+
+    def test_proximity_volume_levels_that_there_are_not(self):
+        for value in ('-2', '17', '1.5', 'all'):
+            self.refused(f'_volume_level:={value}', node='proximity',
+                         says=['~volume_level', 'allowed are whole numbers from -1 to 16'])
 
 
 if __name__ == '__main__':

@@ -1,9 +1,10 @@
-// Cloth meshes from Wavefront OBJ files.
+// Triangle meshes from Wavefront OBJ files.
 #pragma once
 
 #include <string>
 
 #include "haptex/cloth/mesh.h"
+#include "haptex/cloth/obstacle.h"
 
 namespace haptex::cloth {
 
@@ -15,5 +16,12 @@ namespace haptex::cloth {
 /// @throws std::runtime_error if the file cannot be read
 /// @throws std::invalid_argument naming file, line and what is wrong, or the mesh defects by index
 ClothMesh loadObj(const std::string& path);
+
+/// Reads triangles and positions (metres, the obstacle's own frame) only: everything else, texture
+/// coordinates too, is ignored. Faces and indices are as for loadObj(); triangles without area and
+/// positions in no face are allowed.
+/// @throws std::runtime_error if the file cannot be read
+/// @throws std::invalid_argument naming file, line and what is wrong, or that there is no triangle
+ObstacleMesh loadObjSurface(const std::string& path);
 
 }  // namespace haptex::cloth

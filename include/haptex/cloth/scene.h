@@ -8,6 +8,7 @@
 #include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
 #include "haptex/cloth/mesh.h"
+#include "haptex/cloth/obstacle.h"
 
 namespace haptex::cloth {
 
@@ -18,6 +19,7 @@ struct Scene {
   std::vector<int> attached_particles;  ///< at their initial positions
   double time_step = 0.0;               ///< s
   StepSettings step;
+  std::vector<Obstacle> obstacles;  ///< names unique; the cloth does not collide with them
 };
 
 /// Reads a scene file; docs/scene_files.md describes the format. A fabric or mesh name without a

@@ -28,6 +28,9 @@ void validateMaterial(const std::string& config_directory, const Sink& sink);
 /// Virtual tensile and shear tests, hanging strip, patch test, Jacobian.
 void validateCloth(const std::string& config_directory, const Sink& sink);
 
+/// Answers of proximity queries on deformed sheets against brute force and FCL: how many differ.
+void validateProximity(const std::string& config_directory, const Sink& sink);
+
 /// The [strain, stress] samples of a fabric file as they stand in it, as Green-Lagrange strain and
 /// second Piola-Kirchhoff stress. @param curve for example "warp.elastic"
 /// @throws what loadFabric() throws for a bad file, std::invalid_argument if the curve has no

@@ -38,7 +38,8 @@ struct ClothNodeParameters {
 
 /// Advertises, below the namespace of `node`:
 ///   cloth/mesh (ClothMesh, latched), cloth/state (ClothState),
-///   cloth/markers (visualization_msgs/MarkerArray), each filled only for subscribers;
+///   cloth/markers (visualization_msgs/MarkerArray), each filled only for subscribers, and while
+///   the simulation is paused or its steps are rejected ten times a second;
 ///   services cloth/reset (std_srvs/Trigger), cloth/pause (std_srvs/SetBool), cloth/step,
 ///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian (srv/).
 /// A refused request is answered with success = false and changes nothing. The services may be
@@ -59,7 +60,7 @@ class ClothNode {
   void advertiseServices();
   void publishMesh(const cloth::Cloth& cloth);
   void publishStep(const SimulatedCloth& simulation, bool rests);
-  void republishIfPaused();
+  void republishIfResting();
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   bool reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
@@ -78,6 +79,7 @@ class ClothNode {
   ros::Publisher marker_publisher_;
   diagnostic_updater::Updater diagnostics_;
   ros::Timer diagnostics_timer_;
+  ros::SteadyTimer rest_timer_;
 
   // Used by the loop's thread only.
   std::uint64_t steps_per_state_;

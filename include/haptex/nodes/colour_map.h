@@ -1,4 +1,4 @@
-// Colours for strains.
+// Colours for strains and for things to be told apart.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,5 +19,10 @@ double strainFraction(double strain, double full_scale);
 
 /// The largest principal value of the Green-Lagrange strain (weft, warp, shear U.V).
 double largestPrincipalStrain(const Eigen::Vector3d& strain);
+
+/// Red, green and blue from 0 to 1 of things to be told apart: full colours whose hues are a golden
+/// section of the circle apart, so that however many there are, neighbours differ.
+/// @param index >= 0
+Eigen::Vector3f distinctColour(int index);
 
 }  // namespace haptex::nodes

@@ -48,8 +48,9 @@ class RealTimeLoop {
  public:
   static constexpr double kLargestBacklog = 0.1;  ///< s
 
-  /// Runs on the loop's thread after an accepted step, and after commands while paused. `rests` is
-  /// true if no step follows at once: the state is the last one for a while.
+  /// Runs on the loop's thread after an accepted step, and after commands while paused or while
+  /// steps are rejected. `rests` is true if no step follows at once: the state is the last one for
+  /// a while.
   using Observer = std::function<void(const SimulatedCloth&, bool rests)>;
   using Command = std::function<void(SimulatedCloth&)>;
 

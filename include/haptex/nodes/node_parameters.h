@@ -1,0 +1,20 @@
+// Reading the private parameters of a node.
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+namespace haptex::nodes {
+
+/// @returns `fallback` if the parameter is not set
+/// @throws std::invalid_argument naming the parameter, its value and what is allowed unless it is
+///   finite and > 0
+double readPositive(const ros::NodeHandle& private_node, const std::string& name, double fallback);
+
+/// The path of a scene file from a parameter that is a path or a name in config/scenes.
+/// @throws std::invalid_argument naming the parameter if it is not set to a string or there is no
+///   such file
+std::string readScenePath(const ros::NodeHandle& private_node);
+
+}  // namespace haptex::nodes

@@ -1,0 +1,59 @@
+// Conversions between the proximity room and the messages of msg/ and srv/. Messages come from
+// outside: nothing in them is believed.
+#pragma once
+
+#include <haptex/ClothMesh.h>
+#include <haptex/ClothState.h>
+#include <haptex/QueryProximity.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "haptex/proximity/cursor.h"
+#include "haptex/proximity/near_element.h"
+
+namespace haptex::nodes {
+
+/// The triangles of a mesh message and where its particles are in the fabric.
+struct RestMesh {
+  std::vector<std::array<int, 3>> triangles;      ///< particle indices
+  std::vector<Eigen::Vector3d> rest_coordinates;  ///< (u along the weft, v along the warp, 0), m
+
+  bool operator==(const RestMesh& other) const {
+    return triangles == other.triangles && rest_coordinates == other.rest_coordinates;
+  }
+};
+
+/// Triangles without area are allowed.
+/// @throws std::invalid_argument naming field, value and what is allowed: no triangle, arrays that
+///   do not fit together, a particle that does not exist, a number that is not finite or beyond
+///   proximity::kLargestLength
+RestMesh restMesh(const haptex::ClothMesh& message);
+
+/// @throws std::invalid_argument likewise: another frame than kFixedFrame, a position that is not
+///   finite or beyond proximity::kLargestLength
+void requireValid(const haptex::ClothState& message);
+
+/// Everything about a request but its frame and the obstacles that there are.
+/// @throws std::invalid_argument likewise: an unknown shape, points, radii or an obstacle that do
+///   not go with it, a number that is not finite, too large, or negative where it must not be
+void requireValid(const haptex::QueryProximity::Request& request);
+
+/// The cursor of a valid request for another shape than OBSTACLE.
+/// @param world_from_frame transform from the frame of the points to the world frame
+/// @throws std::invalid_argument if that takes it beyond proximity::kLargestLength
+proximity::Cursor cursorInWorld(const haptex::QueryProximity::Request& request,
+                                const Eigen::Isometry3d& world_from_frame);
+
+/// Fills in elements, distance, success and message.
+/// @param found sorted by distance
+/// @param asked m, how far was asked for
+void fillResponse(const std::vector<proximity::NearElement>& found, double asked,
+                  haptex::QueryProximity::Response& response);
+
+/// The answer to a request that is refused: no elements, distance +Inf.
+haptex::QueryProximity::Response refusal(const std::string& message);
+
+}  // namespace haptex::nodes

@@ -1,0 +1,41 @@
+#include "haptex/nodes/node_parameters.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "haptex/nodes/config_files.h"
+
+namespace haptex::nodes {
+
+double readPositive(const ros::NodeHandle& private_node, const std::string& name, double fallback) {
+  if (!private_node.hasParam(name)) return fallback;
+  double value = 0.0;
+  const std::string full_name = private_node.resolveName(name);
+  if (!private_node.getParam(name, value)) {
+    throw std::invalid_argument("parameter " + full_name + " is not a number");
+  }
+  if (!std::isfinite(value) || value <= 0.0) {
+    std::ostringstream message;
+    message << "parameter " << full_name << " = " << value << ": allowed are finite numbers > 0";
+    throw std::invalid_argument(message.str());
+  }
+  return value;
+}
+
+std::string readScenePath(const ros::NodeHandle& private_node) {
+  const std::string name = private_node.resolveName("scene");
+  std::string scene;
+  if (!private_node.getParam("scene", scene)) {
+    throw std::invalid_argument("parameter " + name +
+                                " is not set to a string: allowed is the path of a scene file or "
+                                "the name of one in config/scenes");
+  }
+  try {
+    return findConfigFile("scenes", scene);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("parameter " + name + ": " + error.what());
+  }
+}
+
+}  // namespace haptex::nodes

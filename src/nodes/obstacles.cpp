@@ -1,0 +1,33 @@
+#include "haptex/nodes/obstacles.h"
+
+#include <variant>
+
+namespace haptex::nodes {
+namespace {
+
+using proximity::RigidObstacle;
+
+struct MakeShape {
+  RigidObstacle operator()(const cloth::ObstacleSphere& sphere) const {
+    return RigidObstacle::sphere(sphere.radius);
+  }
+  RigidObstacle operator()(const cloth::ObstacleBox& box) const {
+    return RigidObstacle::box(box.sides);
+  }
+  RigidObstacle operator()(const cloth::ObstacleCapsule& capsule) const {
+    return RigidObstacle::capsule(capsule.radius, capsule.length);
+  }
+  RigidObstacle operator()(const cloth::ObstacleMesh& mesh) const {
+    return RigidObstacle::mesh(mesh.vertices, mesh.triangles);
+  }
+};
+
+}  // namespace
+
+RigidObstacle makeObstacle(const cloth::Obstacle& obstacle) {
+  RigidObstacle made = std::visit(MakeShape{}, obstacle.shape);
+  made.setPose(obstacle.pose);
+  return made;
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,420 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "haptex/nodes/cloth_proximity.h"
+#include "proximity_fixtures.h"
+
+namespace haptex::nodes {
+namespace {
+
+using Clock = ClothProximity::Clock;
+using Request = haptex::QueryProximity::Request;
+using Response = haptex::QueryProximity::Response;
+
+constexpr double kStaleAfter = 0.5;  // s
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Clock::time_point kArrival = Clock::time_point() + std::chrono::hours(1);
+const Clock::time_point kNow = kArrival + std::chrono::milliseconds(10);
+
+ClothProximity::Obstacles ballAndTable() {
+  ClothProximity::Obstacles obstacles;
+  auto ball = proximity::RigidObstacle::sphere(0.02);
+  ball.setPose(Eigen::Isometry3d(Eigen::Translation3d(0.06, 0.01, -0.1)));
+  obstacles.emplace("ball", ball);
+  obstacles.emplace("table", proximity::RigidObstacle::box({0.1, 0.1, 0.1}));
+  return obstacles;
+}
+
+class ClothProximityTest : public testing::Test {
+ protected:
+  ClothProximityTest() : mesh_(testMesh()), positions_(wavy(mesh_.initial_positions)) {}
+
+  void setCloth() {
+    proximity_.setMesh(testMeshMessage(mesh_));
+    proximity_.setState(testState(7, positions_), kArrival);
+  }
+
+  Response ask(const Request& request) { return proximity_.answer(request, worldFrame, kNow); }
+
+  void expectRefused(const Request& request, const std::string& says) {
+    const std::uint64_t before = proximity_.status(kNow).refused;
+    const Response response = ask(request);
+    EXPECT_FALSE(response.success) << "accepted instead of refused: " << says;
+    EXPECT_NE(response.message.find(says), std::string::npos) << response.message;
+    EXPECT_EQ(response.distance, kInfinity);
+    EXPECT_TRUE(response.elements.empty());
+    EXPECT_EQ(proximity_.status(kNow).refused, before + 1);
+    EXPECT_EQ(proximity_.status(kNow).refused_why, response.message);
+  }
+
+  void expectDropped(const std::function<void()>& send, const std::string& says) {
+    const ProximityStatus before = proximity_.status(kNow);
+    send();
+    const ProximityStatus after = proximity_.status(kNow);
+    EXPECT_EQ(after.dropped, before.dropped + 1) << "taken instead of dropped: " << says;
+    EXPECT_NE(after.dropped_why.find(says), std::string::npos) << after.dropped_why;
+    EXPECT_EQ(after.states, before.states);
+    EXPECT_EQ(after.meshes, before.meshes);
+    const Response response = ask(sphere());
+    EXPECT_TRUE(response.success) << response.message;
+    EXPECT_EQ(response.step, 7u);  // the last good state stays
+  }
+
+  static Request sphere() {
+    return testRequest(Request::SPHERES, {{0.02, 0.0, -0.1}}, {0.005}, 0.03);
+  }
+
+  /// Not one bit of the answer may differ from the other way.
+  void expectElements(const Response& response,
+                      const std::vector<proximity::NearElement>& elements) {
+    ASSERT_TRUE(response.success) << response.message;
+    ASSERT_EQ(response.elements.size(), elements.size());
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      const haptex::NearElement& message = response.elements[i];
+      const proximity::NearElement& element = elements[i];
+      EXPECT_EQ(message.triangle, static_cast<std::uint32_t>(element.triangle));
+      EXPECT_EQ(message.part, static_cast<std::uint32_t>(element.part));
+      EXPECT_EQ(message.distance, element.distance);
+      EXPECT_EQ(message.point, pointMessage(element.point));
+      for (int j = 0; j < 3; ++j) EXPECT_EQ(message.barycentric[j], element.barycentric[j]);
+      EXPECT_EQ(message.normal.x, element.normal.x());
+      EXPECT_EQ(message.normal.y, element.normal.y());
+      EXPECT_EQ(message.normal.z, element.normal.z());
+    }
+    EXPECT_EQ(response.distance, elements.empty() ? kInfinity : elements.front().distance);
+  }
+
+  cloth::ClothMesh mesh_;
+  std::vector<Eigen::Vector3d> positions_;
+  ClothProximity proximity_{kStaleAfter, ballAndTable()};
+};
+
+TEST_F(ClothProximityTest, AnswersWhatBruteForceFindsForEveryShape) {
+  setCloth();
+  const Eigen::Vector3d a(0.02, -0.03, -0.05), b(-0.01, 0.04, -0.12);
+  const std::vector<std::pair<Request, proximity::Cursor>> queries = {
+      {testRequest(Request::POINT, {a}, {}, 0.03), proximity::Cursor::point(a)},
+      {testRequest(Request::SPHERES, {a, b}, {0.01, 0.004}, 0.02),
+       proximity::Cursor::spheres({{a, 0.01}, {b, 0.004}})},
+      {testRequest(Request::CAPSULE, {a, b}, {0.006}, 0.01),
+       proximity::Cursor::capsule(a, b, 0.006)},
+      {testRequest(Request::TAPERED_CAPSULE, {a, b}, {0.012, 0.002}, 0.01),
+       proximity::Cursor::taperedCapsule({a, 0.012}, {b, 0.002})}};
+  for (auto [request, cursor] : queries) {
+    for (const std::uint32_t nearest : {0u, 1u, 3u}) {
+      request.nearest = nearest;
+      proximity::Range range{request.distance};
+      if (nearest > 0) range.count = nearest;
+      const auto elements =
+          proximity::nearElementsByBruteForce(mesh_.triangles, positions_, cursor, range);
+      EXPECT_FALSE(elements.empty());
+      expectElements(ask(request), elements);
+    }
+  }
+}
+
+TEST_F(ClothProximityTest, AnswersInTheWorldFrameOnTheStampOfTheState) {
+  setCloth();
+  const Eigen::Isometry3d world_from_frame =
+      Eigen::Translation3d(0.1, -0.2, 0.3) *
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, -1.0).normalized());
+  const Eigen::Vector3d place(0.02, 0.0, -0.1);
+  Request request = sphere();
+  request.header.frame_id = "finger";
+  request.points = {pointMessage(world_from_frame.inverse() * place)};
+  const Response response = proximity_.answer(
+      request, [&] { return world_from_frame; }, kNow);
+  EXPECT_EQ(response.header.frame_id, "world");
+  EXPECT_EQ(response.header.stamp, ros::Time(1007));
+  EXPECT_EQ(response.step, 7u);
+  const Response in_world = ask(sphere());
+  ASSERT_EQ(response.elements.size(), in_world.elements.size());
+  for (std::size_t i = 0; i < response.elements.size(); ++i) {
+    EXPECT_EQ(response.elements[i].triangle, in_world.elements[i].triangle);
+    // There and back through the transform: some roundings of coordinates below 1 m.
+    EXPECT_NEAR(response.elements[i].distance, in_world.elements[i].distance, 1e-15);
+  }
+}
+
+TEST_F(ClothProximityTest, NothingInRangeIsAnAnswerWithInfiniteDistance) {
+  setCloth();
+  const Response response = ask(testRequest(Request::SPHERES, {{1.0, 0.0, 0.0}}, {0.005}, 0.012));
+  EXPECT_TRUE(response.success);
+  EXPECT_EQ(response.message, "no element within 0.012 m");
+  EXPECT_EQ(response.distance, kInfinity);
+  EXPECT_TRUE(response.elements.empty());
+  EXPECT_EQ(response.header.stamp, ros::Time(1007));
+}
+
+TEST_F(ClothProximityTest, TellsWhatIsNearAnObstacle) {
+  setCloth();
+  Request request = testRequest(Request::OBSTACLE, {}, {}, 0.05);
+  request.obstacle = "ball";
+  request.header.frame_id = "";
+  const Response response = ask(request);
+  ASSERT_TRUE(response.success) << response.message;
+  const auto solid = proximity::nearElementsByBruteForce(
+      mesh_.triangles, positions_,
+      proximity::Cursor::spheres({{Eigen::Vector3d(0.06, 0.01, -0.1), 0.02}}), {0.05});
+  ASSERT_FALSE(solid.empty());
+  ASSERT_EQ(response.elements.size(), solid.size());
+  for (const proximity::NearElement& element : solid) {
+    const auto found =
+        std::find_if(response.elements.begin(), response.elements.end(), [&](const auto& message) {
+          return message.triangle == static_cast<std::uint32_t>(element.triangle);
+        });
+    ASSERT_NE(found, response.elements.end());
+    // 1e-9 m is what RigidObstacle promises; what enters an obstacle is 0 away from it.
+    EXPECT_NEAR(found->distance, std::max(0.0, element.distance), 1e-9);
+  }
+}
+
+TEST_F(ClothProximityTest, AnswersBesideTrianglesWithoutArea) {
+  mesh_.triangles.push_back({0, 0, 0});
+  mesh_.triangles.push_back({10, 11, 11});
+  mesh_.triangles.push_back({20, 21, 22});  // in one line
+  setCloth();
+  const proximity::Cursor everything = proximity::Cursor::point({0.02, 0.0, -0.1});
+  expectElements(
+      ask(testRequest(Request::POINT, {{0.02, 0.0, -0.1}}, {}, 1.0)),
+      proximity::nearElementsByBruteForce(mesh_.triangles, positions_, everything, {1.0}));
+}
+
+TEST_F(ClothProximityTest, RefusesShapesThatThereAreNot) {
+  setCloth();
+  Request request = sphere();
+  request.shape = 5;
+  expectRefused(request, "shape = 5: allowed are POINT = 0");
+}
+
+TEST_F(ClothProximityTest, RefusesPointsAndRadiiThatDoNotGoWithTheShape) {
+  setCloth();
+  const Eigen::Vector3d a(0.0, 0.0, 0.0);
+  const auto refuse = [&](std::uint8_t shape, std::size_t points, std::size_t radii,
+                          const std::string& says) {
+    expectRefused(testRequest(shape, std::vector<Eigen::Vector3d>(points, a),
+                              std::vector<double>(radii, 0.01), 0.01),
+                  says);
+  };
+  refuse(Request::POINT, 0, 0, "points has 0 elements: shape POINT takes 1");
+  refuse(Request::POINT, 2, 0, "points has 2 elements: shape POINT takes 1");
+  refuse(Request::POINT, 1, 1, "radii has 1 elements: shape POINT takes 0");
+  refuse(Request::SPHERES, 0, 0, "points is empty: shape SPHERES takes one or more");
+  refuse(Request::SPHERES, 2, 1, "radii has 1 elements: shape SPHERES takes one for each of the 2");
+  refuse(Request::CAPSULE, 1, 1, "points has 1 elements: shape CAPSULE takes 2");
+  refuse(Request::CAPSULE, 2, 2, "radii has 2 elements: shape CAPSULE takes 1");
+  refuse(Request::TAPERED_CAPSULE, 3, 2, "points has 3 elements: shape TAPERED_CAPSULE takes 2");
+  refuse(Request::TAPERED_CAPSULE, 2, 1, "radii has 1 elements: shape TAPERED_CAPSULE takes 2");
+  refuse(Request::OBSTACLE, 1, 0, "points has 1 elements: shape OBSTACLE takes 0");
+  refuse(Request::OBSTACLE, 0, 1, "radii has 1 elements: shape OBSTACLE takes 0");
+}
+
+TEST_F(ClothProximityTest, RefusesNumbersThatAreNotFiniteOrTooLarge) {
+  setCloth();
+  for (const double number : {kNaN, kInfinity, -kInfinity, 1e10}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::Vector3d place = Eigen::Vector3d::Zero();
+      place[axis] = number;
+      expectRefused(testRequest(Request::SPHERES, {{0, 0, 0}, place}, {0.01, 0.01}, 0.01),
+                    "points[1] = (");
+    }
+    expectRefused(testRequest(Request::SPHERES, {{0, 0, 0}}, {number}, 0.01), "radii[0] = ");
+    expectRefused(testRequest(Request::SPHERES, {{0, 0, 0}}, {0.01}, number), "distance = ");
+  }
+}
+
+TEST_F(ClothProximityTest, RefusesNegativeRadiiAndDistances) {
+  setCloth();
+  const Eigen::Vector3d a(0.0, 0.0, 0.0);
+  expectRefused(testRequest(Request::TAPERED_CAPSULE, {a, a}, {0.01, -0.01}, 0.01),
+                "radii[1] = -0.01: allowed are finite numbers from 0");
+  expectRefused(testRequest(Request::POINT, {a}, {}, -1e-9), "distance = -1e-09");
+}
+
+TEST_F(ClothProximityTest, RefusesPlacesThatItsFrameTakesTooFar) {
+  setCloth();
+  const Response response = proximity_.answer(
+      sphere(), [] { return Eigen::Isometry3d(Eigen::Translation3d(2e9, 0.0, 0.0)); }, kNow);
+  EXPECT_FALSE(response.success);
+  EXPECT_NE(response.message.find("e+09"), std::string::npos) << response.message;
+}
+
+TEST_F(ClothProximityTest, RefusesUnknownObstaclesAndNamesThoseThatThereAre) {
+  setCloth();
+  Request request = testRequest(Request::OBSTACLE, {}, {}, 0.01);
+  request.obstacle = "chair";
+  expectRefused(request, "obstacle = 'chair': those of the scene are ball table");
+  request.obstacle = "";
+  expectRefused(request, "obstacle = ''");
+  Request contradiction = sphere();
+  contradiction.obstacle = "ball";
+  expectRefused(contradiction, "obstacle = 'ball' with shape SPHERES");
+
+  ClothProximity none(kStaleAfter, {});
+  request.obstacle = "ball";
+  EXPECT_NE(none.answer(request, worldFrame, kNow).message.find("~scene"), std::string::npos);
+}
+
+TEST_F(ClothProximityTest, RefusesWhatTheFrameLookupThrows) {
+  setCloth();
+  const auto unknown = []() -> Eigen::Isometry3d { throw std::invalid_argument("no such frame"); };
+  EXPECT_EQ(proximity_.answer(sphere(), unknown, kNow).message, "no such frame");
+  Request obstacle = testRequest(Request::OBSTACLE, {}, {}, 0.01);
+  obstacle.obstacle = "ball";
+  EXPECT_EQ(proximity_.answer(obstacle, unknown, kNow).message, "no such frame");
+  obstacle.header.frame_id = "";  // then it is not looked up
+  EXPECT_TRUE(proximity_.answer(obstacle, unknown, kNow).success);
+}
+
+TEST_F(ClothProximityTest, RefusesWhileThereIsNoCloth) {
+  expectRefused(sphere(), "no good message on cloth/mesh");
+  proximity_.setMesh(testMeshMessage(mesh_));
+  expectRefused(sphere(), "no good message on cloth/state");
+  proximity_.setState(testState(1, positions_), kArrival);
+  EXPECT_TRUE(ask(sphere()).success);
+}
+
+TEST_F(ClothProximityTest, SaysWhyTheMeshWasRefused) {
+  haptex::ClothMesh message = testMeshMessage(mesh_);
+  message.triangles[4] = 81;
+  proximity_.setMesh(message);
+  expectRefused(sphere(), "cloth/mesh: triangles[4] = 81: there are 81 particles");
+}
+
+TEST_F(ClothProximityTest, TakesAStateThatCameBeforeItsMesh) {
+  proximity_.setState(testState(3, positions_), kArrival);
+  proximity_.setMesh(testMeshMessage(mesh_));
+  EXPECT_EQ(ask(sphere()).step, 3u);
+}
+
+TEST_F(ClothProximityTest, RefusesStaleClothByItsArrivalAndNotByItsStamp) {
+  setCloth();  // stamped seconds after 1970
+  using std::chrono::milliseconds;
+  EXPECT_TRUE(proximity_.answer(sphere(), worldFrame, kArrival + milliseconds(499)).success);
+  const Response response = proximity_.answer(sphere(), worldFrame, kArrival + milliseconds(2500));
+  EXPECT_FALSE(response.success);
+  EXPECT_NE(response.message.find("arrived 2.5 s ago, allowed are 0.5 s: is cloth_simulation "
+                                  "running?"),
+            std::string::npos)
+      << response.message;
+  proximity_.setState(testState(8, positions_), kArrival + milliseconds(2500));
+  EXPECT_TRUE(proximity_.answer(sphere(), worldFrame, kArrival + milliseconds(2600)).success);
+}
+
+TEST_F(ClothProximityTest, DropsStatesThatCannotBe) {
+  setCloth();
+  for (const double number : {kNaN, kInfinity, 1e10}) {
+    expectDropped(
+        [&] {
+          auto state = testState(8, positions_);
+          state->positions[5].y = number;
+          proximity_.setState(state, kArrival);
+        },
+        "cloth/state: positions[5] = (");
+  }
+  expectDropped(
+      [&] {
+        auto state = testState(8, positions_);
+        state->positions.pop_back();
+        proximity_.setState(state, kArrival);
+      },
+      "cloth/state: positions has 80 elements: cloth/mesh has 81 particles");
+  expectDropped([&] { proximity_.setState(testState(8, {}), kArrival); },
+                "positions has 0 elements");
+  for (const char* frame : {"", "map"}) {
+    expectDropped(
+        [&] {
+          auto state = testState(8, positions_);
+          state->header.frame_id = frame;
+          proximity_.setState(state, kArrival);
+        },
+        "cloth/state: header.frame_id = '");
+  }
+}
+
+TEST_F(ClothProximityTest, DropsMeshesThatCannotBe) {
+  setCloth();
+  const auto expectMeshDropped = [&](const std::function<void(haptex::ClothMesh&)>& spoil,
+                                     const std::string& says) {
+    haptex::ClothMesh message = testMeshMessage(mesh_);
+    spoil(message);
+    expectDropped([&] { proximity_.setMesh(message); }, "cloth/mesh: " + says);
+  };
+  using Mesh = haptex::ClothMesh;
+  expectMeshDropped([](Mesh& m) { m.triangles.clear(); }, "triangles has 0 elements");
+  expectMeshDropped([](Mesh& m) { m.triangles.pop_back(); }, "triangles has 383 elements");
+  expectMeshDropped([](Mesh& m) { m.triangles[7] = 81; }, "triangles[7] = 81: there are 81");
+  expectMeshDropped([](Mesh& m) { m.triangles[7] = 4294967295u; }, "triangles[7] = 4294967295");
+  expectMeshDropped([](Mesh& m) { m.rest_weft_coordinates.pop_back(); },
+                    "rest_weft_coordinates has 80 elements and rest_warp_coordinates 81");
+  expectMeshDropped([](Mesh& m) { m.rest_weft_coordinates[3] = kNaN; },
+                    "rest coordinates of particle 3 = (nan");
+  expectMeshDropped([](Mesh& m) { m.rest_warp_coordinates[4] = -1e10; },
+                    "rest coordinates of particle 4 = (");
+}
+
+TEST_F(ClothProximityTest, BuildsOnceForAMeshThatComesAgain) {
+  setCloth();
+  haptex::ClothMesh other_fabric = testMeshMessage(mesh_);
+  other_fabric.fabric = "another";
+  other_fabric.masses.assign(other_fabric.masses.size(), 2e-3);
+  proximity_.setMesh(other_fabric);
+  EXPECT_EQ(proximity_.status(kNow).meshes, 2u);
+  EXPECT_EQ(proximity_.status(kNow).builds, 1u);
+  EXPECT_EQ(ask(sphere()).step, 7u);  // and keeps the state
+}
+
+TEST_F(ClothProximityTest, ForgetsTheStateOfAnotherMesh) {
+  setCloth();
+  EXPECT_TRUE(ask(sphere()).success);
+  std::swap(mesh_.triangles[3], mesh_.triangles[30]);  // as many particles
+  proximity_.setMesh(testMeshMessage(mesh_));
+  EXPECT_EQ(proximity_.status(kNow).builds, 2u);
+  expectRefused(sphere(), "no good message on cloth/state");
+
+  mesh_ = testMesh(5);
+  positions_ = wavy(mesh_.initial_positions);
+  setCloth();
+  expectElements(
+      ask(sphere()),
+      proximity::nearElementsByBruteForce(
+          mesh_.triangles, positions_,
+          proximity::Cursor::spheres({{Eigen::Vector3d(0.02, 0.0, -0.1), 0.005}}), {0.03}));
+}
+
+TEST_F(ClothProximityTest, RefitsOnlyWhenSomebodyAsksAboutANewState) {
+  setCloth();
+  for (std::uint32_t step = 8; step < 20; ++step) {
+    proximity_.setState(testState(step, positions_), kArrival);
+  }
+  EXPECT_EQ(proximity_.status(kNow).refits, 0u);
+  EXPECT_TRUE(std::isnan(proximity_.status(kNow).refit_seconds));
+  EXPECT_EQ(ask(sphere()).step, 19u);
+  ask(sphere());
+  EXPECT_EQ(proximity_.status(kNow).refits, 1u);
+  EXPECT_EQ(proximity_.status(kNow).answered, 2u);
+  EXPECT_GT(proximity_.status(kNow).refit_seconds, 0.0);
+}
+
+TEST_F(ClothProximityTest, SceneHasTheTrianglesAndTheVolumesAskedFor) {
+  EXPECT_FALSE(proximity_.scene({}, 0));
+  setCloth();
+  const auto scene = proximity_.scene({0, 5, 100000}, 2);
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(scene->stamp, ros::Time(1007));
+  ASSERT_EQ(scene->triangles.size(), 2u);  // without the one that does not exist
+  EXPECT_EQ(scene->triangles[1][0], positions_[mesh_.triangles[5][0]]);
+  EXPECT_EQ(scene->volumes.size(), 4u);
+  EXPECT_TRUE(proximity_.scene({}, -1)->volumes.empty());
+  // 128 triangles, 8 to a leaf.
+  EXPECT_EQ(proximity_.scene({}, 16)->volumes.size(), 16u);
+}
+
+}  // namespace
+}  // namespace haptex::nodes
