@@ -69,11 +69,18 @@ class ProximityAlone(unittest.TestCase):
         self.states.publish(state(1))
 
     def dropped(self):
-        while True:
-            for status in rospy.wait_for_message('/diagnostics', DiagnosticArray, WAIT).status:
+        reasons = []
+
+        def take(array):
+            for status in array.status:
                 if status.name.endswith('proximity queries'):
                     values = {item.key: item.value for item in status.values}
-                    return values['why the last message was dropped']
+                    reasons.append(values['why the last message was dropped'])
+
+        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, take)
+        self.eventually(lambda: reasons, 'diagnostics of the node')
+        subscriber.unregister()
+        return reasons[0]
 
     def test_refuses_before_there_is_a_cloth(self):
         self.assertFalse(self.before_any_cloth.success)

@@ -226,10 +226,16 @@ class Proximity(unittest.TestCase):
         self.accepted(sphere())
 
     def diagnostics(self):
-        while True:
-            for status in rospy.wait_for_message('/diagnostics', DiagnosticArray, WAIT).status:
-                if status.name.endswith('proximity queries'):
-                    return status
+        """The next status of the node. Others publish on the topic too."""
+        statuses = []
+
+        def take(array):
+            statuses.extend(s for s in array.status if s.name.endswith('proximity queries'))
+
+        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, take)
+        self.eventually(lambda: statuses, 'diagnostics of the node')
+        subscriber.unregister()
+        return statuses[0]
 
     def test_diagnostics_tell_what_was_answered_and_refused(self):
         self.accepted(sphere())
