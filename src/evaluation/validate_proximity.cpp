@@ -19,7 +19,11 @@ using Eigen::Vector3d;
 using Positions = std::vector<Vector3d>;
 
 constexpr int kCells = 16;  // 512 triangles: brute force is to be affordable
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kQueriesPerState = 100;  // brute force takes ten times as long
+#else
 constexpr int kQueriesPerState = 1000;
+#endif
 
 /// A place and sizes to make a cursor of, on the scale of a few elements.
 struct Ingredients {
