@@ -128,7 +128,8 @@ Quantity compareWithBruteForce(Sheet& sheet, const Shape& shape, bool nearest) {
 /// the coordinates).
 constexpr double kTouching = 1e-12;
 
-std::set<int> touchedInFcl(const fcl::BVHModel<fcl::AABBd>& model, const Sphere& sphere) {
+/// With oriented boxes, because for others FCL copies its model in every query.
+std::set<int> touchedInFcl(const fcl::BVHModel<fcl::OBBRSSd>& model, const Sphere& sphere) {
   const fcl::CollisionRequestd request(static_cast<std::size_t>(model.num_tris), false);
   fcl::CollisionResultd result;
   const fcl::Sphered shape(sphere.radius);
@@ -152,7 +153,7 @@ Quantity compareWithFcl(Sheet& sheet) {
     const KdopHierarchy& hierarchy = sheet.hierarchy();
     std::vector<fcl::Triangle> triangles;
     for (const auto& t : hierarchy.triangles()) triangles.emplace_back(t[0], t[1], t[2]);
-    fcl::BVHModel<fcl::AABBd> model;
+    fcl::BVHModel<fcl::OBBRSSd> model;
     model.beginModel();
     model.addSubModel(state.positions, triangles);
     model.endModel();
