@@ -267,6 +267,19 @@ void printVisits(const Case& c) {
   }
 }
 
+/// Volumes tested by a query that keeps its number of hits: the growth without the caches.
+void printVisitsOfConstantHits(const Case& c) {
+  KdopHierarchy hierarchy(c.mesh.triangles, c.rest);
+  hierarchy.refit(c.positions);
+  QueryCost cost;
+  std::vector<NearElement> found;
+  for (const Cursor& cursor : fingertips(c.nearer_places, c.smaller_radius)) {
+    hierarchy.query(cursor, {0.0}, found, &cost);
+  }
+  bench::printLine("proximity/volumes_constant_hits/" + c.name,
+                   static_cast<double>(cost.volumes) / kPlaces, "volumes");
+}
+
 /// Mean number of hits, and in how many queries FCL finds other elements. Elements that are within
 /// 1e-9 m of touching may differ.
 template <typename Volume>
@@ -333,6 +346,7 @@ int main(int argc, char** argv) {
   if (reporter.failed()) return 1;
   for (const Case& c : cases) printEquality<fcl::KDOP<double, 24>>(c, "_fcl_kdop24");
   printVisits(middle);
+  for (const Case& c : cases) printVisitsOfConstantHits(c);
 
   const auto ratio = [&](const std::string& name, const std::string& a, const std::string& b) {
     bench::printLine("proximity/" + name,
