@@ -2,20 +2,17 @@
 // fingertip, beside FCL in the same run? What do more planes, larger leaves and wider registers
 // buy, and would it pay to refit only what has moved? The sheet is 0.2 m wide and crumpled; the
 // fingertip is a sphere of 12 mm at 500 places near it, the same for all.
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/narrowphase/collision.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
-#include <set>
 #include <string>
 
 #include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
 #include "haptex/cloth/mesh.h"
 #include "haptex/evaluation/deformed_sheets.h"
+#include "haptex/evaluation/fcl_sheet.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "tab_lines.h"
@@ -38,11 +35,9 @@ constexpr int kRepetitions = 5;
 struct Case {
   explicit Case(int cells)
       : mesh(cloth::makeRectangle(kSide, kSide, cells, cells, cloth::Triangulation::kAlternating)),
-        name(std::to_string(mesh.triangles.size())) {
-    for (const Eigen::Vector2d& uv : mesh.rest_coordinates) rest.emplace_back(uv.x(), uv.y(), 0.0);
-    for (auto& sheet : evaluation::deformedSheets(mesh)) {
-      if (sheet.name == "crumpled_1") positions = std::move(sheet.positions);
-    }
+        name(std::to_string(mesh.triangles.size())),
+        rest(evaluation::deformedSheet(mesh, "flat")),
+        positions(evaluation::deformedSheet(mesh, "crumpled_1")) {
     // As many elements in reach as of the smallest sheet.
     const double scale = 32.0 / cells;
     std::mt19937 generator(1);
@@ -121,52 +116,19 @@ std::vector<Cursor> capsules(const Positions& places) {
 }
 
 template <typename Volume>
-class FclSheet {
- public:
-  explicit FclSheet(const Case& c) {
-    std::vector<fcl::Triangle> triangles;
-    for (const auto& t : c.mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-    model_.beginModel();
-    model_.addSubModel(c.positions, triangles);
-    model_.endModel();
-  }
-
-  void refit(const Positions& positions) {
-    model_.beginReplaceModel();
-    model_.replaceSubModel(positions);
-    model_.endReplaceModel(true, true);
-  }
-
-  /// @returns the elements that a fingertip at a place touches
-  std::vector<fcl::Contactd> query(const Vector3d& place) const {
-    fcl::CollisionRequestd request(static_cast<std::size_t>(model_.num_tris), false);
-    fcl::CollisionResultd result;
-    const fcl::Sphered sphere(kFingertipRadius);
-    const fcl::Transform3d at(Eigen::Translation3d{place});
-    fcl::collide(&model_, fcl::Transform3d::Identity(), &sphere, at, request, result);
-    std::vector<fcl::Contactd> contacts;
-    result.getContacts(contacts);
-    return contacts;
-  }
-
- private:
-  fcl::BVHModel<Volume> model_;
-};
-
-template <typename Volume>
 void addFcl(const std::string& suffix, const Case& c) {
   add("proximity/build" + suffix + "/" + c.name, [&c](benchmark::State& run) {
-    for (auto _ : run) FclSheet<Volume> sheet(c);
+    for (auto _ : run) evaluation::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
   });
   add("proximity/refit" + suffix + "/" + c.name, [&c](benchmark::State& run) {
-    FclSheet<Volume> sheet(c);
+    evaluation::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
     for (auto _ : run) sheet.refit(c.positions);
   });
   add("proximity/query" + suffix + "/" + c.name, [&c](benchmark::State& run) {
-    const FclSheet<Volume> sheet(c);
+    const evaluation::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
     std::size_t next = 0;
     for (auto _ : run) {
-      benchmark::DoNotOptimize(sheet.query(c.places[next]));
+      benchmark::DoNotOptimize(sheet.touched({c.places[next], kFingertipRadius}));
       next = (next + 1) % c.places.size();
     }
   });
@@ -249,61 +211,38 @@ void addVariants(const Case& c) {
   addQuery("proximity/query_with_margin/" + c.name, c, standard, spheres, {kRefitMargin});
 }
 
-/// Volumes and triangles visited by a query, mean over the places.
-void printVisits(const Case& c) {
-  for (const auto& [kind, planes] : kKinds) {
-    KdopHierarchy hierarchy(c.mesh.triangles, c.rest,
-                            settingsOf(kind, HierarchySettings().triangles_per_leaf));
-    QueryCost cost;
-    std::vector<NearElement> found;
-    hierarchy.refit(c.positions);
-    for (const Cursor& cursor : fingertips(c.places, kFingertipRadius)) {
-      hierarchy.query(cursor, {0.0}, found, &cost);
-    }
-    bench::printLine("proximity/volumes" + kindName(planes) + c.name,
-                     static_cast<double>(cost.volumes) / kPlaces, "volumes");
-    bench::printLine("proximity/triangles" + kindName(planes) + c.name,
-                     static_cast<double>(cost.triangles) / kPlaces, "triangles");
-  }
-}
-
-/// Volumes tested by a query that keeps its number of hits: the growth without the caches.
-void printVisitsOfConstantHits(const Case& c) {
-  KdopHierarchy hierarchy(c.mesh.triangles, c.rest);
+/// Prints what a query tests, mean over the cursors.
+void printVisits(const std::string& suffix, const Case& c, const HierarchySettings& settings,
+                 const std::vector<Cursor>& cursors) {
+  KdopHierarchy hierarchy(c.mesh.triangles, c.rest, settings);
   hierarchy.refit(c.positions);
   QueryCost cost;
   std::vector<NearElement> found;
-  for (const Cursor& cursor : fingertips(c.nearer_places, c.smaller_radius)) {
-    hierarchy.query(cursor, {0.0}, found, &cost);
-  }
-  bench::printLine("proximity/volumes_constant_hits/" + c.name,
-                   static_cast<double>(cost.volumes) / kPlaces, "volumes");
+  for (const Cursor& cursor : cursors) hierarchy.query(cursor, {0.0}, found, &cost);
+  const double queries = static_cast<double>(cursors.size());
+  bench::printLine("proximity/volumes" + suffix + c.name,
+                   static_cast<double>(cost.volumes) / queries, "volumes");
+  bench::printLine("proximity/triangles" + suffix + c.name,
+                   static_cast<double>(cost.triangles) / queries, "triangles");
 }
 
 /// Mean number of hits, and in how many queries FCL finds other elements. Elements that are within
 /// 1e-9 m of touching may differ.
-template <typename Volume>
-void printEquality(const Case& c, const std::string& suffix) {
+void printEquality(const Case& c) {
   KdopHierarchy hierarchy(c.mesh.triangles, c.rest);
   hierarchy.refit(c.positions);
-  const FclSheet<Volume> sheet(c);
+  const evaluation::FclSheet<fcl::KDOP<double, 24>> sheet(c.mesh.triangles, c.positions);
   std::vector<NearElement> found;
   std::size_t hits = 0;
   int different = 0;
   for (const Vector3d& place : c.places) {
-    std::set<int> sure, possible, of_fcl;
-    hierarchy.query(Cursor::spheres({{place, kFingertipRadius}}), {1e-9}, found);
-    for (const NearElement& element : found) {
-      possible.insert(element.triangle);
-      if (element.distance < -1e-9) sure.insert(element.triangle);
-      hits += element.distance <= 0.0;
-    }
-    for (const auto& contact : sheet.query(place)) of_fcl.insert(static_cast<int>(contact.b1));
-    different += !std::includes(of_fcl.begin(), of_fcl.end(), sure.begin(), sure.end()) ||
-                 !std::includes(possible.begin(), possible.end(), of_fcl.begin(), of_fcl.end());
+    const Sphere fingertip{place, kFingertipRadius};
+    hierarchy.query(Cursor::spheres({fingertip}), {0.0}, found);
+    hits += found.size();
+    different += !evaluation::agree(hierarchy, sheet, fingertip, 1e-9);
   }
   bench::printLine("proximity/hits/" + c.name, static_cast<double>(hits) / kPlaces, "elements");
-  bench::printLine("proximity/different_from" + suffix + "/" + c.name, different, "queries");
+  bench::printLine("proximity/different_from_fcl_kdop24/" + c.name, different, "queries");
 }
 
 /// Mean share of the particles that move by more than the margin from one state to the next, while
@@ -344,9 +283,14 @@ int main(int argc, char** argv) {
   bench::TabReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   if (reporter.failed()) return 1;
-  for (const Case& c : cases) printEquality<fcl::KDOP<double, 24>>(c, "_fcl_kdop24");
-  printVisits(middle);
-  for (const Case& c : cases) printVisitsOfConstantHits(c);
+  for (const Case& c : cases) printEquality(c);
+  for (const auto& [kind, planes] : kKinds) {
+    printVisits(kindName(planes), middle, settingsOf(kind, HierarchySettings().triangles_per_leaf),
+                fingertips(middle.places, kFingertipRadius));
+  }
+  for (const Case& c : cases) {  // the growth without the caches
+    printVisits("_constant_hits/", c, {}, fingertips(c.nearer_places, c.smaller_radius));
+  }
 
   const auto ratio = [&](const std::string& name, const std::string& a, const std::string& b) {
     bench::printLine("proximity/" + name,

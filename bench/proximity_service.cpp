@@ -36,11 +36,9 @@ class PlayedCloth {
  public:
   explicit PlayedCloth(ros::NodeHandle& node)
       : mesh_(cloth::makeRectangle(0.2, 0.2, kCells, kCells, cloth::Triangulation::kAlternating)),
+        positions_(evaluation::deformedSheet(mesh_, "crumpled_1")),
         mesh_publisher_(node.advertise<ClothMesh>("cloth/mesh", 1, true)),
         state_publisher_(node.advertise<ClothState>("cloth/state", 1)) {
-    for (auto& sheet : evaluation::deformedSheets(mesh_)) {
-      if (sheet.name == "crumpled_1") positions_ = std::move(sheet.positions);
-    }
     publishMesh();
     thread_ = std::thread([this] { publishStates(); });
   }

@@ -5,6 +5,8 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <stdexcept>
+#include <utility>
 
 namespace haptex::evaluation {
 namespace {
@@ -74,8 +76,7 @@ std::vector<DeformedSheet> deformedSheets(const cloth::ClothMesh& mesh) {
     sheets.push_back({name, {}});
     for (const Vector2d& rest : mesh.rest_coordinates) sheets.back().positions.push_back(map(rest));
   };
-  const auto flat = [](const Vector2d& p) { return Vector3d(p.x(), p.y(), 0.0); };
-  add("flat", flat);
+  add("flat", [](const Vector2d& p) { return Vector3d(p.x(), p.y(), 0.0); });
   add("hanging", [](const Vector2d& p) { return Vector3d(0.0, p.x(), p.y()); });
   add("stretched", [](const Vector2d& p) { return Vector3d(1.7 * p.x(), p.y(), 0.0); });
   add("sheared", [](const Vector2d& p) { return Vector3d(p.x() + 0.8 * p.y(), p.y(), 0.1); });
@@ -118,6 +119,13 @@ std::vector<DeformedSheet> deformedSheets(const cloth::ClothMesh& mesh) {
   add("on_a_line", [](const Vector2d& p) { return Vector3d(p.x(), 0.5 * p.x(), 0.0); });
   add("on_a_point", [](const Vector2d&) { return Vector3d(0.1, 0.1, 0.1); });
   return sheets;
+}
+
+std::vector<Vector3d> deformedSheet(const cloth::ClothMesh& mesh, const std::string& name) {
+  for (DeformedSheet& sheet : deformedSheets(mesh)) {
+    if (sheet.name == name) return std::move(sheet.positions);
+  }
+  throw std::invalid_argument("there is no deformed sheet '" + name + "'");
 }
 
 }  // namespace haptex::evaluation

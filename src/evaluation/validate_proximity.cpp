@@ -1,13 +1,11 @@
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/narrowphase/collision.h>
-
 #include <algorithm>
-#include <iterator>
 #include <random>
-#include <set>
+#include <string>
+#include <vector>
 
 #include "haptex/cloth/mesh.h"
 #include "haptex/evaluation/deformed_sheets.h"
+#include "haptex/evaluation/fcl_sheet.h"
 #include "haptex/evaluation/validation.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 
@@ -83,7 +81,6 @@ class Sheet {
   }
 
   const KdopHierarchy& hierarchy() const { return hierarchy_; }
-  double size() const { return size_; }
 
  private:
   cloth::ClothMesh mesh_;
@@ -128,48 +125,20 @@ Quantity compareWithBruteForce(Sheet& sheet, const Shape& shape, bool nearest) {
 /// the coordinates).
 constexpr double kTouching = 1e-12;
 
-/// With oriented boxes, because for others FCL copies its model in every query.
-std::set<int> touchedInFcl(const fcl::BVHModel<fcl::OBBRSSd>& model, const Sphere& sphere) {
-  const fcl::CollisionRequestd request(static_cast<std::size_t>(model.num_tris), false);
-  fcl::CollisionResultd result;
-  const fcl::Sphered shape(sphere.radius);
-  fcl::collide(&model, fcl::Transform3d::Identity(), &shape,
-               fcl::Transform3d(Eigen::Translation3d(sphere.centre)), request, result);
-  std::set<int> touched;
-  for (std::size_t i = 0; i < result.numContacts(); ++i) {
-    touched.insert(static_cast<int>(result.getContact(i).b1));
-  }
-  return touched;
-}
-
 /// Sphere queries in which FCL finds another set of elements.
 Quantity compareWithFcl(Sheet& sheet) {
   std::mt19937 generator(2);
-  std::vector<NearElement> found;
   int queries = 0, wrong = 0;
   for (const DeformedSheet& state : sheet.states()) {
     if (state.name == "on_a_line" || state.name == "on_a_point") continue;  // FCL needs areas
     sheet.setState(state);
     const KdopHierarchy& hierarchy = sheet.hierarchy();
-    std::vector<fcl::Triangle> triangles;
-    for (const auto& t : hierarchy.triangles()) triangles.emplace_back(t[0], t[1], t[2]);
-    fcl::BVHModel<fcl::OBBRSSd> model;
-    model.beginModel();
-    model.addSubModel(state.positions, triangles);
-    model.endModel();
+    const FclSheet<fcl::OBBRSSd> in_fcl(hierarchy.triangles(), state.positions);
     for (int i = 0; i < kQueriesPerState; ++i) {
       const Sphere sphere = sheet.ingredients(generator).spheres[0];
       const double touching = kTouching * (1.0 + sphere.centre.norm());
-      hierarchy.query(Cursor::spheres({sphere}), {touching}, found);
-      std::set<int> possible, sure;
-      for (const NearElement& element : found) {
-        possible.insert(element.triangle);
-        if (element.distance < -touching) sure.insert(element.triangle);
-      }
-      const std::set<int> of_fcl = touchedInFcl(model, sphere);
       ++queries;
-      wrong += !std::includes(of_fcl.begin(), of_fcl.end(), sure.begin(), sure.end()) ||
-               !std::includes(possible.begin(), possible.end(), of_fcl.begin(), of_fcl.end());
+      wrong += !agree(hierarchy, in_fcl, sphere, touching);
     }
   }
   return {"proximity/sphere/other_than_fcl_of_" + std::to_string(queries), 0.0,

@@ -46,15 +46,9 @@ bool isLength(double value) {
   return std::isfinite(value) && std::abs(value) <= proximity::kLargestLength;
 }
 
-template <typename Point>
-bool isPlace(const Point& point) {
-  return isLength(point.x) && isLength(point.y) && isLength(point.z);
-}
-
-template <typename Point>
-void requirePlaces(const std::string& name, const std::vector<Point>& points) {
+void requirePlaces(const std::string& name, const std::vector<geometry_msgs::Point>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (isPlace(points[i])) continue;
+    if (proximity::isPlace({points[i].x, points[i].y, points[i].z})) continue;
     std::ostringstream message;
     message << name << "[" << i << "] = (" << points[i].x << ", " << points[i].y << ", "
             << points[i].z << "): allowed are finite numbers up to " << proximity::kLargestLength

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "haptex/proximity/triangle_edges.h"
+
 namespace haptex::proximity {
 namespace {
 
@@ -12,21 +14,6 @@ using Eigen::Vector3d;
 
 // sin^2 of the angle at the first corner below which a triangle counts as thin.
 constexpr double kThin = 1e-4;
-
-double clampToUnit(double t) { return std::min(std::max(t, 0.0), 1.0); }
-
-/// Parameter of the point of the segment begin + t edge, 0 <= t <= 1, closest to a place.
-double closestOnSegment(const Vector3d& begin, const Vector3d& edge, const Vector3d& place) {
-  const double length_2 = edge.squaredNorm();
-  return length_2 > 0.0 ? clampToUnit(edge.dot(place - begin) / length_2) : 0.0;
-}
-
-Vector3d weightsOnEdge(int edge, double t) {
-  Vector3d weights = Vector3d::Zero();
-  weights[edge] = 1.0 - t;
-  weights[(edge + 1) % 3] = t;
-  return weights;
-}
 
 void keepNearer(TrianglePoint& nearest, double distance, const Vector3d& barycentric) {
   if (distance < nearest.distance) nearest = {distance, barycentric};
@@ -47,9 +34,9 @@ TrianglePoint closestOnThin(const Triangle& corners, const Vector3d& normal,
   TrianglePoint nearest{std::numeric_limits<double>::infinity(), Vector3d::Zero()};
   for (int edge = 0; edge < 3; ++edge) {
     const Vector3d& begin = corners[edge];
-    const Vector3d along = corners[(edge + 1) % 3] - begin;
-    const double t = closestOnSegment(begin, along, place);
-    keepNearer(nearest, (begin + t * along - place).norm(), weightsOnEdge(edge, t));
+    const Vector3d& end = corners[(edge + 1) % 3];
+    const double t = nearestFraction(place, begin, end);
+    keepNearer(nearest, (begin + t * (end - begin) - place).norm(), edgeWeights(edge, t));
   }
   if (normal.squaredNorm() > 0.0) {
     const Vector3d weights = projectedWeights(corners[1] - corners[0], corners[2] - corners[0],
@@ -100,7 +87,7 @@ Vector3d closestWeights(const Triangle& corners, const Vector3d& ab, const Vecto
 double bestAxisParameter(double along, double beside, double axis_2, double growth) {
   const double slack_2 = axis_2 - growth * growth;
   if (slack_2 <= 0.0) return growth > 0.0 ? 1.0 : 0.0;  // one sphere holds the other
-  return clampToUnit((along + beside * growth * std::sqrt(axis_2 / slack_2)) / axis_2);
+  return std::clamp((along + beside * growth * std::sqrt(axis_2 / slack_2)) / axis_2, 0.0, 1.0);
 }
 
 class CapsuleToTriangle {
@@ -146,7 +133,8 @@ class CapsuleToTriangle {
   /// end is best, by convexity.
   void tryEdge(int edge) {
     const Vector3d& begin = corners_[edge];
-    const Vector3d along = corners_[(edge + 1) % 3] - begin;
+    const Vector3d& end = corners_[(edge + 1) % 3];
+    const Vector3d along = end - begin;
     const double length_2 = along.squaredNorm();
     double s = 0.0;
     if (length_2 > 0.0) {
@@ -154,11 +142,11 @@ class CapsuleToTriangle {
         return v - along * (along.dot(v) / length_2);
       };
       const Vector3d axis = across(axis_), offset = across(begin - capsule_.begin.centre);
-      s = closestOnSegment(begin, along, centre(bestParameter(axis, offset)));
+      s = nearestFraction(centre(bestParameter(axis, offset)), begin, end);
     }
     const Vector3d point = begin + s * along;
     const double t = bestParameter(axis_, point - capsule_.begin.centre);
-    keepNearer(nearest_, (point - centre(t)).norm() - radius(t), weightsOnEdge(edge, s));
+    keepNearer(nearest_, (point - centre(t)).norm() - radius(t), edgeWeights(edge, s));
   }
 
   double bestParameter(const Vector3d& axis, const Vector3d& offset) const {

@@ -1,9 +1,10 @@
 #include "haptex/proximity/triangle_pair.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "haptex/proximity/triangle_edges.h"
 
 namespace haptex::proximity {
 namespace {
@@ -12,22 +13,7 @@ using Eigen::Vector3d;
 
 bool isFraction(double number) { return number >= 0.0 && number <= 1.0; }
 
-// The fraction of the way from begin to end that is nearest to a place.
-double nearestFraction(const Vector3d& place, const Vector3d& begin, const Vector3d& end) {
-  const Vector3d way = end - begin;
-  const double square = way.squaredNorm();
-  return square > 0.0 ? std::clamp((place - begin).dot(way) / square, 0.0, 1.0) : 0.0;
-}
-
 Vector3d cornerWeights(int corner) { return Vector3d::Unit(corner); }
-
-// Of the point a fraction along the edge that begins at a corner.
-Vector3d edgeWeights(int corner, double fraction) {
-  Vector3d weights = Vector3d::Zero();
-  weights[corner] = 1.0 - fraction;
-  weights[(corner + 1) % 3] = fraction;
-  return weights;
-}
 
 // A triangle with its altitude, which is its second edge without the part along the first.
 class Face {

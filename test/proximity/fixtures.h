@@ -16,11 +16,7 @@ inline cloth::ClothMesh sheet(int cells, double size = 0.2) {
 }
 
 inline std::vector<Eigen::Vector3d> restPositions(const cloth::ClothMesh& mesh) {
-  std::vector<Eigen::Vector3d> positions;
-  for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {
-    positions.emplace_back(rest.x(), rest.y(), 0.0);
-  }
-  return positions;
+  return evaluation::deformedSheet(mesh, "flat");
 }
 
 /// Cursors of every shape near the particles of a state, as large as a few of its triangles.

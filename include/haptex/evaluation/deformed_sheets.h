@@ -20,4 +20,8 @@ struct DeformedSheet {
 /// @param mesh as makeRectangle() makes it
 std::vector<DeformedSheet> deformedSheets(const cloth::ClothMesh& mesh);
 
+/// The positions (m) of one of them. "flat" has the rest coordinates (u, v, 0).
+/// @throws std::invalid_argument if none has that name
+std::vector<Eigen::Vector3d> deformedSheet(const cloth::ClothMesh& mesh, const std::string& name);
+
 }  // namespace haptex::evaluation

@@ -68,7 +68,9 @@ struct Kernels {
                       const Visitor& visitor);
 };
 
-/// @param groups 1 to 4 @throws std::invalid_argument if this processor lacks the instruction set
+/// @param groups 1 to 4
+/// @throws std::invalid_argument for another number of groups, or if this processor lacks the
+///   instruction set
 const Kernels& choose(int groups, InstructionSet instruction_set);
 
 /// Groups of axes of a kind.
