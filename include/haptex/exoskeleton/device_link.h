@@ -1,0 +1,65 @@
+// The driver's end of the serial line: handshake, states in, commands out. Does no input or output
+// itself: bytes and time are handed in, bytes to be sent are handed out.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "haptex/exoskeleton/clock.h"
+#include "haptex/exoskeleton/device_messages.h"
+#include "haptex/exoskeleton/frame_parser.h"
+#include "haptex/exoskeleton/serial_frame.h"
+
+namespace haptex::exoskeleton {
+
+enum class LinkStatus {
+  kConnecting,       ///< Hello is repeated, no Identity yet
+  kConnected,        ///< states arrive
+  kTimedOut,         ///< was connected, and no state came for kStateTimeout; Hello is repeated
+  kVersionMismatch,  ///< the device answers in another protocol version; Hello is repeated
+};
+
+/// In plain words, for diagnostics.
+const char* describe(LinkStatus status);
+
+/// Counts since the construction, no units.
+struct LinkStatistics {
+  ParserStatistics received;             ///< good, corrupt and foreign frames, bytes of garbage
+  std::uint64_t lost_states = 0;         ///< gaps in the sequence numbers of states
+  std::uint64_t repeated_states = 0;     ///< same or older sequence number: duplicated or reordered
+  std::uint64_t timeouts = 0;            ///< transitions to kTimedOut
+  std::uint64_t version_mismatches = 0;  ///< answers in another version
+  std::uint64_t handshakes = 0;          ///< transitions to kConnected
+};
+
+/// Allocates in the constructor only.
+class DeviceLink {
+ public:
+  static constexpr Time kStateTimeout = std::chrono::milliseconds(10);
+  static constexpr Time kHelloPeriod = std::chrono::milliseconds(100);
+
+  /// Takes bytes that have arrived.
+  void receive(const std::uint8_t* bytes, std::size_t count, Time now);
+
+  /// The newest state since the last call, or nullptr. Valid until the next receive().
+  const DeviceState* takeState();
+
+  /// What to send now: a Hello if one is due, nothing otherwise. To be called once per tick, also
+  /// notices timeouts. Valid until the next call that returns bytes.
+  Bytes poll(Time now);
+
+  /// A command as bytes, numbered; empty unless connected.
+  Bytes send(const DeviceCommand& command);
+
+  /// The port was closed or opened anew: starts over with a handshake.
+  void reset();
+
+  LinkStatus status() const;
+  /// Of the device, once connected.
+  const Identity& identity() const;
+  const LinkStatistics& statistics() const;
+  /// Sequence number of the last command sent: DeviceState::last_command echoes it.
+  std::uint8_t lastCommand() const;
+};
+
+}  // namespace haptex::exoskeleton

@@ -1,0 +1,48 @@
+// The mechanics and electronics of the emulated exoskeleton on a person's hand.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "haptex/exoskeleton/device_messages.h"
+#include "haptex/exoskeleton/finger.h"
+
+namespace haptex::exoskeleton {
+
+/// What no device can know of itself, for tests and plots, in hand_base.
+struct EmulatedTruth {
+  MotorVector motor_angles = MotorVector::Zero();           ///< rad
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();       ///< m, of the fingertip
+  Eigen::Vector3d contact_force = Eigen::Vector3d::Zero();  ///< N, by the device on the fingertip
+  Eigen::Vector3d motor_force =
+      Eigen::Vector3d::Zero();  ///< N, what the motor torques give there at rest
+};
+
+/// Motors, transmissions, linkages and a finger in each, integrated at kRate. Reproducible: noise
+/// comes from a seeded generator. step() and read() do not allocate.
+class EmulatedDevice {
+ public:
+  static constexpr double kRate = 8000.0;  ///< Hz
+
+  /// @param urdf text of the exoskeleton's URDF: geometry, masses, limits
+  /// @throws std::invalid_argument as FingerKinematics
+  EmulatedDevice(const std::string& urdf, unsigned seed);
+
+  /// Where the person moves the fingertip to (m, in hand_base), from the next step on. A target out
+  /// of reach is replaced by the nearest one that the finger can reach.
+  /// Not finite: ignored.
+  void setTarget(Finger finger, const Eigen::Vector3d& target);
+
+  /// One period of kRate under a command.
+  void step(const DeviceCommand& command);
+
+  /// What encoders and force sensors say now. time counts the steps.
+  DeviceState read();
+
+  /// A component reads the end of the range of the sensor (fault).
+  void saturateSensor(Finger finger, bool saturated);
+
+  const EmulatedTruth& truth(Finger finger) const;
+};
+
+}  // namespace haptex::exoskeleton
