@@ -1,0 +1,45 @@
+// A serial line of the operating system, read and written without waiting.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "haptex/exoskeleton/bytes.h"
+
+namespace haptex::exoskeleton {
+
+/// Closed when destroyed. read() and write() do not allocate.
+class SerialPort {
+ public:
+  /// Baud rate of the protocol, see docs/serial_protocol.md. A pseudo-terminal ignores it.
+  static constexpr int kBaudRate = 921600;
+
+  /// Opens a device (/dev/ttyUSB0) or a pseudo-terminal: raw, 8 data bits, no parity, 1 stop bit,
+  /// no flow control, exclusive.
+  /// @throws std::runtime_error naming the port and what the system says, for example that there is
+  ///   none of that name or that it is not a serial port
+  explicit SerialPort(const std::string& path);
+  ~SerialPort();
+  SerialPort(const SerialPort&) = delete;
+  SerialPort& operator=(const SerialPort&) = delete;
+
+  /// Reads what is there, at most `capacity` bytes. @returns how many, 0 if none or closed
+  std::size_t read(std::uint8_t* buffer, std::size_t capacity);
+
+  /// Writes all bytes or none. @returns false if the line does not take them now: what cannot be
+  /// sent in time is of no use later
+  bool write(Bytes bytes);
+
+  /// True once a read or write found the line gone (unplugged, other end closed).
+  bool closed() const { return closed_; }
+
+  /// To wait for bytes with poll(2), or -1.
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_ = -1;
+  bool closed_ = false;
+};
+
+}  // namespace haptex::exoskeleton
