@@ -2,21 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <fstream>
 #include <random>
-#include <sstream>
-#include <string>
 
 #include "haptex/exoskeleton/emulated_finger.h"
+#include "shipped_urdf.h"
 
 namespace haptex::exoskeleton {
-
-inline std::string shippedUrdf() {
-  std::ifstream file(HAPTEX_SOURCE_DIRECTORY "/urdf/hand_exoskeleton.urdf");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 /// Within the limits, `margin` (share of the range) away from each.
 inline MotorVector randomAngles(const EmulatedFinger& finger, std::mt19937& generator,
