@@ -18,23 +18,28 @@ constexpr double kReduction = 14.0;
 struct Configuration {
   bool within_limits = true;
   int outside = -1;  ///< first joint outside of its limits, or -1
-  /// Smallest singular value of the Jacobian with respect to the driven joints (m/rad): a fingertip
-  /// force in the worst direction needs 1/this as much joint torque.
+  /// Smallest singular value of the Jacobian with respect to the driven joints (m/rad). Along its
+  /// direction an error of the joint torque is felt as a force error 1/this as large, and the
+  /// joints turn 1/this as fast as the fingertip moves.
   double smallest_singular_value = 0.0;
   bool singular = false;  ///< that is below kSingular
 };
 
-/// Below this singular value (m/rad) a configuration counts as singular: 5 N would take more than
-/// the torque of the motors.
-constexpr double kSingular = 0.008;
+/// Below this singular value (m/rad) a configuration counts as singular: 2 mN m of friction in the
+/// joints (representative) are felt as more than 0.5 N, a tenth of the largest force.
+constexpr double kSingular = 0.004;
 
 /// Built from the URDF: the chain from hand_base to <finger>_tip, whose last joint mimics the one
 /// before it. Not thread-safe; allocates in the constructor only.
 class FingerKinematics {
  public:
   /// @param urdf the text of a URDF
-  /// @throws std::invalid_argument naming the finger and what its chain lacks: hand_base,
-  ///   <finger>_tip, exactly four revolute joints with limits, the mimic of the last, or parsing
+  /// @throws std::invalid_argument naming the finger and what is wrong: a text that urdfdom cannot
+  ///   read (a revolute joint without limits or a number that is not finite, too); no link
+  ///   hand_base or <finger>_tip, or the one does not descend from the other; a joint between them
+  ///   that is neither revolute nor fixed, has limits that do not increase or an axis without
+  ///   direction; another number of revolute joints than four; the last does not mimic the one
+  ///   before it
   FingerKinematics(const std::string& urdf, Finger finger);
   ~FingerKinematics();
   FingerKinematics(FingerKinematics&&) noexcept;
@@ -56,6 +61,7 @@ class FingerKinematics {
   /// included. Its transpose takes a force (N) to motor torques (N m).
   Eigen::Matrix3d motorJacobian(const JointVector& joint_angles);
 
+  /// An angle that is not a number is outside of its limits, and singular.
   Configuration configuration(const JointVector& joint_angles);
 
  private:

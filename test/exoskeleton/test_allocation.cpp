@@ -1,0 +1,29 @@
+// An executable of its own, because it counts every call of malloc in the process.
+#include <gtest/gtest.h>
+
+#include "../malloc_counter.h"
+#include "haptex/exoskeleton/finger_kinematics.h"
+#include "shipped_urdf.h"
+
+namespace haptex::exoskeleton {
+namespace {
+
+TEST(ExoskeletonAllocation, KinematicsDoNotAllocateAfterConstruction) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  FingerKinematics finger(shippedUrdf(), Finger::kIndex);
+  const long before = allocations;
+  double sum = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const JointVector at = finger.jointAngles(MotorVector(0.1, 5.0, 0.1 * i));
+    sum += finger.fingertip(at).translation().sum() + finger.motorJacobian(at).sum() +
+           finger.configuration(at).smallest_singular_value + finger.motorAngles(at).sum();
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(before, 0) << "the count does not work";
+  EXPECT_NE(sum, 0.0);
+}
+
+}  // namespace
+}  // namespace haptex::exoskeleton
