@@ -93,7 +93,8 @@ Eigen::Vector3d angularVelocity(exoskeleton::FingerKinematics& kinematics,
   // the velocity or below 1e-11 rad/s.
   constexpr double kAngle = 1e-4;
   const double speed = joint_velocities.cwiseAbs().sum();
-  if (!(speed > 0.0)) return Eigen::Vector3d::Zero();
+  constexpr double kRest = 1e-9;  // rad/s; a filter's velocity comes to rest without ever being 0
+  if (!(speed > kRest)) return Eigen::Vector3d::Zero();
   const double step = kAngle / speed;
   const Eigen::Matrix3d before =
       kinematics.fingertip(joint_angles - step * joint_velocities).linear();

@@ -6,11 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 
+#include "../exoskeleton/shipped_urdf.h"
 #include "haptex/exoskeleton/device_end.h"
 #include "haptex/exoskeleton/emulated_device.h"
 #include "haptex/exoskeleton/pseudo_terminal.h"
@@ -37,11 +36,6 @@ class TemporaryDirectory {
  private:
   std::string path_;
 };
-
-inline std::string testUrdf() {
-  std::ifstream file(HAPTEX_SOURCE_DIRECTORY "/urdf/hand_exoskeleton.urdf");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 /// The firmware's end of a pseudo-terminal: one period of its life.
 class DeviceOnALine {
@@ -108,7 +102,7 @@ class LivingDevice {
   static constexpr int kSteps = static_cast<int>(exoskeleton::EmulatedDevice::kRate / 1000.0);
 
   DeviceOnALine line_;
-  exoskeleton::EmulatedDevice device_{testUrdf(), 1};
+  exoskeleton::EmulatedDevice device_{exoskeleton::shippedUrdf(), 1};
   PeriodicThread thread_{std::chrono::milliseconds(1),
                          [this](exoskeleton::Time now) { live(now); }};
 };

@@ -64,7 +64,7 @@ class ADriverLoop : public ::testing::Test {
 
   const TemporaryDirectory directory_;
   const std::string port_ = directory_.path() + "/exoskeleton";
-  DriverLoop loop_{port_, testUrdf()};
+  DriverLoop loop_{port_, exoskeleton::shippedUrdf()};
   PeriodicThread thread_{DriverLoop::kPeriod, [this](Time now) { loop_.tick(now); }};
 };
 
@@ -101,7 +101,9 @@ TEST_F(ADriverLoop, ShowsEveryStateOfTheDeviceOnceInOrder) {
   for (int i = 0; i < 100; ++i) {
     DriverSnapshot now;
     ASSERT_TRUE(loop_.takeMeasured(now, kPatience));
-    if (loop_.lostSnapshots() == lost) EXPECT_EQ(now.states, last.states + 1);
+    if (loop_.lostSnapshots() == lost) {
+      EXPECT_EQ(now.states, last.states + 1);
+    }
     EXPECT_GT(now.states, last.states);
     EXPECT_GT(now.state_time, last.state_time);
     last = now;

@@ -150,7 +150,7 @@ TEST(ExoskeletonThreads, ThePortIsOpenedWhileTheLoopLooksAndOthersAsk) {
 TEST(ExoskeletonThreads, TheLoopTicksOnWhileEverybodyWantsSomething) {
   constexpr std::uint64_t kStates = 300;
   const StillDevice device;
-  DriverLoop loop(device.port(), testUrdf());
+  DriverLoop loop(device.port(), exoskeleton::shippedUrdf());
   const PeriodicThread thread(DriverLoop::kPeriod, [&](Time now) { loop.tick(now); });
   std::atomic<bool> stop{false};
   std::atomic<int> bad{0};
