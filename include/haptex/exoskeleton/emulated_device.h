@@ -2,9 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <random>
 #include <string>
 
 #include "haptex/exoskeleton/device_messages.h"
+#include "haptex/exoskeleton/emulated_finger.h"
 #include "haptex/exoskeleton/finger.h"
 
 namespace haptex::exoskeleton {
@@ -23,6 +26,12 @@ struct EmulatedTruth {
 class EmulatedDevice {
  public:
   static constexpr double kRate = 8000.0;  ///< Hz
+  /// N m, what the current limit leaves of each motor's torque: representative.
+  static constexpr double kLargestTorque = 0.06;
+  /// The force sensor of each component: its range is -kForceRange to kForceRange (N), its noise is
+  /// normal with this standard deviation (N). Both are representative.
+  static constexpr double kForceRange = 10.0;
+  static constexpr double kForceNoise = 0.002;
 
   /// @param urdf text of the exoskeleton's URDF: geometry, masses, limits
   /// @throws std::invalid_argument as FingerKinematics
@@ -33,7 +42,8 @@ class EmulatedDevice {
   /// Not finite: ignored.
   void setTarget(Finger finger, const Eigen::Vector3d& target);
 
-  /// One period of kRate under a command.
+  /// One period of kRate under a command. While its mode is DriveMode::kHoming the person lets the
+  /// fingers be moved. Torques of a finger that are not finite are taken as zero.
   void step(const DeviceCommand& command);
 
   /// What encoders and force sensors say now. time counts the steps.
@@ -42,7 +52,27 @@ class EmulatedDevice {
   /// A component reads the end of the range of the sensor (fault).
   void saturateSensor(Finger finger, bool saturated);
 
-  const EmulatedTruth& truth(Finger finger) const;
+  const EmulatedTruth& truth(Finger finger) const { return fingers_[finger].truth; }
+  const EmulatedFinger& finger(Finger finger) const { return fingers_[finger].dynamics; }
+
+ private:
+  struct EmulatedSide {
+    EmulatedSide(const std::string& urdf, Finger finger) : dynamics(urdf, finger) {}
+
+    EmulatedFinger dynamics;
+    MotorVector switched_on_at = MotorVector::Zero();  // rad, where the encoders count from
+    bool sensor_saturated = false;
+    EmulatedTruth truth;
+
+    void updateTruth(const MotorVector& torques);
+  };
+
+  FingerReading reading(const EmulatedSide& side);
+
+  PerFinger<EmulatedSide> fingers_;
+  std::mt19937 generator_;
+  std::normal_distribution<double> noise_{0.0, kForceNoise};
+  std::uint64_t steps_ = 0;
 };
 
 }  // namespace haptex::exoskeleton
