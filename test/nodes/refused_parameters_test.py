@@ -64,6 +64,19 @@ class RefusedParameters(unittest.TestCase):
             self.refused(f'_volume_level:={value}', node='proximity',
                          says=['~volume_level', 'allowed are whole numbers from -1 to 16'])
 
+    def test_driver_ports(self):
+        for port in ('_port:=', '_port:=3', '_rate:=1'):
+            self.refused(port, node='exoskeleton_driver',
+                         says=['~port', 'is not set to a string', '/dev/ttyUSB0'])
+
+    def test_driver_robot_descriptions(self):
+        self.refused('_port:=/dev/null', node='exoskeleton_driver',
+                     says=['parameter robot_description is not set', 'URDF'])
+        self.refused('_port:=/dev/null', '_robot_description:=3', node='exoskeleton_driver',
+                     says=['~robot_description', 'is not a string'])
+        self.refused('_port:=/dev/null', '_robot_description:=a robot',
+                     node='exoskeleton_driver', says=['~robot_description'])
+
 
 if __name__ == '__main__':
     rostest.rosrun('haptex', 'refused_parameters', RefusedParameters)
