@@ -2,77 +2,86 @@
 // device in, torques out.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
 
 #include "haptex/exoskeleton/clock.h"
 #include "haptex/exoskeleton/device_messages.h"
 #include "haptex/exoskeleton/finger.h"
+#include "haptex/exoskeleton/finger_controller.h"
 #include "haptex/exoskeleton/force_command.h"
 #include "haptex/exoskeleton/operating_state.h"
-#include "haptex/exoskeleton/safety_chain.h"
 
 namespace haptex::exoskeleton {
 
-/// Why a finger feels no force, most important first; kNone if nothing stands in the way.
-enum class NoForceReason {
-  kNone,
-  kNoDevice,  ///< no states from the device
-  kFault,     ///< latched, see DeviceController::fault()
-  kDisabled,
-  kPaused,
-  kNotHomed,
-  kHoming,
-  kNoCommand,      ///< nobody commands a force: none yet, or the last one is too old
-  kOutsideLimits,  ///< a joint is outside of its limits
-  kSingular,
-};
-const char* describe(NoForceReason reason);
-
-/// What is known of a finger, in hand_base.
-struct FingerMeasurement {
-  JointVector joint_angles = JointVector::Zero();          ///< rad
-  JointVector joint_velocities = JointVector::Zero();      ///< rad/s
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of <finger>_tip (m)
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      ///< m/s
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, measured, on the person's fingertip
-  Eigen::Vector3d desired_force = Eigen::Vector3d::Zero();  ///< N, what left the safety chain
-  NoForceReason no_force = NoForceReason::kNoDevice;
-  SafetyStatistics safety;
-};
-
-/// Why a request was refused; empty if it was accepted.
-using Refusal = std::string;
-
-/// Not thread-safe. tick(), command() and the getters do not allocate.
+/// Not thread-safe. tick(), command(), raiseFault() and the getters do not allocate.
+///
+/// Commands that the device does not get are as dangerous as commands that nobody sends: its
+/// firmware takes the motors to zero, and the first command it gets again would make the force
+/// jump. So the desired force goes to zero while kRoundTrip has passed without a state that echoes
+/// a newer command, and returns at the slew limit.
 class DeviceController {
  public:
+  /// Without a state for this long the device is lost. The same as DeviceLink::kStateTimeout.
+  static constexpr Time kStateTimeout = std::chrono::milliseconds(10);
+  /// Just before the firmware starts to take the motors to zero, DeviceEnd::kRampStart.
+  static constexpr Time kRoundTrip = std::chrono::milliseconds(4);
+  /// The device's clock may be this much ahead of ours before it counts as another one.
+  static constexpr Time kClockTolerance = std::chrono::milliseconds(500);
+
   /// @param urdf text of the exoskeleton's URDF
   /// @throws std::invalid_argument as FingerKinematics
   explicit DeviceController(const std::string& urdf);
 
-  /// Requests of a person. A refused one changes nothing.
+  /// Requests of a person, see OperatingStateMachine. A refused one changes nothing.
   Refusal enable();
   Refusal disable();
   Refusal pause();
+  /// Starts homing, in DISABLED only. It ends with is_homed, or with a fault that names the joint.
   Refusal home();
+  /// Refused while the device is lost, if that was the cause.
   Refusal clearFault();
 
-  /// Takes a commanded force. One that is not finite is dropped and counted (SafetyStatistics).
+  /// Takes a commanded force. One that is not finite is dropped and counted (SafetyStatistics); one
+  /// for a device that is not ENABLED is ignored.
   void command(Finger finger, const ForceCommand& command, Time now);
 
-  /// Latches a fault from outside, for example of the port.
+  /// Latches a fault from outside, for example of the port. Cut after 250 characters.
   void raiseFault(const std::string& why);
 
-  /// One period. @param state the newest one of the device, or nullptr if none came
+  /// One period. @param state the newest one of the device, or nullptr if none came @param now
+  /// never before that of the last tick
   const DeviceCommand& tick(const DeviceState* state, Time now);
 
-  const FingerMeasurement& measured(Finger finger) const;
-  const OperatingState& operatingState() const;
+  const FingerMeasurement& measured(Finger finger) const { return fingers_[finger].measurement(); }
+  const OperatingState& operatingState() const { return states_.state(); }
   /// What latched the fault, in plain words; empty without one.
-  const std::string& fault() const;
+  const std::string& fault() const { return states_.fault(); }
+
+ private:
+  void latch(const char* why);
+  void accept(const DeviceState& state, Time now);
+  bool isAnotherLife(const DeviceState& state, Time now) const;
+  void followEcho(const DeviceState& state, Time now);
+  void watchDevice(Time now);
+  void home(Time now);
+  void driveFingers(Time now);
+  NoForceReason hold(Time now) const;
+
+  OperatingStateMachine states_;
+  PerFinger<FingerController> fingers_;
+  DeviceCommand command_;
+  Time now_{0};
+  Time last_state_{0};             // when it came
+  Time last_echo_{0};              // when a state last echoed a newer command
+  std::uint32_t device_time_ = 0;  // us
+  std::uint8_t echo_ = 0;
+  bool echoes_ = false;  // the device has echoed something: one that never does is not watched
+  bool device_tripped_ = false;
+  bool state_seen_ = false;
+  bool has_device_ = false;
+  bool device_lost_ = false;  // this latched the fault
+  bool forces_on_ = false;    // the motors are rendering, or on their way to no force
 };
 
 }  // namespace haptex::exoskeleton

@@ -1,0 +1,112 @@
+#include "haptex/exoskeleton/force_controller.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "haptex/exoskeleton/device_messages.h"
+
+namespace haptex::exoskeleton {
+namespace {
+
+using Eigen::Vector3d;
+
+// N m, what 16 bits say.
+constexpr double kEncodable = std::numeric_limits<std::int16_t>::max() * kTorqueStep;
+
+// Share of the way that a filter of first order goes in a period.
+double share(double time_constant) {
+  return -std::expm1(-ForceController::kPeriod / time_constant);
+}
+
+void filter(const Vector3d& in, double share_of_way, Vector3d& first, Vector3d& second) {
+  first += share_of_way * (in - first);
+  second += share_of_way * (first - second);
+}
+
+}  // namespace
+
+void ForceController::reset() {
+  for (Vector3d* vector : {&half_smooth_, &smooth_, &half_expected_, &expected_, &half_slow_,
+                           &slow_, &error_, &integral_, &correction_}) {
+    vector->setZero();
+  }
+  on_its_way_.fill(Vector3d::Zero());
+  oldest_ = 0;
+  share_ = release_left_ = 1.0;
+  torque_limited_ = false;
+  released_ = true;
+}
+
+void ForceController::feedForward(const ForceInput& input) {
+  static const double smoothing = share(kSmoothing), response = share(kResponse),
+                      slow = share(kSlow);
+  if (input.stopping || !input.obeyed) {
+    half_smooth_ = smooth_ = slewLimited(input.desired, smooth_, kPeriod);
+  } else {
+    filter(input.desired, smoothing, half_smooth_, smooth_);
+  }
+  filter(on_its_way_[oldest_], response, half_expected_, expected_);
+  on_its_way_[oldest_] = smooth_;
+  oldest_ = (oldest_ + 1) % kLatency;
+  filter(expected_, slow, half_slow_, slow_);
+}
+
+void ForceController::integrate(const Vector3d& measured) {
+  static const double error_filter = share(kErrorFilter);
+  error_ += error_filter * (expected_ - measured - error_);
+  const double change = (smooth_ - slow_).norm();
+  const Vector3d next = saturated(
+      integral_ + kIntegral * kPeriod / (1.0 + change / kLargeChange) * error_, kMaximumCorrection);
+  // The torques are at their limit: more of the same would only have to be undone later.
+  if (torque_limited_ && next.norm() > integral_.norm()) return;
+  integral_ = next;
+}
+
+MotorVector ForceController::torques(const ForceInput& input, double damping) {
+  MotorVector torques =
+      input.jacobian.transpose() * (smooth_ + correction_) - damping * input.motor_velocities;
+  torque_limited_ = false;
+  for (int i = 0; i < kMotors; ++i) {
+    const double needed = (kMaximumForce + kMaximumCorrection) * input.jacobian.col(i).norm();
+    const double limit = std::min(needed, kEncodable);
+    if (std::abs(torques[i]) <= limit) continue;
+    torque_limited_ = true;
+    torques[i] = std::isfinite(torques[i]) ? std::copysign(limit, torques[i]) : 0.0;
+  }
+  return torques;
+}
+
+MotorVector ForceController::tick(const ForceInput& input) {
+  released_ = false;
+  share_ *= release_left_;  // enabled again before the release was through
+  release_left_ = 1.0;
+  feedForward(input);
+  const bool feedback = input.sensor_works && input.obeyed;
+  if (!input.sensor_works) ++feed_forward_only_;
+  if (!feedback) {
+    error_.setZero();
+  } else if (input.measured_now) {
+    integrate(input.measured);
+  }
+  constexpr double step = kPeriod / kFade;
+  share_ = std::clamp(share_ + (feedback ? step : -step), 0.0, 1.0);
+  correction_ = share_ * integral_;
+  return torques(input, kDamping);
+}
+
+MotorVector ForceController::release(const ForceInput& input) {
+  if (released_) return MotorVector::Zero();
+  release_left_ = std::max(0.0, release_left_ - kPeriod / kRelease);
+  // The safety chain's ramp is slow enough; its smoothing would outlive it.
+  half_smooth_ = smooth_ = slewLimited(input.desired, smooth_, kPeriod);
+  correction_ = release_left_ * share_ * integral_;
+  const MotorVector last = torques(input, release_left_ * kDamping);
+  if (release_left_ == 0.0 && smooth_.isZero(0.0)) {
+    reset();
+    return MotorVector::Zero();
+  }
+  return last;
+}
+
+}  // namespace haptex::exoskeleton

@@ -1,0 +1,112 @@
+// The device controller in a closed loop with two emulated fingers, over a line that delays.
+#pragma once
+
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <random>
+
+#include "haptex/exoskeleton/device_controller.h"
+#include "haptex/exoskeleton/emulated_finger.h"
+#include "shipped_urdf.h"
+
+namespace haptex::exoskeleton {
+
+/// Ticks of 1 ms. Encoders and force sensors as EmulatedDevice has them, but with mechanics that a
+/// test chooses, and fingers that it may put anywhere.
+struct ControlledDevice {
+  static constexpr int kSubsteps = 8;
+
+  /// @param state_delay, command_delay in ticks; what a line takes
+  explicit ControlledDevice(const FingerMechanics& mechanics = {}, std::size_t state_delay = 1,
+                            std::size_t command_delay = 1)
+      : fingers{{EmulatedFinger(shippedUrdf(), Finger::kIndex, mechanics),
+                 EmulatedFinger(shippedUrdf(), Finger::kThumb, mechanics)}},
+        controller(shippedUrdf()),
+        states_on_the_way(state_delay, read()),
+        commands_on_the_way(command_delay) {}
+
+  DeviceState read() {
+    DeviceState state;
+    state.time = static_cast<std::uint32_t>(now.count() / 1000);
+    state.last_command = last_command;
+    for (const Finger finger : kFingers) {
+      const EmulatedFinger& emulated = fingers[finger];
+      for (int i = 0; i < kMotors; ++i) {
+        state.fingers[finger].encoder_counts[i] = static_cast<std::int32_t>(
+            std::lround(emulated.motorAngles()[i] * kCountsPerRevolution / (2.0 * M_PI)) +
+            count_offset);
+      }
+      Eigen::Vector3d force = emulated.thimble().linear().transpose() * emulated.contactForce();
+      for (int i = 0; i < 3; ++i) force[i] += noise(generator);
+      state.fingers[finger].force = kForceStep * (force / kForceStep).array().round();
+      if (spoil) spoil(state);
+    }
+    return state;
+  }
+
+  /// One period of everything.
+  void tick() {
+    now += std::chrono::milliseconds(1);
+    states_on_the_way.push_back(read());
+    const DeviceState state = states_on_the_way.front();
+    states_on_the_way.pop_front();
+    for (const Finger finger : kFingers) {
+      if (wanted[finger]) controller.command(finger, *wanted[finger], now);
+    }
+    commands_on_the_way.push_back(controller.tick(states_arrive ? &state : nullptr, now));
+    if (commands_arrive) obeyed = commands_on_the_way.front();
+    if (commands_arrive) ++last_command;
+    commands_on_the_way.pop_front();
+    for (int i = 0; i < kSubsteps; ++i) {
+      for (const Finger finger : kFingers) {
+        EmulatedFinger& emulated = fingers[finger];
+        emulated.relax(obeyed.mode == DriveMode::kHoming);
+        emulated.step(obeyed.mode == DriveMode::kOff ? MotorVector::Zero()
+                                                     : obeyed.torques[finger],
+                      1.0 / (1000.0 * kSubsteps));
+      }
+    }
+  }
+
+  void run(double duration) {
+    for (int i = 0; i < static_cast<int>(std::lround(1000.0 * duration)); ++i) tick();
+  }
+
+  /// Until it is homed, enabled and the soft start is over. @returns false if it is refused
+  bool start() {
+    run(0.05);
+    if (!controller.home().empty()) return false;
+    for (int i = 0; i < 12000 && controller.operatingState().is_busy; ++i) tick();
+    run(0.6);  // the person takes the fingers back
+    if (!controller.enable().empty()) return false;
+    run(0.6);
+    return true;
+  }
+
+  /// At rest at these motor angles, where the person wants to be.
+  void place(Finger finger, const MotorVector& angles) { fingers[finger].place(angles); }
+
+  void want(Finger finger, const Eigen::Vector3d& force) {
+    ForceCommand command;
+    command.force = force;
+    wanted[finger] = command;
+  }
+
+  PerFinger<EmulatedFinger> fingers;
+  DeviceController controller;
+  Time now{0};
+  PerFinger<std::optional<ForceCommand>> wanted;  ///< sent in every period
+  bool states_arrive = true;
+  bool commands_arrive = true;
+  int count_offset = 100000;
+  void (*spoil)(DeviceState&) = nullptr;
+  DeviceCommand obeyed;
+  std::uint8_t last_command = 0;
+  std::mt19937 generator{7};
+  std::normal_distribution<double> noise{0.0, 0.002};
+  std::deque<DeviceState> states_on_the_way;
+  std::deque<DeviceCommand> commands_on_the_way;
+};
+
+}  // namespace haptex::exoskeleton
