@@ -46,19 +46,25 @@ RobotDescription readRobotDescription(const ros::NodeHandle& private_node) {
   return description;
 }
 
-std::string readScenePath(const ros::NodeHandle& private_node) {
-  const std::string name = private_node.resolveName("scene");
-  std::string scene;
-  if (!private_node.getParam("scene", scene)) {
-    throw std::invalid_argument("parameter " + name +
-                                " is not set to a string: allowed is the path of a scene file or "
-                                "the name of one in config/scenes");
+std::string readConfigPath(const ros::NodeHandle& private_node, const std::string& name,
+                           const std::string& directory) {
+  const std::string full_name = private_node.resolveName(name);
+  std::string value;
+  if (!private_node.getParam(name, value)) {
+    throw std::invalid_argument("parameter " + full_name +
+                                " is not set to a string: allowed is the path of a file or the "
+                                "name of one in config/" +
+                                directory);
   }
   try {
-    return findConfigFile("scenes", scene);
+    return findConfigFile(directory, value);
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("parameter " + name + ": " + error.what());
+    throw std::invalid_argument("parameter " + full_name + ": " + error.what());
   }
+}
+
+std::string readScenePath(const ros::NodeHandle& private_node) {
+  return readConfigPath(private_node, "scene", "scenes");
 }
 
 }  // namespace haptex::nodes

@@ -27,9 +27,13 @@ struct RobotDescription {
 /// @throws std::invalid_argument naming the parameter unless it is set to a string
 RobotDescription readRobotDescription(const ros::NodeHandle& private_node);
 
-/// The path of a scene file from a parameter that is a path or a name in config/scenes.
+/// The path of a file from a parameter that is a path or a name in config/<directory>.
 /// @throws std::invalid_argument naming the parameter if it is not set to a string or there is no
 ///   such file
+std::string readConfigPath(const ros::NodeHandle& private_node, const std::string& name,
+                           const std::string& directory);
+
+/// The path of a scene file: ~scene, as readConfigPath().
 std::string readScenePath(const ros::NodeHandle& private_node);
 
 }  // namespace haptex::nodes
