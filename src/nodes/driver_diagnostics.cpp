@@ -118,6 +118,9 @@ std::string DriverNode::whyNoForce(Finger finger, const DriverSnapshot& snapshot
     case NoForceReason::kNone:
       return "";
     case NoForceReason::kNoDevice:
+      if (snapshot.link == LinkStatus::kConnected) {
+        return "the device does not obey: commands do not reach it, or its watchdog has tripped";
+      }
       return "no device: " + whyNoDevice(snapshot);
     case NoForceReason::kFault:
       return "fault: " + snapshot.fault.str() + "; then call exoskeleton/clear_fault";

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "exoskeleton_fixtures.h"
 #include "haptex/nodes/driver_loop.h"
@@ -25,6 +26,12 @@ using exoskeleton::Time;
 using namespace std::chrono_literals;
 
 constexpr Time kPatience = 30s;
+
+exoskeleton::ForceCommand threeNewtons() {
+  exoskeleton::ForceCommand command;
+  command.force = {0.0, 0.0, 3.0};
+  return command;
+}
 
 /// A driver that ticks, and a commander.
 class ADriverLoop : public ::testing::Test {
@@ -44,18 +51,24 @@ class ADriverLoop : public ::testing::Test {
     });
   }
 
-  bool homes() {
-    EXPECT_EQ(loop_.ask(DriverRequest::kHome), "");
-    return eventually([](const DriverSnapshot& now) {
-      return now.operating_state.is_homed && !now.operating_state.is_busy;
-    });
+  /// Brings the device to where it renders forces, one request at a time. Where the machine stood
+  /// still for 10 ms, that is again from the start.
+  void getReady(const DriverSnapshot& now) {
+    const exoskeleton::OperatingState& state = now.operating_state;
+    if (state.mode == Mode::kFault) {
+      loop_.ask(DriverRequest::kClearFault);
+    } else if (!state.is_homed && !state.is_busy) {
+      loop_.ask(DriverRequest::kHome);
+    } else if (state.is_homed && state.mode != Mode::kEnabled) {
+      loop_.ask(DriverRequest::kEnable);
+    }
   }
 
   /// Commands 3 N until the index finger's sensor says so.
   bool feelsThreeNewtons() {
-    exoskeleton::ForceCommand command;
-    command.force = {0.0, 0.0, 3.0};
+    const exoskeleton::ForceCommand command = threeNewtons();
     return eventually([&](const DriverSnapshot& now) {
+      getReady(now);
       loop_.command(Finger::kIndex, command, steadyNow());
       return now.fingers[Finger::kIndex].no_force == NoForceReason::kNone &&
              (now.fingers[Finger::kIndex].force - command.force).norm() < 0.3;
@@ -120,9 +133,6 @@ TEST_F(ADriverLoop, RefusesToEnableBeforeHoming) {
 TEST_F(ADriverLoop, RendersTheCommandedForceAndNoneAfterTheLastCommand) {
   const LivingDevice device(port_);
   ASSERT_TRUE(connects());
-  ASSERT_TRUE(homes());
-  EXPECT_EQ(loop_.ask(DriverRequest::kEnable), "");
-  EXPECT_EQ(loop_.status().operating_state.mode, Mode::kEnabled);
   ASSERT_TRUE(feelsThreeNewtons());
   ASSERT_TRUE(eventually([](const DriverSnapshot& now) {
     return now.fingers[Finger::kIndex].no_force == NoForceReason::kNoCommand &&
@@ -130,17 +140,11 @@ TEST_F(ADriverLoop, RendersTheCommandedForceAndNoneAfterTheLastCommand) {
            now.fingers[Finger::kIndex].force.norm() < 0.3;
   }));
   EXPECT_GE(loop_.status().fingers[Finger::kIndex].safety.watchdog_trips, 1u);
-  EXPECT_EQ(loop_.ask(DriverRequest::kPause), "");
-  EXPECT_EQ(loop_.status().operating_state.mode, Mode::kPaused);
-  EXPECT_EQ(loop_.ask(DriverRequest::kDisable), "");
-  EXPECT_EQ(loop_.status().operating_state.mode, Mode::kDisabled);
 }
 
 TEST_F(ADriverLoop, LatchesAFaultWhenThePortVanishesAndWorksAgainWhenItIsBack) {
   auto device = std::make_unique<LivingDevice>(port_);
   ASSERT_TRUE(connects());
-  ASSERT_TRUE(homes());
-  EXPECT_EQ(loop_.ask(DriverRequest::kEnable), "");
   ASSERT_TRUE(feelsThreeNewtons());
   device.reset();
   ASSERT_TRUE(eventually([](const DriverSnapshot& now) {
@@ -150,14 +154,27 @@ TEST_F(ADriverLoop, LatchesAFaultWhenThePortVanishesAndWorksAgainWhenItIsBack) {
   EXPECT_NE(loop_.status().fault.str(), "");
   EXPECT_NE(loop_.portTrouble().find(port_), std::string::npos) << loop_.portTrouble();
   device = std::make_unique<LivingDevice>(port_);  // switched on anew: its counts start over
-  ASSERT_TRUE(eventually([](const DriverSnapshot& now) {
-    return now.link == LinkStatus::kConnected && now.link_statistics.handshakes == 2;
-  }));
+  ASSERT_TRUE(eventually([](const DriverSnapshot& now) { return !now.operating_state.is_homed; }));
+  EXPECT_EQ(loop_.status().link_statistics.handshakes, 2u);
   EXPECT_EQ(loop_.ask(DriverRequest::kClearFault), "");
   EXPECT_NE(loop_.ask(DriverRequest::kEnable), "");  // nobody knows where the fingers are
-  ASSERT_TRUE(homes());
-  EXPECT_EQ(loop_.ask(DriverRequest::kEnable), "");
   EXPECT_TRUE(feelsThreeNewtons());
+}
+
+TEST_F(ADriverLoop, EndsForcesWhenAskedTo) {
+  const LivingDevice device(port_);
+  ASSERT_TRUE(connects());
+  for (const auto& [request, mode] : {std::pair{DriverRequest::kPause, Mode::kPaused},
+                                      std::pair{DriverRequest::kDisable, Mode::kDisabled}}) {
+    ASSERT_TRUE(feelsThreeNewtons());
+    EXPECT_EQ(loop_.ask(request), "");
+    EXPECT_EQ(loop_.status().operating_state.mode, mode);
+    EXPECT_TRUE(eventually([&](const DriverSnapshot& now) {
+      loop_.command(Finger::kIndex, threeNewtons(), steadyNow());  // in vain
+      return now.fingers[Finger::kIndex].desired_force.norm() == 0.0 &&
+             now.fingers[Finger::kIndex].force.norm() < 0.3;
+    }));
+  }
 }
 
 TEST(DriverLoop, RefusesAUrdfThatIsNone) {
