@@ -7,8 +7,10 @@
 namespace haptex::evaluation {
 
 const std::vector<Validation>& validations() {
-  static const std::vector<Validation> all = {
-      {"material", validateMaterial}, {"cloth", validateCloth}, {"proximity", validateProximity}};
+  static const std::vector<Validation> all = {{"material", validateMaterial},
+                                              {"cloth", validateCloth},
+                                              {"proximity", validateProximity},
+                                              {"exoskeleton", validateExoskeleton}};
   return all;
 }
 

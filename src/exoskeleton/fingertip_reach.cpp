@@ -9,6 +9,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kMostSteps = 100;
+constexpr int kGrid = 15;          // places along each motor's range
 constexpr double kSettled = 1e-9;  // m, an improvement that is none
 
 }  // namespace
@@ -20,29 +21,32 @@ FingertipReach::FingertipReach(const std::string& urdf, Finger finger) : kinemat
   const int last = kJoints - 1;
   const double offset = kinematics_.jointAngles(MotorVector::Zero())[last];
   const double ratio = kinematics_.jointAngles(MotorVector::Unit(kMotors - 1))[last] - offset;
-  if (ratio == 0.0) return;
-  double low = (kinematics_.lowerLimits()[last] - offset) / ratio;
-  double high = (kinematics_.upperLimits()[last] - offset) / ratio;
-  if (low > high) std::swap(low, high);
-  lowest_[kMotors - 1] = std::max(lowest_[kMotors - 1], low);
-  highest_[kMotors - 1] = std::min(highest_[kMotors - 1], high);
+  if (ratio != 0.0) {
+    const double low = (kinematics_.lowerLimits()[last] - offset) / ratio;
+    const double high = (kinematics_.upperLimits()[last] - offset) / ratio;
+    lowest_[kMotors - 1] = std::max(lowest_[kMotors - 1], std::min(low, high));
+    highest_[kMotors - 1] = std::min(highest_[kMotors - 1], std::max(low, high));
+  }
+  for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
+    const Eigen::Vector3d share(i % kGrid, i / kGrid % kGrid, i / (kGrid * kGrid));
+    Place place;
+    place.motor_angles = lowest_ + share.cwiseProduct(highest_ - lowest_) / (kGrid - 1);
+    place.position =
+        kinematics_.fingertip(kinematics_.jointAngles(place.motor_angles)).translation();
+    grid_.push_back(place);
+  }
 }
 
 FingertipReach::Place FingertipReach::nearest(const Vector3d& target, const MotorVector& start) {
-  Place best = descend(target, start);
-  double best_distance = (best.position - target).norm();
-  if (best_distance <= kTolerance) return best;
-  for (int corner = 0; corner < 8; ++corner) {
-    MotorVector share;  // the middle of each eighth of the range
-    for (int i = 0; i < kMotors; ++i) share[i] = (corner >> i) & 1 ? 0.75 : 0.25;
-    const Place found = descend(target, lowest_ + share.cwiseProduct(highest_ - lowest_));
-    const double distance = (found.position - target).norm();
-    if (distance < best_distance) {
-      best = found;
-      best_distance = distance;
-    }
-  }
-  return best;
+  const Place first = descend(target, start);
+  const double distance = (first.position - target).norm();
+  if (distance <= kTolerance) return first;
+  const auto nearer = [&](const Place& a, const Place& b) {
+    return (a.position - target).squaredNorm() < (b.position - target).squaredNorm();
+  };
+  const Place second =
+      descend(target, std::min_element(grid_.begin(), grid_.end(), nearer)->motor_angles);
+  return (second.position - target).norm() < distance ? second : first;
 }
 
 // Levenberg-Marquardt on the angles that are not held at a limit by a gradient that points out.

@@ -81,7 +81,7 @@ TEST(HangingStrip, RefusesCellsThatAreNotAMultipleOfFive) {
 }
 
 TEST(Validation, EveryQuantityOfEveryRoomPasses) {
-  ASSERT_EQ(validations().size(), 3u);
+  ASSERT_EQ(validations().size(), 4u);
   for (const Validation& validation : validations()) {
     int quantities = 0;
     validation.run(HAPTEX_CONFIG_DIRECTORY, [&](const Quantity& quantity) {
@@ -91,6 +91,16 @@ TEST(Validation, EveryQuantityOfEveryRoomPasses) {
       EXPECT_EQ(quantity.name.rfind(validation.room + "/", 0), 0u) << quantity.name;
     });
     EXPECT_GT(quantities, 10);
+  }
+}
+
+TEST(Validation, ExoskeletonNamesTheUrdfThatItCannotRead) {
+  const std::string nowhere = HAPTEX_CONFIG_DIRECTORY "/fabrics";
+  try {
+    validateExoskeleton(nowhere, [](const Quantity&) {});
+    FAIL() << "read";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(error.what(), nowhere + "/../urdf/hand_exoskeleton.urdf: cannot be read");
   }
 }
 

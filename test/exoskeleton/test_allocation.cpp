@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "../malloc_counter.h"
+#include "haptex/exoskeleton/emulated_device.h"
 #include "haptex/exoskeleton/finger_kinematics.h"
 #include "shipped_urdf.h"
 
@@ -23,6 +24,25 @@ TEST(ExoskeletonAllocation, KinematicsDoNotAllocateAfterConstruction) {
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(before, 0) << "the count does not work";
   EXPECT_NE(sum, 0.0);
+}
+
+TEST(ExoskeletonAllocation, TheEmulatedDeviceDoesNotAllocateAfterConstruction) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  EmulatedDevice device(shippedUrdf(), 1);
+  const long before = allocations;
+  DeviceCommand command;
+  for (const DriveMode mode : {DriveMode::kForce, DriveMode::kHoming, DriveMode::kOff}) {
+    command.mode = mode;
+    command.torques[Finger::kIndex].setConstant(0.01);
+    device.setTarget(Finger::kThumb, {0.1, 0.0, 0.01 * static_cast<int>(mode)});
+    for (int i = 0; i < 800; ++i) device.step(command);
+    device.saturateSensor(Finger::kIndex, mode == DriveMode::kHoming);
+    EXPECT_EQ(device.read().fingers[Finger::kIndex].force_saturated, mode == DriveMode::kHoming);
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(before, 0) << "the count does not work";
 }
 
 }  // namespace

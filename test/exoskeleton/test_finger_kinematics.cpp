@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <Eigen/Eigenvalues>
@@ -9,6 +8,7 @@
 
 #include "haptex/exoskeleton/finger_kinematics.h"
 #include "shipped_urdf.h"
+#include "urdf_poses.h"
 
 namespace haptex::exoskeleton {
 namespace {
@@ -32,28 +32,13 @@ void forEachConfiguration(const FingerKinematics& finger, int steps,
   }
 }
 
-/// Product of the URDF's transforms from hand_base to the tip, without KDL.
+/// The tip's pose without KDL.
 Eigen::Isometry3d composedFingertip(const FingerKinematics& finger, const std::string& tip,
                                     const JointVector& joint_angles) {
-  const auto model = urdf::parseURDF(shippedUrdf());
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  for (auto link = model->getLink(tip); link->parent_joint; link = link->getParent()) {
-    const urdf::Joint& joint = *link->parent_joint;
-    const auto& origin = joint.parent_to_joint_origin_transform;
-    double roll, pitch, yaw;
-    origin.rotation.getRPY(roll, pitch, yaw);
-    Eigen::Isometry3d step =
-        Eigen::Translation3d(origin.position.x, origin.position.y, origin.position.z) *
-        Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
-        Eigen::AngleAxisd(roll, Vector3d::UnitX());
-    for (int i = 0; i < kJoints; ++i) {
-      if (finger.jointNames()[i] != joint.name) continue;
-      step = step *
-             Eigen::AngleAxisd(joint_angles[i], Vector3d(joint.axis.x, joint.axis.y, joint.axis.z));
-    }
-    pose = step * pose;
-  }
-  return pose;
+  static const auto model = urdf::parseURDF(shippedUrdf());
+  JointAngles named;
+  for (int i = 0; i < kJoints; ++i) named[finger.jointNames()[i]] = joint_angles[i];
+  return pose(*model, tip, named);
 }
 
 class EachFinger : public testing::TestWithParam<Finger> {
@@ -200,8 +185,8 @@ TEST(FingerKinematics, CouplingComesFromTheMimicOfTheUrdf) {
   const FingerKinematics index(shippedUrdf(), Finger::kIndex);
   EXPECT_NEAR(index.jointAngles({0.0, 0.0, 14.0})[3], 2.0 / 3.0, 1e-6);
   const FingerKinematics thumb(shippedUrdf(), Finger::kThumb);
-  EXPECT_NEAR(thumb.jointAngles({0.0, 0.0, 14.0})[3], 1.0 - 0.3491, 1e-15);
-  FingerKinematics other(replaced(shippedUrdf(), "multiplier=\"0.666667\" offset=\"0.0000\"",
+  EXPECT_NEAR(thumb.jointAngles({0.0, 0.0, 14.0})[3], 1.0 - 0.349066, 1e-15);
+  FingerKinematics other(replaced(shippedUrdf(), "multiplier=\"0.666667\" offset=\"0\"",
                                   "multiplier=\"-0.5\" offset=\"0.25\""),
                          Finger::kIndex);
   EXPECT_DOUBLE_EQ(other.jointAngles({0.0, 0.0, 28.0})[3], -0.75);
@@ -279,8 +264,7 @@ TEST(FingerKinematics, RefusesAnAxisWithoutDirection) {
 }
 
 TEST(FingerKinematics, RefusesALastJointThatDoesNotMimicTheOneBeforeIt) {
-  const std::string mimic =
-      "<mimic joint=\"index_pip\" multiplier=\"0.666667\" offset=\"0.0000\"/>";
+  const std::string mimic = "<mimic joint=\"index_pip\" multiplier=\"0.666667\" offset=\"0\"/>";
   EXPECT_EQ(refusalWith(mimic, ""), "exoskeleton, index: index_dip does not mimic index_pip");
   EXPECT_EQ(refusalWith(mimic, "<mimic joint=\"index_mcp\"/>"),
             "exoskeleton, index: index_dip does not mimic index_pip");

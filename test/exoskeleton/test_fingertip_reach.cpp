@@ -69,7 +69,7 @@ TEST_P(FingertipReachOf, FindsThePlaceNearestToATargetOutOfReach) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Vector3d& place : grid) nearest = std::min(nearest, (place - target).norm());
     const double found = (reach_.nearest(target, randomAngles()).position - target).norm();
-    EXPECT_LT(found, nearest + 1e-5) << trial;
+    EXPECT_LT(found, nearest + 1e-3) << trial;
     EXPECT_GT(found, nearest - 0.003) << trial;
   }
 }

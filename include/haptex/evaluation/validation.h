@@ -13,7 +13,7 @@ namespace haptex::evaluation {
 using Sink = std::function<void(const Quantity&)>;
 
 /// A room and its oracles, which read fabrics from a configuration directory (config/ of the
-/// package) and hand each quantity to the sink as soon as it is known.
+/// package, beside which urdf/ lies) and hand each quantity to the sink as soon as it is known.
 struct Validation {
   std::string room;
   std::function<void(const std::string& config_directory, const Sink& sink)> run;
@@ -30,6 +30,11 @@ void validateCloth(const std::string& config_directory, const Sink& sink);
 
 /// Answers of proximity queries on deformed sheets against brute force and FCL: how many differ.
 void validateProximity(const std::string& config_directory, const Sink& sink);
+
+/// Kinematics of the fingers of urdf/hand_exoskeleton.urdf: against differences, closed forms and
+/// what its comment says, and whether the fingertips meet.
+/// @throws std::invalid_argument naming the file if it cannot be read, and as FingerKinematics
+void validateExoskeleton(const std::string& config_directory, const Sink& sink);
 
 /// The [strain, stress] samples of a fabric file as they stand in it, as Green-Lagrange strain and
 /// second Piola-Kirchhoff stress. @param curve for example "warp.elastic"

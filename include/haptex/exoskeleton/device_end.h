@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "haptex/exoskeleton/clock.h"
 #include "haptex/exoskeleton/device_messages.h"
@@ -15,7 +16,8 @@ namespace haptex::exoskeleton {
 
 /// The firmware's command watchdog: from kRampStart to kMotorsOff after the last command the
 /// torques go to zero in a straight line, so that the force neither jumps nor outlives a dead
-/// driver.
+/// driver. When commands come again the torques come back no faster than they went: a delayed line
+/// does not jerk the fingers either.
 class DeviceEnd {
  public:
   static constexpr Time kRampStart = std::chrono::milliseconds(5);
@@ -23,9 +25,13 @@ class DeviceEnd {
 
   explicit DeviceEnd(const Identity& identity);
 
+  /// Takes bytes that have arrived. Commands before the first Hello are ignored, and so are those
+  /// that are not newer than the last one. A Hello does not touch the motors: after a driver has
+  /// died and a new one greets, the watchdog takes the old torques to zero as if it had not.
   void receive(const std::uint8_t* bytes, std::size_t count, Time now);
 
   /// Identity, if a Hello came since the last call; empty otherwise.
+  /// Valid until the next call that returns bytes.
   Bytes answer();
 
   /// What the motors are to do now: the last command, scaled by the watchdog.
@@ -34,6 +40,28 @@ class DeviceEnd {
   /// A state as bytes, numbered; empty before the first handshake. Fills in last_command, mode and
   /// watchdog_tripped.
   Bytes report(DeviceState state, Time now);
+
+  /// Counts of what came.
+  const ParserStatistics& received() const { return parser_.statistics(); }
+
+ private:
+  void takeHello(const Frame& frame);
+  void takeCommand(const Frame& frame, Time now);
+  /// Share of the torques that the watchdog leaves, 0 to 1.
+  double watchdogShare(Time now) const;
+
+  Identity identity_;
+  FrameParser parser_{LineEnd::kDevice};
+  FrameBuffer outgoing_{};
+  bool greeted_ = false;  // by a driver of our version
+  bool to_answer_ = false;
+  std::uint8_t state_number_ = 0;
+  std::uint8_t command_number_ = 0;  // of the last command, or what a Hello since has set
+  DeviceCommand command_;
+  std::uint8_t obeyed_number_ = 0;    // of command_
+  std::optional<Time> last_command_;  // when command_ came
+  double share_then_ = 0.0;           // of the torques, when command_ came
+  Time last_bytes_{};
 };
 
 }  // namespace haptex::exoskeleton

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "haptex/exoskeleton/clock.h"
 #include "haptex/exoskeleton/device_messages.h"
@@ -24,7 +25,8 @@ const char* describe(LinkStatus status);
 
 /// Counts since the construction, no units.
 struct LinkStatistics {
-  ParserStatistics received;             ///< good, corrupt and foreign frames, bytes of garbage
+  ParserStatistics received;             ///< good, corrupt and unknown frames, bytes of garbage
+  std::uint64_t meaningless_frames = 0;  ///< the checksum was right, but a field means nothing
   std::uint64_t lost_states = 0;         ///< gaps in the sequence numbers of states
   std::uint64_t repeated_states = 0;     ///< same or older sequence number: duplicated or reordered
   std::uint64_t timeouts = 0;            ///< transitions to kTimedOut
@@ -32,13 +34,13 @@ struct LinkStatistics {
   std::uint64_t handshakes = 0;          ///< transitions to kConnected
 };
 
-/// Allocates in the constructor only.
+/// Never allocates.
 class DeviceLink {
  public:
   static constexpr Time kStateTimeout = std::chrono::milliseconds(10);
   static constexpr Time kHelloPeriod = std::chrono::milliseconds(100);
 
-  /// Takes bytes that have arrived.
+  /// Takes bytes that have arrived. States that are not newer than the last one are dropped.
   void receive(const std::uint8_t* bytes, std::size_t count, Time now);
 
   /// The newest state since the last call, or nullptr. Valid until the next receive().
@@ -55,11 +57,30 @@ class DeviceLink {
   void reset();
 
   LinkStatus status() const;
-  /// Of the device, once connected.
+  /// Of the device, once connected. After an answer in another version only that version, to be
+  /// told beside kProtocolVersion.
   const Identity& identity() const;
   const LinkStatistics& statistics() const;
   /// Sequence number of the last command sent: DeviceState::last_command echoes it.
   std::uint8_t lastCommand() const;
+
+ private:
+  void take(const Frame& frame, Time now);
+  void takeIdentity(const Frame& frame, Time now);
+  void takeState(const Frame& frame, Time now);
+
+  LinkStatus status_ = LinkStatus::kConnecting;
+  Identity identity_{0, 0, 0, 0};
+  LinkStatistics statistics_;
+  FrameParser parser_{LineEnd::kDriver};
+  FrameBuffer outgoing_{};
+  std::uint8_t last_command_ = 0;
+  DeviceState state_;
+  bool state_is_new_ = false;
+  std::uint8_t last_state_number_ = 0;
+  Time last_state_{};  // or Identity
+  Time last_bytes_{};
+  std::optional<Time> last_hello_;
 };
 
 }  // namespace haptex::exoskeleton

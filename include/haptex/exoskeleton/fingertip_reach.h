@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "haptex/exoskeleton/finger_kinematics.h"
 
@@ -26,7 +27,8 @@ class FingertipReach {
   };
 
   /// The place nearest to a target (m, in hand_base, finite). A target within reach is met to
-  /// kTolerance; for one out of reach the search starts from several places and the best end wins.
+  /// kTolerance. For one out of reach the search starts again from the nearest of a grid of places,
+  /// so that where two far apart places are almost as near either may be found.
   /// @param start where to search first (rad): near it a solution is found in a few steps
   Place nearest(const Eigen::Vector3d& target, const MotorVector& start);
 
@@ -37,6 +39,7 @@ class FingertipReach {
 
   FingerKinematics kinematics_;
   MotorVector lowest_, highest_;
+  std::vector<Place> grid_;
 };
 
 }  // namespace haptex::exoskeleton

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "haptex/exoskeleton/bytes.h"
+#include "haptex/exoskeleton/line_descriptor.h"
 
 namespace haptex::exoskeleton {
 
@@ -16,7 +17,7 @@ class PseudoTerminal {
   /// other end; an existing symbolic link is replaced, anything else is not.
   /// @throws std::runtime_error naming what failed
   explicit PseudoTerminal(const std::string& link = "");
-  /// Removes the link.
+  /// Removes the link, unless it has come to lead elsewhere.
   ~PseudoTerminal();
   PseudoTerminal(const PseudoTerminal&) = delete;
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
@@ -24,14 +25,15 @@ class PseudoTerminal {
   /// Path of the other end, /dev/pts/N.
   const std::string& path() const { return path_; }
 
-  /// As SerialPort, without waiting. Nothing arrives while nobody has the other end open.
+  /// As SerialPort, without waiting. Nothing arrives while nobody has the other end open, and what
+  /// is written then is lost, as on a wire that leads nowhere.
   std::size_t read(std::uint8_t* buffer, std::size_t capacity);
   bool write(Bytes bytes);
 
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return line_.get(); }
 
  private:
-  int descriptor_ = -1;
+  LineDescriptor line_;
   std::string path_;
   std::string link_;
 };

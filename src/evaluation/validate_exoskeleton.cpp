@@ -1,0 +1,216 @@
+#include <Eigen/Geometry>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "haptex/evaluation/pinch.h"
+#include "haptex/evaluation/validation.h"
+#include "haptex/exoskeleton/finger_kinematics.h"
+
+namespace haptex::evaluation {
+namespace {
+
+using Eigen::Vector3d;
+using exoskeleton::Finger;
+using exoskeleton::FingerKinematics;
+using exoskeleton::JointVector;
+using exoskeleton::kFingers;
+using exoskeleton::kJoints;
+using exoskeleton::kMotors;
+using exoskeleton::kReduction;
+using exoskeleton::MotorVector;
+
+constexpr int kSteps = 11;           // of the grid in each driven joint, from limit to limit
+constexpr double kMotorStep = 1e-3;  // rad, for differences: truncation and rounding below 1e-9
+constexpr double kDegree = M_PI / 180.0;
+
+/// What the URDF's comment says of a finger, typed here anew.
+struct Anthropometry {
+  Vector3d first_joint;     // m, in hand_base
+  Vector3d roll_pitch_yaw;  // rad, of the first joint
+  double lengths[3];        // m: two phalanges, and from the last joint to the tip
+  double multiplier;        // of the coupling
+  double offset;            // rad, of the coupling
+};
+
+Anthropometry anthropometry(Finger finger) {
+  if (finger == Finger::kIndex) {
+    return {{0.034, 0.022, -0.014}, Vector3d::Zero(), {0.0398, 0.0224, 0.0121}, 2.0 / 3.0, 0.0};
+  }
+  return {
+      {-0.012, 0.038, -0.032}, {3.1, 1.0, -0.22}, {0.0462, 0.0316, 0.0184}, 1.0, -20.0 * kDegree};
+}
+
+/// The tip of a finger that turns about z and bends about y, relative to its first joint and in
+/// the frame in which that is not turned.
+Vector3d planarTip(const Anthropometry& finger, const JointVector& angles) {
+  double bent = 0.0, along = 0.0, below = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    bent += angles[i + 1];
+    along += finger.lengths[i] * std::cos(bent);
+    below += finger.lengths[i] * std::sin(bent);
+  }
+  return {along * std::cos(angles[0]), along * std::sin(angles[0]), -below};
+}
+
+Vector3d closedFormTip(const Anthropometry& finger, const JointVector& angles) {
+  const Vector3d& turn = finger.roll_pitch_yaw;
+  return finger.first_joint +
+         Eigen::AngleAxisd(turn.z(), Vector3d::UnitZ()) *
+             (Eigen::AngleAxisd(turn.y(), Vector3d::UnitY()) *
+              (Eigen::AngleAxisd(turn.x(), Vector3d::UnitX()) * planarTip(finger, angles)));
+}
+
+std::string read(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw std::invalid_argument(path + ": cannot be read");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void forEachConfiguration(const FingerKinematics& finger,
+                          const std::function<void(const JointVector&)>& visit) {
+  const MotorVector lower = finger.motorAngles(finger.lowerLimits());
+  const MotorVector span = finger.motorAngles(finger.upperLimits()) - lower;
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      for (int k = 0; k < kSteps; ++k) {
+        visit(finger.jointAngles(lower + (MotorVector(i, j, k) / (kSteps - 1)).cwiseProduct(span)));
+      }
+    }
+  }
+}
+
+/// The worst of a quantity over the joint space.
+Quantity worstOf(const FingerKinematics& finger,
+                 const std::function<Quantity(const JointVector&)>& at) {
+  Quantity worst{"", 0.0, 0.0, -1.0, 0.0};
+  forEachConfiguration(finger, [&](const JointVector& angles) { keepWorse(worst, at(angles)); });
+  return worst;
+}
+
+/// Change of the fingertip's position per change of the motors by `direction`, by differences.
+Vector3d slope(FingerKinematics& finger, const MotorVector& motors, const MotorVector& direction) {
+  const MotorVector step = kMotorStep * direction;
+  return (finger.fingertip(finger.jointAngles(motors + step)).translation() -
+          finger.fingertip(finger.jointAngles(motors - step)).translation()) /
+         (2.0 * kMotorStep);
+}
+
+Quantity jacobian(FingerKinematics& finger, const std::string& prefix) {
+  return worstOf(finger, [&](const JointVector& angles) {
+    const Eigen::Matrix3d found = finger.motorJacobian(angles);
+    Eigen::Matrix3d difference;
+    for (int i = 0; i < kMotors; ++i) {
+      difference.col(i) = slope(finger, finger.motorAngles(angles), MotorVector::Unit(i));
+    }
+    return Quantity{prefix + "jacobian_norm_by_differences", difference.norm(), found.norm(),
+                    (found - difference).norm() / found.norm(), 1e-7};
+  });
+}
+
+/// What the motors put in, torque times speed, comes out as force times velocity.
+Quantity powerBalance(FingerKinematics& finger, const std::string& prefix) {
+  std::mt19937 generator(1);
+  std::normal_distribution<double> normal;
+  const auto any = [&] {
+    const double x = normal(generator), y = normal(generator), z = normal(generator);
+    return Vector3d(x, y, z);
+  };
+  return worstOf(finger, [&](const JointVector& angles) {
+    const Vector3d force = any();      // N
+    const MotorVector speeds = any();  // rad/s
+    const Vector3d velocity = slope(finger, finger.motorAngles(angles), speeds);
+    const MotorVector torques = finger.motorJacobian(angles).transpose() * force;
+    return relativeTo(force.norm() * finger.motorJacobian(angles).norm() * speeds.norm(),
+                      prefix + "power_W", force.dot(velocity), torques.dot(speeds), 1e-7);
+  });
+}
+
+Quantity closedForm(FingerKinematics& finger, const Anthropometry& known,
+                    const std::string& prefix) {
+  return worstOf(finger, [&](const JointVector& angles) {
+    const Vector3d exact = closedFormTip(known, angles);
+    const Vector3d found = finger.fingertip(angles).translation();
+    return Quantity{prefix + "closed_form_tip_distance_m", exact.norm(), found.norm(),
+                    (found - exact).norm(), 1e-14};
+  });
+}
+
+void coupling(const FingerKinematics& finger, const Anthropometry& known, const std::string& prefix,
+              const Sink& sink) {
+  const auto last = [&](double before) {
+    return finger.jointAngles(kReduction * MotorVector(0.0, 0.0, before))[kJoints - 1];
+  };
+  // The URDF gives six digits of both.
+  sink(relativeTo(1.0, prefix + "coupling_ratio", known.multiplier, last(1.0) - last(0.0), 1e-6));
+  sink(relativeTo(1.0, prefix + "coupling_offset_rad", known.offset, last(0.0), 1e-6));
+}
+
+void transmission(const FingerKinematics& finger, const std::string& prefix, const Sink& sink) {
+  const double exact = 2.0 * M_PI / 14.0;
+  for (int i = 0; i < kMotors; ++i) {
+    sink(relativeTo(exact, prefix + "joint_" + std::to_string(i) + "_per_motor_revolution_rad",
+                    exact, finger.jointAngles(2.0 * M_PI * MotorVector::Unit(i))[i], 1e-15));
+  }
+  sink(worstOf(finger, [&](const JointVector& angles) {
+    const MotorVector motors = finger.motorAngles(angles);
+    const MotorVector again = finger.motorAngles(finger.jointAngles(motors));
+    return Quantity{prefix + "motor_round_trip_rad", motors.norm(), again.norm(),
+                    (again - motors).norm(), 1e-14};
+  }));
+}
+
+/// How far the tip gets from the first joint: as far as the finger is straight, which is at the
+/// lower limit of the driven joint before the last.
+Quantity reach(FingerKinematics& finger, const Anthropometry& known, const std::string& prefix) {
+  JointVector straightest = finger.jointAngles(finger.motorAngles(finger.lowerLimits()));
+  double farthest = 0.0;
+  forEachConfiguration(finger, [&](const JointVector& angles) {
+    farthest =
+        largerOrNaN(farthest, (finger.fingertip(angles).translation() - known.first_joint).norm());
+  });
+  const double exact = planarTip(known, straightest).norm();
+  return relativeTo(exact, prefix + "reach_m", exact, farthest, 1e-13);
+}
+
+void validateKinematics(const std::string& urdf, Finger which, const Sink& sink) {
+  const std::string prefix = "exoskeleton/" + std::string(name(which)) + "/";
+  const Anthropometry known = anthropometry(which);
+  FingerKinematics finger(urdf, which);
+  sink(jacobian(finger, prefix));
+  sink(powerBalance(finger, prefix));
+  sink(closedForm(finger, known, prefix));
+  coupling(finger, known, prefix, sink);
+  transmission(finger, prefix, sink);
+  sink(reach(finger, known, prefix));
+}
+
+void validatePinch(const std::string& urdf, const Sink& sink) {
+  for (const Meeting meeting : {Meeting::kTips, Meeting::kPads}) {
+    const std::string prefix =
+        std::string("exoskeleton/pinch/") + (meeting == Meeting::kTips ? "tips" : "pads") + "_";
+    const double nowhere = std::numeric_limits<double>::quiet_NaN();
+    const auto found = findPinch(urdf, meeting);
+    const double distance = found ? found->distance : nowhere;
+    const double angle = found ? found->angle / kDegree : nowhere;
+    sink({prefix + "apart_m", 0.0, distance, distance, 1e-9});
+    sink({prefix + "angle_deg", 0.0, angle, angle, 40.0});
+  }
+}
+
+}  // namespace
+
+void validateExoskeleton(const std::string& config_directory, const Sink& sink) {
+  const std::string urdf = read(config_directory + "/../urdf/hand_exoskeleton.urdf");
+  for (const Finger finger : kFingers) validateKinematics(urdf, finger, sink);
+  validatePinch(urdf, sink);
+}
+
+}  // namespace haptex::evaluation

@@ -1,0 +1,228 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "haptex/exoskeleton/device_end.h"
+#include "serial_fixtures.h"
+
+namespace haptex::exoskeleton {
+namespace {
+
+constexpr int kSteps = 1000;
+
+void receive(DeviceEnd& device, const ByteVector& bytes, Time now) {
+  device.receive(bytes.data(), bytes.size(), now);
+}
+
+void obey(DeviceEnd& device, int number, Time now, DriveMode mode = DriveMode::kForce) {
+  receive(device, frameOf(commandOf(mode, kSteps), static_cast<std::uint8_t>(number)), now);
+}
+
+/// A device that has obeyed commands 1 to 20 once a millisecond, the last at `end`.
+DeviceEnd drivenUntil(Time end) {
+  DeviceEnd device(Identity{});
+  receive(device, frameOf(Hello{}), end - milliseconds(20));
+  for (int i = 1; i <= 20; ++i) obey(device, i, end - milliseconds(20 - i));
+  return device;
+}
+
+DeviceState reported(DeviceEnd& device, Time now) {
+  const ByteVector bytes = copy(device.report({}, now));
+  return decodeState(frameIn(bytes, LineEnd::kDriver)).value();
+}
+
+double shareAt(DeviceEnd& device, Time now) {
+  return device.command(now).torques[Finger::kIndex][0] / (kSteps * kTorqueStep);
+}
+
+TEST(DeviceEnd, AnswersEveryHelloOnceWithItsIdentity) {
+  const Identity identity{kProtocolVersion, 5, 6, 7};
+  DeviceEnd device(identity);
+  EXPECT_TRUE(device.answer().empty());
+  receive(device, frameOf(Hello{}), milliseconds(0));
+  EXPECT_EQ(copy(device.answer()), frameOf(identity));
+  EXPECT_TRUE(device.answer().empty());
+  device.report({}, milliseconds(1));
+  receive(device, frameOf(Hello{}), milliseconds(1));
+  EXPECT_EQ(copy(device.answer()), frameOf(identity, 1)) << "carries the number of the last state";
+}
+
+TEST(DeviceEnd, ReportsNothingBeforeTheHandshakeAndNumbersItsStates) {
+  DeviceEnd device(Identity{});
+  EXPECT_TRUE(device.report({}, milliseconds(0)).empty());
+  receive(device, frameOf(Hello{}), milliseconds(0));
+  for (const std::uint8_t number : {1, 2, 3}) {
+    const ByteVector bytes = copy(device.report(stateAt(5), milliseconds(number)));
+    EXPECT_EQ(frameIn(bytes, LineEnd::kDriver).sequence, number);
+    EXPECT_EQ(decodeState(frameIn(bytes, LineEnd::kDriver))->time, 5u);
+  }
+}
+
+TEST(DeviceEnd, IgnoresCommandsBeforeTheHandshake) {
+  DeviceEnd device(Identity{});
+  obey(device, 1, milliseconds(0));
+  EXPECT_TRUE(equal(device.command(milliseconds(3)), DeviceCommand{}));
+  receive(device, frameOf(Hello{}), milliseconds(4));
+  EXPECT_TRUE(equal(device.command(milliseconds(4)), DeviceCommand{}));
+  obey(device, 1, milliseconds(5));
+  EXPECT_EQ(device.command(milliseconds(9)).mode, DriveMode::kForce);
+}
+
+TEST(DeviceEnd, AnswersADriverOfAnotherVersionButDoesNotObeyIt) {
+  DeviceEnd device(Identity{});
+  receive(device, frameOf(Hello{2}), milliseconds(0));
+  EXPECT_EQ(copy(device.answer()), frameOf(Identity{}));
+  EXPECT_TRUE(device.report({}, milliseconds(1)).empty());
+  obey(device, 1, milliseconds(1));
+  EXPECT_TRUE(equal(device.command(milliseconds(2)), DeviceCommand{}));
+}
+
+TEST(DeviceEnd, TellsWhatItDoes) {
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  DeviceState state = reported(device, milliseconds(100));
+  EXPECT_EQ(state.last_command, 20);
+  EXPECT_EQ(state.mode, DriveMode::kForce);
+  EXPECT_FALSE(state.watchdog_tripped);
+  obey(device, 21, milliseconds(101), DriveMode::kHoming);
+  state = reported(device, milliseconds(101));
+  EXPECT_EQ(state.last_command, 21);
+  EXPECT_EQ(state.mode, DriveMode::kHoming);
+}
+
+TEST(DeviceEnd, HoldsFiveMillisecondsThenGoesStraightToZeroAtTen) {
+  const Time last = milliseconds(100);
+  DeviceEnd device = drivenUntil(last);
+  for (int us = 0; us <= 20000; us += 125) {
+    const double expected = std::min(1.0, std::max(0.0, (10000 - us) / 5000.0));
+    EXPECT_NEAR(shareAt(device, last + microseconds(us)), expected, 1e-12) << us;
+    const DriveMode mode = us < 10000 ? DriveMode::kForce : DriveMode::kOff;
+    EXPECT_EQ(device.command(last + microseconds(us)).mode, mode) << us;
+  }
+}
+
+TEST(DeviceEnd, HasTrippedFromTheEndOfTheRampUntilTheNextCommand) {
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  EXPECT_FALSE(reported(device, microseconds(109999)).watchdog_tripped);
+  EXPECT_TRUE(reported(device, milliseconds(110)).watchdog_tripped);
+  EXPECT_EQ(reported(device, milliseconds(110)).mode, DriveMode::kOff);
+  receive(device, frameOf(Hello{}, 20), milliseconds(5000));
+  EXPECT_TRUE(reported(device, milliseconds(5000)).watchdog_tripped);
+  obey(device, 21, milliseconds(5001));
+  EXPECT_FALSE(reported(device, milliseconds(5001)).watchdog_tripped);
+}
+
+TEST(DeviceEnd, DoesNotTripWhileTheMotorsAreOff) {
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  obey(device, 21, milliseconds(101), DriveMode::kOff);
+  EXPECT_TRUE(equal(device.command(milliseconds(101)), DeviceCommand{})) << "off means no torque";
+  EXPECT_FALSE(reported(device, milliseconds(500)).watchdog_tripped);
+}
+
+TEST(DeviceEnd, ComesBackNoFasterThanItWent) {
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  EXPECT_NEAR(shareAt(device, milliseconds(108)), 0.4, 1e-12);
+  for (int i = 0; i < 10; ++i) {
+    obey(device, 21 + i, milliseconds(108 + i));
+    EXPECT_NEAR(shareAt(device, milliseconds(108 + i)), std::min(1.0, 0.4 + 0.2 * i), 1e-12);
+  }
+  double before = shareAt(device, milliseconds(117));
+  // Whatever the pattern of delays, the torque changes by a fifth per millisecond at most.
+  std::mt19937 generator(4);
+  int number = 31;
+  for (long us = 117000; us < 3000000; us += 250) {
+    if (generator() % 25 == 0) obey(device, number++, microseconds(us));
+    const double share = shareAt(device, microseconds(us));
+    EXPECT_LE(std::abs(share - before), 0.05 + 1e-9) << us;
+    before = share;
+  }
+}
+
+TEST(DeviceEnd, RepeatedAndOldCommandsDoNotFeedTheWatchdog) {
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  for (int ms = 101; ms <= 110; ++ms) obey(device, 20, milliseconds(ms));
+  EXPECT_TRUE(equal(device.command(milliseconds(110)), DeviceCommand{}));
+  device = drivenUntil(milliseconds(100));
+  for (int ms = 101; ms <= 110; ++ms) obey(device, ms - 95, milliseconds(ms));
+  EXPECT_TRUE(equal(device.command(milliseconds(110)), DeviceCommand{}));
+}
+
+TEST(DeviceEnd, GarbageAndCorruptCommandsDoNotFeedTheWatchdog) {
+  std::mt19937 generator(5);
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  int number = 21;
+  for (long us = 100000; us < 110000; us += 100) {
+    ByteVector bytes(generator() % 30);
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(generator());
+    ByteVector bad =
+        frameOf(commandOf(DriveMode::kForce, kSteps), static_cast<std::uint8_t>(number++));
+    bad[2 + generator() % 18] ^= static_cast<std::uint8_t>(1 << generator() % 8);
+    append(bytes, bad);
+    append(bytes, frameOf(Hello{}, static_cast<std::uint8_t>(number)));
+    DeviceCommand meaningless = commandOf(DriveMode::kForce, kSteps);
+    meaningless.mode = static_cast<DriveMode>(7);
+    append(bytes, frameOf(meaningless, static_cast<std::uint8_t>(number + 1)));
+    FrameBuffer buffer;
+    const ByteVector good =
+        frameOf(commandOf(DriveMode::kForce, kSteps), static_cast<std::uint8_t>(number + 2));
+    append(bytes, copy(inVersion(view(good), kProtocolVersion + 1, buffer)));
+    receive(device, bytes, microseconds(us));
+    EXPECT_NEAR(shareAt(device, microseconds(us)),
+                std::min(1.0, static_cast<double>(110000 - us) / 5000.0), 1e-12);
+  }
+  EXPECT_TRUE(equal(device.command(milliseconds(110)), DeviceCommand{}));
+  EXPECT_GE(device.received().corrupt_frames, 150u);
+}
+
+TEST(DeviceEnd, AHelloChangesNothingAboutTheRamp) {
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  receive(device, frameOf(Hello{}), milliseconds(102));
+  EXPECT_DOUBLE_EQ(shareAt(device, milliseconds(102)), 1.0);
+  EXPECT_NEAR(shareAt(device, milliseconds(107)), 0.6, 1e-12);
+  EXPECT_TRUE(equal(device.command(milliseconds(110)), DeviceCommand{}));
+}
+
+TEST(DeviceEnd, ObeysANewDriverThatCountsAnew) {
+  DeviceEnd device = drivenUntil(milliseconds(100));  // up to number 20
+  receive(device, frameOf(Hello{}, 0), milliseconds(300));
+  obey(device, 1, milliseconds(301), DriveMode::kHoming);
+  EXPECT_EQ(device.command(milliseconds(301)).mode, DriveMode::kHoming);
+  EXPECT_EQ(reported(device, milliseconds(301)).last_command, 1);
+}
+
+TEST(DeviceEnd, TheLastCommandOfADeadDriverIsNotObeyedAgainAfterAHello) {
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  receive(device, frameOf(Hello{}, 0), milliseconds(300));
+  obey(device, 20, milliseconds(301));
+  EXPECT_TRUE(equal(device.command(milliseconds(301)), DeviceCommand{}));
+  EXPECT_TRUE(reported(device, milliseconds(301)).watchdog_tripped);
+}
+
+TEST(DeviceEnd, ACommandThatWasInterruptedForAsLongAsTheWatchdogTakesIsDropped) {
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  const ByteVector command = frameOf(commandOf(DriveMode::kForce, kSteps), 21);
+  device.receive(command.data(), 19, milliseconds(101));
+  device.receive(command.data() + 19, 1, milliseconds(111));
+  EXPECT_TRUE(equal(device.command(milliseconds(111)), DeviceCommand{}));
+  device.receive(command.data(), 19, milliseconds(112));
+  device.receive(command.data() + 19, 1, milliseconds(113));
+  EXPECT_EQ(device.command(milliseconds(113)).mode, DriveMode::kForce);
+}
+
+TEST(DeviceEnd, ObeysAgainAfterALineThatWasSilentForAnyTime) {
+  for (int lost = 0; lost < 600; ++lost) {
+    DeviceEnd device = drivenUntil(milliseconds(100));
+    const Time again = milliseconds(100 + lost);
+    int ms = 1;
+    const auto obeyed = [&](int number) {
+      return reported(device, again + milliseconds(ms)).last_command == number % 256;
+    };
+    for (obey(device, 20 + lost + ms, again + milliseconds(ms)); !obeyed(20 + lost + ms);) {
+      ++ms;
+      ASSERT_LE(ms, kOldNumbers + 2) << lost;
+      obey(device, 20 + lost + ms, again + milliseconds(ms));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace haptex::exoskeleton
