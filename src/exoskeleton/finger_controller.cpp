@@ -114,7 +114,6 @@ ForceInput FingerController::forceInput(bool obeyed) const {
   input.obeyed = obeyed;
   input.stopping = chain_.stopping();
   input.jacobian = jacobian_;
-  input.motor_velocities = encoders_.velocities();
   return input;
 }
 
@@ -124,6 +123,8 @@ MotorVector FingerController::renderForces(NoForceReason hold, Time now) {
       held ? Vector3d::Zero()
            : evaluate(command_, measurement_.pose.translation(), measurement_.velocity);
   chain_.tick(wanted, measurement_.velocity, now);
+  // Who is not asked for a force gives none: neither feedback nor damping outlive the commands.
+  if (chain_.stopping()) return control_.release(forceInput(true));
   return control_.tick(forceInput(hold != NoForceReason::kNoDevice));
 }
 
