@@ -114,7 +114,6 @@ ForceInput FingerController::forceInput(bool obeyed) const {
   input.obeyed = obeyed;
   input.stopping = chain_.stopping();
   input.jacobian = jacobian_;
-  input.motor_velocities = encoders_.velocities();
   return input;
 }
 

@@ -19,6 +19,13 @@ double share(double time_constant) {
   return -std::expm1(-ForceController::kPeriod / time_constant);
 }
 
+const double kSmoothingShare = share(ForceController::kSmoothing);
+const double kResponseShare = share(ForceController::kResponse);
+const double kSlowShare = share(ForceController::kSlow);
+const double kErrorShare = share(ForceController::kErrorFilter);
+constexpr double kFadeStep = ForceController::kPeriod / ForceController::kFade;
+constexpr double kReleaseStep = ForceController::kPeriod / ForceController::kRelease;
+
 void filter(const Vector3d& in, double share_of_way, Vector3d& first, Vector3d& second) {
   first += share_of_way * (in - first);
   second += share_of_way * (first - second);
@@ -28,7 +35,7 @@ void filter(const Vector3d& in, double share_of_way, Vector3d& first, Vector3d& 
 
 void ForceController::reset() {
   for (Vector3d* vector : {&half_smooth_, &smooth_, &half_expected_, &expected_, &half_slow_,
-                           &slow_, &error_, &integral_, &correction_}) {
+                           &slow_, &force_, &error_, &integral_, &correction_}) {
     vector->setZero();
   }
   on_its_way_.fill(Vector3d::Zero());
@@ -39,22 +46,19 @@ void ForceController::reset() {
 }
 
 void ForceController::feedForward(const ForceInput& input) {
-  static const double smoothing = share(kSmoothing), response = share(kResponse),
-                      slow = share(kSlow);
   if (input.stopping || !input.obeyed) {
     half_smooth_ = smooth_ = slewLimited(input.desired, smooth_, kPeriod);
   } else {
-    filter(input.desired, smoothing, half_smooth_, smooth_);
+    filter(input.desired, kSmoothingShare, half_smooth_, smooth_);
   }
-  filter(on_its_way_[oldest_], response, half_expected_, expected_);
+  filter(on_its_way_[oldest_], kResponseShare, half_expected_, expected_);
   on_its_way_[oldest_] = smooth_;
   oldest_ = (oldest_ + 1) % kLatency;
-  filter(expected_, slow, half_slow_, slow_);
+  filter(expected_, kSlowShare, half_slow_, slow_);
 }
 
 void ForceController::integrate(const Vector3d& measured) {
-  static const double error_filter = share(kErrorFilter);
-  error_ += error_filter * (expected_ - measured - error_);
+  error_ += kErrorShare * (expected_ - measured - error_);
   const double change = (smooth_ - slow_).norm();
   const Vector3d next = saturated(
       integral_ + kIntegral * kPeriod / (1.0 + change / kLargeChange) * error_, kMaximumCorrection);
@@ -63,9 +67,9 @@ void ForceController::integrate(const Vector3d& measured) {
   integral_ = next;
 }
 
-MotorVector ForceController::torques(const ForceInput& input, double damping) {
-  MotorVector torques =
-      input.jacobian.transpose() * (smooth_ + correction_) - damping * input.motor_velocities;
+MotorVector ForceController::torques(const ForceInput& input) {
+  force_ = slewLimited(smooth_ + correction_, force_, kPeriod);
+  MotorVector torques = input.jacobian.transpose() * force_;
   torque_limited_ = false;
   for (int i = 0; i < kMotors; ++i) {
     const double needed = (kMaximumForce + kMaximumCorrection) * input.jacobian.col(i).norm();
@@ -82,27 +86,28 @@ MotorVector ForceController::tick(const ForceInput& input) {
   share_ *= release_left_;  // enabled again before the release was through
   release_left_ = 1.0;
   feedForward(input);
-  const bool feedback = input.sensor_works && input.obeyed;
-  if (!input.sensor_works) ++feed_forward_only_;
+  const bool sensor_works = input.sensor_works && input.measured.allFinite();
+  const bool feedback = sensor_works && input.obeyed;
+  if (!sensor_works) ++feed_forward_only_;
   if (!feedback) {
     error_.setZero();
   } else if (input.measured_now) {
     integrate(input.measured);
   }
-  constexpr double step = kPeriod / kFade;
-  share_ = std::clamp(share_ + (feedback ? step : -step), 0.0, 1.0);
-  correction_ = share_ * integral_;
-  return torques(input, kDamping);
+  share_ = std::clamp(share_ + (feedback ? kFadeStep : -kFadeStep), 0.0, 1.0);
+  correction_ = share_ * saturated(integral_ + kProportional * error_, kMaximumCorrection);
+  return torques(input);
 }
 
 MotorVector ForceController::release(const ForceInput& input) {
   if (released_) return MotorVector::Zero();
-  release_left_ = std::max(0.0, release_left_ - kPeriod / kRelease);
+  const double left = release_left_;
+  release_left_ = std::max(0.0, release_left_ - kReleaseStep);
   // The safety chain's ramp is slow enough; its smoothing would outlive it.
   half_smooth_ = smooth_ = slewLimited(input.desired, smooth_, kPeriod);
-  correction_ = release_left_ * share_ * integral_;
-  const MotorVector last = torques(input, release_left_ * kDamping);
-  if (release_left_ == 0.0 && smooth_.isZero(0.0)) {
+  correction_ *= left > 0.0 ? release_left_ / left : 0.0;
+  const MotorVector last = torques(input);
+  if (release_left_ == 0.0 && smooth_.isZero(0.0) && force_.isZero(0.0)) {
     reset();
     return MotorVector::Zero();
   }
