@@ -164,7 +164,7 @@ void DeviceController::driveFingers(Time now) {
         enabled ? controller.renderForces(why, now) : controller.endForces(now);
     if (!controller.forcesEnded()) ended = false;
   }
-  forces_on_ = !ended;
+  forces_on_ = enabled || !ended;
 }
 
 NoForceReason DeviceController::hold(Time now) const {

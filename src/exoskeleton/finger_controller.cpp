@@ -123,6 +123,8 @@ MotorVector FingerController::renderForces(NoForceReason hold, Time now) {
       held ? Vector3d::Zero()
            : evaluate(command_, measurement_.pose.translation(), measurement_.velocity);
   chain_.tick(wanted, measurement_.velocity, now);
+  // Who is not asked for a force gives none: neither feedback nor damping outlive the commands.
+  if (chain_.stopping()) return control_.release(forceInput(true));
   return control_.tick(forceInput(hold != NoForceReason::kNoDevice));
 }
 
