@@ -5,12 +5,15 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <haptex/OperatingState.h>
 #include <sensor_msgs/JointState.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <stdexcept>
 #include <utility>
 
 #include "haptex/nodes/driver_messages.h"
+#include "haptex/nodes/hand_markers.h"
 #include "haptex/nodes/node_parameters.h"
+#include "haptex/nodes/ros_time.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
@@ -23,28 +26,10 @@ using exoskeleton::PerFinger;
 using exoskeleton::Time;
 
 constexpr Time kJointPeriod = std::chrono::milliseconds(10);
+constexpr Time kMarkerPeriod = std::chrono::milliseconds(40);
 constexpr Time kOperatingStatePeriod = std::chrono::milliseconds(100);
 constexpr Time kPublisherPatience = std::chrono::milliseconds(10);
 constexpr std::uint32_t kMeasuredQueue = 10;  // messages, for a subscriber that is slow for 10 ms
-
-/// What ROS's clock showed at a time of the steady clock not long ago.
-ros::Time rosTimeOf(Time time) {
-  // Between the two clocks another thread may run: then they are read again.
-  constexpr int kAttempts = 3;
-  constexpr Time kAtOnce = std::chrono::microseconds(50);
-  ros::Time now;
-  Time age{0};
-  for (int i = 0; i < kAttempts; ++i) {
-    const Time before = steadyNow();
-    now = ros::Time::now();
-    const Time after = steadyNow();
-    age = before - time;
-    if (after - before < kAtOnce) break;
-  }
-  const auto nanoseconds = static_cast<std::uint64_t>(std::max<std::int64_t>(age.count(), 0));
-  if (now.toNSec() < nanoseconds) return now;  // a simulation that has just begun
-  return ros::Time().fromNSec(now.toNSec() - nanoseconds);
-}
 
 PerFinger<FingerKinematics> kinematicsOf(const RobotDescription& description) {
   try {
@@ -118,6 +103,8 @@ void DriverNode::advertiseTopics() {
                                                               ros::VoidConstPtr(),
                                                               ros::TransportHints().tcpNoDelay());
   }
+  marker_publisher_ =
+      node_.advertise<visualization_msgs::MarkerArray>("exoskeleton/force_markers", 2);
   joint_publisher_ = node_.advertise<sensor_msgs::JointState>("joint_states", 10);
   operating_state_publisher_ =
       node_.advertise<haptex::OperatingState>("exoskeleton/operating_state", 1, true);
@@ -157,10 +144,17 @@ void DriverNode::publishMeasured(const DriverSnapshot& snapshot) {
   if (!snapshot.operating_state.is_homed) return;
   const ros::Time stamp = rosTimeOf(snapshot.state_time);
   for (const Finger finger : kFingers) publishFinger(finger, snapshot, stamp);
-  if (snapshot.state_time < joints_due_) return;
-  joints_due_ = snapshot.state_time + kJointPeriod - DriverLoop::kPeriod / 2;
-  if (joint_publisher_.getNumSubscribers() == 0) return;
-  joint_publisher_.publish(jointStateMessage(kinematics_, snapshot.fingers, stamp));
+  const auto isDue = [&](Time& due, Time period) {
+    if (snapshot.state_time < due) return false;
+    due = snapshot.state_time + period - DriverLoop::kPeriod / 2;
+    return true;
+  };
+  if (isDue(joints_due_, kJointPeriod) && joint_publisher_.getNumSubscribers() > 0) {
+    joint_publisher_.publish(jointStateMessage(kinematics_, snapshot.fingers, stamp));
+  }
+  if (isDue(markers_due_, kMarkerPeriod) && marker_publisher_.getNumSubscribers() > 0) {
+    marker_publisher_.publish(forceMarkers(snapshot.fingers, stamp));
+  }
 }
 
 void DriverNode::publishFinger(Finger finger, const DriverSnapshot& snapshot,

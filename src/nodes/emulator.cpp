@@ -93,17 +93,16 @@ void Emulator::livePeriod(Time now) {
     line_.send(firmware_->answer(), now);
   }
   stepMechanics(now);
-  const Time end = now + kPeriod;
-  if (firmware_) report(end);
-  line_.flush(end);
-  showStatus(end);
-  sample_.time = end;
+  if (firmware_) report(now);
+  line_.flush(now);
+  showStatus(now);
+  sample_.time = now;
   for (const Finger finger : kFingers) sample_.fingers[finger] = device_.truth(finger);
   observer_(sample_);
 }
 
 void Emulator::report(Time now) {
-  const exoskeleton::Bytes bytes = firmware_->report(stateSinceSwitchedOn(), now);
+  const exoskeleton::Bytes bytes = firmware_->report(stateSinceSwitchedOn(), now + kPeriod);
   line_.send(bytes, now);
   // What the firmware says of itself is to be read there only.
   const auto state = exoskeleton::decodeState(inspect(bytes, LineEnd::kDriver).frame);

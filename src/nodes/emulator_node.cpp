@@ -12,6 +12,7 @@
 #include "haptex/nodes/config_files.h"
 #include "haptex/nodes/driver_messages.h"
 #include "haptex/nodes/node_parameters.h"
+#include "haptex/nodes/ros_time.h"
 #include "haptex/nodes/steady_clock.h"
 #include "haptex/nodes/transforms.h"
 
@@ -136,8 +137,7 @@ void EmulatorNode::work(Time now) {
 void EmulatorNode::publishTruth() {
   EmulatorSample sample;
   if (!truth_.read(sample, kPatience)) return;
-  const double age = exoskeleton::seconds(steadyNow() - sample.time);
-  const ros::Time stamp = ros::Time::now() - ros::Duration(age);
+  const ros::Time stamp = rosTimeOf(sample.time);
   for (const Finger finger : kFingers) {
     const TruthTopics& topics = truth_topics_[finger];
     const exoskeleton::EmulatedTruth& truth = sample.fingers[finger];

@@ -7,7 +7,7 @@
 
 #include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/driver_messages.h"
-#include "haptex/nodes/target_markers.h"
+#include "haptex/nodes/hand_markers.h"
 #include "haptex/nodes/transforms.h"
 
 namespace haptex::nodes {

@@ -33,8 +33,9 @@ struct DriverNodeParameters {
 
 /// Below the namespace of `node`, for each finger: subscribes to <finger>/servo_cf (ServoForce);
 /// advertises <finger>/measured_cp, measured_cv, measured_cf (geometry_msgs), one message for every
-/// state of the device, joint_states at 100 Hz and exoskeleton/operating_state (latched); nothing
-/// is measured before the device is homed. Services exoskeleton/enable, disable, pause, home,
+/// state of the device, joint_states at 100 Hz, exoskeleton/force_markers
+/// (visualization_msgs/MarkerArray, 25 Hz) and exoskeleton/operating_state (latched); nothing is
+/// measured before the device is homed. Services exoskeleton/enable, disable, pause, home,
 /// clear_fault (std_srvs/Trigger). Nothing is computed for topics without subscribers.
 ///
 /// Forces come in on one thread, the loop of 1 kHz runs on another, a third publishes, a fourth
@@ -98,6 +99,7 @@ class DriverNode {
   // Used by the publishing thread only.
   exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematics_;
   Time joints_due_{0};
+  Time markers_due_{0};
   Time operating_state_due_{0};
   exoskeleton::OperatingState published_state_;
   FixedText published_fault_;
@@ -107,6 +109,7 @@ class DriverNode {
 
   exoskeleton::PerFinger<FingerTopics> fingers_;
   ros::Publisher joint_publisher_;
+  ros::Publisher marker_publisher_;
   ros::Publisher operating_state_publisher_;
   std::vector<ros::ServiceServer> services_;
 

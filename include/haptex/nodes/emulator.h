@@ -21,9 +21,9 @@
 
 namespace haptex::nodes {
 
-/// What is true at the end of a period.
+/// What is true at the end of a period, which is lived through at once when it is due.
 struct EmulatorSample {
-  exoskeleton::Time time{0};  ///< of the clock of advanceTo()
+  exoskeleton::Time time{0};  ///< when it was due, of the clock of advanceTo()
   exoskeleton::PerFinger<exoskeleton::EmulatedTruth> fingers;
 };
 

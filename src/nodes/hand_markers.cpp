@@ -1,4 +1,4 @@
-#include "haptex/nodes/target_markers.h"
+#include "haptex/nodes/hand_markers.h"
 
 #include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/driver_messages.h"
@@ -13,10 +13,13 @@ using visualization_msgs::InteractiveMarker;
 using visualization_msgs::InteractiveMarkerControl;
 using visualization_msgs::Marker;
 
-constexpr double kSphereSize = 0.008;    // m
-constexpr double kHandleSize = 0.014;    // m, so that it can be grasped around the sphere
-constexpr double kFingertipSize = 0.05;  // m, of the arrows
-constexpr double kHandSize = 0.12;       // m, of the rings
+constexpr double kSphereSize = 0.008;     // m
+constexpr double kHandleSize = 0.014;     // m, so that it can be grasped around the sphere
+constexpr double kFingertipSize = 0.035;  // m, of the arrows
+constexpr double kHandSize = 0.1;         // m, of the rings
+constexpr double kSkin = 0.011;           // m, from the centre of a fingertip to outside of its cap
+constexpr double kArrowShaft = 0.0025;    // m, diameter
+constexpr double kArrowHead = 0.006;      // m, diameter
 
 Eigen::Vector3f colour(Finger finger) {
   return finger == Finger::kIndex ? Eigen::Vector3f(0.80F, 0.36F, 0.10F)
@@ -68,6 +71,30 @@ visualization_msgs::MarkerArray targetMarkers(const exoskeleton::HandPlace& plac
     marker.frame_locked = true;
     marker.ns = exoskeleton::name(finger);
     marker.pose.position = pointMessage(place.fingertips[finger]);
+    markers.markers.push_back(marker);
+  }
+  return markers;
+}
+
+visualization_msgs::MarkerArray forceMarkers(
+    const exoskeleton::PerFinger<exoskeleton::FingerMeasurement>& measured,
+    const ros::Time& stamp) {
+  visualization_msgs::MarkerArray markers;
+  for (const Finger finger : exoskeleton::kFingers) {
+    Marker marker = makeMarker(exoskeleton::name(finger), 0, Marker::ARROW);
+    marker.header.frame_id = kHandFrame;
+    marker.header.stamp = stamp;
+    marker.color = colourMessage(colour(finger));
+    marker.scale.x = kArrowShaft;
+    marker.scale.y = kArrowHead;
+    marker.scale.z = 0.0;  // the head's length is a share of the arrow's
+    const Eigen::Vector3d& force = measured[finger].force;
+    const double norm = force.norm();
+    if (norm >= kLeastForce) {
+      const Eigen::Vector3d tail = measured[finger].pose.translation() + kSkin / norm * force;
+      marker.points = {pointMessage(tail), pointMessage(tail + kForceScale * force)};
+    }
+    deleteIfEmpty(marker);
     markers.markers.push_back(marker);
   }
   return markers;

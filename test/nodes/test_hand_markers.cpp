@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
-#include "haptex/nodes/target_markers.h"
+#include "haptex/nodes/hand_markers.h"
 
 namespace haptex::nodes {
 namespace {
@@ -56,6 +57,35 @@ TEST(TargetMarkers, ShowTheTargetsInTheFrameOfTheHand) {
     EXPECT_EQ(position(marker.pose), place.fingertips[finger]);
     EXPECT_EQ(marker.pose.orientation.w, 1.0);
     EXPECT_GT(marker.color.a, 0.0F);
+  }
+}
+
+TEST(ForceMarkers, PointFromTheSkinAlongTheForce) {
+  exoskeleton::PerFinger<exoskeleton::FingerMeasurement> measured;
+  measured[Finger::kIndex].pose.translation() = Eigen::Vector3d(0.1, 0.0, -0.05);
+  measured[Finger::kIndex].force = Eigen::Vector3d(0.0, 0.03, -0.04);  // 0.05 N
+  const visualization_msgs::MarkerArray markers = forceMarkers(measured, ros::Time(3.0));
+  ASSERT_EQ(markers.markers.size(), 2u);
+  const auto& arrow = markers.markers[0];
+  EXPECT_EQ(arrow.action, visualization_msgs::Marker::ADD);
+  EXPECT_EQ(arrow.header.frame_id, "hand_base");
+  EXPECT_EQ(arrow.header.stamp, ros::Time(3.0));
+  ASSERT_EQ(arrow.points.size(), 2u);
+  const Eigen::Vector3d tail(arrow.points[0].x, arrow.points[0].y, arrow.points[0].z);
+  const Eigen::Vector3d head(arrow.points[1].x, arrow.points[1].y, arrow.points[1].z);
+  EXPECT_LT((head - tail - kForceScale * measured[Finger::kIndex].force).norm(), 1e-12);
+  const Eigen::Vector3d offset = tail - measured[Finger::kIndex].pose.translation();
+  EXPECT_GT(offset.norm(), 0.009) << "outside of the finger";
+  EXPECT_GT(offset.dot(head - tail), 0.999 * offset.norm() * (head - tail).norm());
+  EXPECT_GE((head - tail).norm(), 0.0025) << "0.05 N are seen";
+}
+
+TEST(ForceMarkers, HaveNoArrowForNoForce) {
+  exoskeleton::PerFinger<exoskeleton::FingerMeasurement> measured;
+  measured[Finger::kIndex].force = Eigen::Vector3d(0.5 * kLeastForce, 0.0, 0.0);
+  measured[Finger::kThumb].force.setConstant(std::numeric_limits<double>::quiet_NaN());
+  for (const auto& marker : forceMarkers(measured, ros::Time(3.0)).markers) {
+    EXPECT_EQ(marker.action, visualization_msgs::Marker::DELETE);
   }
 }
 

@@ -1,11 +1,14 @@
-// The targets of the emulated person's hand and fingers as rviz markers.
+// The targets of the emulated person's hand and fingers, and the forces that the fingers feel, as
+// rviz markers.
 #pragma once
 
+#include <ros/time.h>
 #include <visualization_msgs/InteractiveMarker.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <string>
 
+#include "haptex/exoskeleton/device_controller.h"
 #include "haptex/exoskeleton/finger.h"
 #include "haptex/exoskeleton/hand_path.h"
 
@@ -13,6 +16,17 @@ namespace haptex::nodes {
 
 /// The fingers' targets as small spheres in hand_base.
 visualization_msgs::MarkerArray targetMarkers(const exoskeleton::HandPlace& place);
+
+/// Length of the arrow of a force (m/N), so that 0.05 N are seen, and below which force (N) there
+/// is none: of a length near 0 it would have no direction.
+constexpr double kForceScale = 0.05;
+constexpr double kLeastForce = 0.01;
+
+/// The measured forces as arrows from the skin of the fingertips, in hand_base: rviz draws a
+/// WrenchStamped in hand_base at the origin of hand_base.
+/// @param stamp when they were measured
+visualization_msgs::MarkerArray forceMarkers(
+    const exoskeleton::PerFinger<exoskeleton::FingerMeasurement>& measured, const ros::Time& stamp);
 
 /// Name of the interactive marker of the hand; that of a fingertip is the name of the finger.
 constexpr char kHandMarker[] = "hand_base";
