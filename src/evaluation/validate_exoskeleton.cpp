@@ -226,6 +226,7 @@ void validateForces(const std::string& urdf, const Sink& sink) {
         if (one.finger != finger || std::abs(one.commanded.norm() - force) > 1e-9) continue;
         keepWorse(worst, {name.str(), force, one.measured.norm(), one.error(), kForceTolerance});
       }
+      if (worst.error < 0.0) throw std::logic_error(name.str() + ": no pose");
       sink(worst);
     }
   }
