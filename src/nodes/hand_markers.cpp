@@ -111,6 +111,7 @@ InteractiveMarker fingertipMarker(Finger finger, const exoskeleton::HandPlace& p
   handle.orientation.w = 1.0;
   handle.always_visible = true;
   handle.markers.push_back(sphere(colour(finger), kHandleSize, 0.4F));
+  handle.markers.back().header.frame_id.clear();  // then its pose is relative to the marker's
   marker.controls.push_back(handle);
   return marker;
 }

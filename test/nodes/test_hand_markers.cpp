@@ -42,6 +42,9 @@ void expectSound(const InteractiveMarker& marker) {
     const auto& turn = control.orientation;
     EXPECT_NEAR(std::hypot(std::hypot(turn.w, turn.x), std::hypot(turn.y, turn.z)), 1.0, 1e-12);
     names.insert(control.name);
+    for (const visualization_msgs::Marker& part : control.markers) {
+      EXPECT_EQ(part.header.frame_id, "") << "else it is drawn in that frame, away from the marker";
+    }
   }
   EXPECT_EQ(names.size(), marker.controls.size());
 }
