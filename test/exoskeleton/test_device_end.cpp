@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "haptex/exoskeleton/device_end.h"
 #include "serial_fixtures.h"
@@ -134,6 +135,38 @@ TEST(DeviceEnd, ComesBackNoFasterThanItWent) {
     const double share = shareAt(device, microseconds(us));
     EXPECT_LE(std::abs(share - before), 0.05 + 1e-9) << us;
     before = share;
+  }
+}
+
+TEST(DeviceEnd, GoesToACommandAfterLostOnesInTheTimeTheDriverTook) {
+  DeviceEnd device = drivenUntil(milliseconds(100));
+  const DeviceCommand twice = commandOf(DriveMode::kForce, 2 * kSteps);
+  for (int ms = 4; ms <= 10; ++ms) {  // 21 to 23 are lost
+    receive(device, frameOf(twice, static_cast<std::uint8_t>(20 + ms)), milliseconds(100 + ms));
+    EXPECT_NEAR(shareAt(device, milliseconds(100 + ms)), std::min(2.0, ms / 4.0), 0.03) << ms;
+  }
+}
+
+TEST(DeviceEnd, ChangesNoFasterThanTheDriverDidWhenManyCommandsComeAtOnce) {
+  constexpr int kCommands = 30, kChange = 100;  // per command, a tenth of what there was
+  for (const int together : {1, 2, 4}) {
+    DeviceEnd device = drivenUntil(milliseconds(100));
+    const auto command = [&](int number) {
+      return frameOf(commandOf(DriveMode::kForce, kSteps + kChange * std::min(number, kCommands)),
+                     static_cast<std::uint8_t>(20 + number));
+    };
+    int number = 0;
+    std::vector<double> shares{1.0};
+    for (long us = 0; us < 100000; us += 250) {
+      // One in every 0.25 ms, but only after `together` of them have piled up.
+      const long sent = us / 1000 / together * together;
+      if (number < sent) receive(device, command(++number), milliseconds(100) + microseconds(us));
+      shares.push_back(shareAt(device, milliseconds(100) + microseconds(us)));
+      if (shares.size() < 5) continue;
+      const double change = shares.back() - shares[shares.size() - 5];  // in a millisecond
+      EXPECT_LE(std::abs(change), 0.1 * 1.15 + 1e-9) << us;
+    }
+    EXPECT_NEAR(shares.back(), 1.0 + 0.1 * kCommands, 1e-9) << together;
   }
 }
 
