@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """A node ends with an error that names what is wrong with its parameters or files."""
+import pathlib
 import subprocess
 import tempfile
 import unittest
@@ -76,6 +77,34 @@ class RefusedParameters(unittest.TestCase):
                      says=['~robot_description', 'is not a string'])
         self.refused('_port:=/dev/null', '_robot_description:=a robot',
                      node='exoskeleton_driver', says=['~robot_description'])
+
+    def test_emulator_links(self):
+        for link in ('_link:=', '_link:=3', '_rate:=1'):
+            self.refused(link, node='exoskeleton_emulator',
+                         says=['~link', 'is not set to a string', 'symbolic link'])
+        with tempfile.NamedTemporaryFile() as file:
+            self.refused(f'_link:={file.name}', f'_robot_description:={self.urdf()}',
+                         node='exoskeleton_emulator', says=[file.name, 'is not a symbolic link'])
+
+    def test_emulator_robot_descriptions(self):
+        self.refused('_link:=/no/such/link', node='exoskeleton_emulator',
+                     says=['parameter robot_description is not set', 'URDF'])
+        self.refused('_link:=/no/such/link', '_robot_description:=3', node='exoskeleton_emulator',
+                     says=['~robot_description', 'is not a string'])
+
+    def test_emulator_paths_and_markers(self):
+        link, robot = '_link:=/no/such/link', f'_robot_description:={self.urdf()}'
+        self.refused(link, robot, '_path:=wave', node='exoskeleton_emulator',
+                     says=['~path', "there is no 'wave'", 'pinch'])
+        self.refused(link, robot, '_path:=3', node='exoskeleton_emulator',
+                     says=['~path', 'is not set to a string'])
+        self.refused(link, robot, '_markers:=many', node='exoskeleton_emulator',
+                     says=['~markers', 'is not true or false'])
+
+    @staticmethod
+    def urdf():
+        package = roslib.packages.get_pkg_dir('haptex')
+        return pathlib.Path(package, 'urdf', 'hand_exoskeleton.urdf').read_text()
 
 
 if __name__ == '__main__':
