@@ -31,15 +31,6 @@ constexpr Time kOperatingStatePeriod = std::chrono::milliseconds(100);
 constexpr Time kPublisherPatience = std::chrono::milliseconds(10);
 constexpr std::uint32_t kMeasuredQueue = 10;  // messages, for a subscriber that is slow for 10 ms
 
-PerFinger<FingerKinematics> kinematicsOf(const RobotDescription& description) {
-  try {
-    return {{FingerKinematics(description.urdf, Finger::kIndex),
-             FingerKinematics(description.urdf, Finger::kThumb)}};
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("parameter " + description.parameter + ": " + error.what());
-  }
-}
-
 std::string topic(Finger finger, const char* of_finger) {
   return std::string(name(finger)) + "/" + of_finger;
 }

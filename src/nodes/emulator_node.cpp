@@ -77,9 +77,12 @@ double milliseconds(Time time) { return 1e3 * exoskeleton::seconds(time); }
 }  // namespace
 
 EmulatorNodeParameters EmulatorNodeParameters::read(const ros::NodeHandle& private_node) {
-  return {readText(private_node, "link", "the path of the symbolic link to the emulator's port"),
-          readRobotDescription(private_node).urdf,
-          exoskeleton::loadHandPath(readPath(private_node)), readSwitch(private_node, "markers")};
+  const std::string link =
+      readText(private_node, "link", "the path of the symbolic link to the emulator's port");
+  const RobotDescription description = readRobotDescription(private_node);
+  kinematicsOf(description);  // throws what the emulator would, with the parameter's name
+  return {link, description.urdf, exoskeleton::loadHandPath(readPath(private_node)),
+          readSwitch(private_node, "markers")};
 }
 
 EmulatorNode::EmulatorNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)

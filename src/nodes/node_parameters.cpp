@@ -46,6 +46,18 @@ RobotDescription readRobotDescription(const ros::NodeHandle& private_node) {
   return description;
 }
 
+exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematicsOf(
+    const RobotDescription& description) {
+  using exoskeleton::Finger;
+  using exoskeleton::FingerKinematics;
+  try {
+    return {{FingerKinematics(description.urdf, Finger::kIndex),
+             FingerKinematics(description.urdf, Finger::kThumb)}};
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("parameter " + description.parameter + ": " + error.what());
+  }
+}
+
 std::string readConfigPath(const ros::NodeHandle& private_node, const std::string& name,
                            const std::string& directory) {
   const std::string full_name = private_node.resolveName(name);

@@ -6,6 +6,7 @@ import tempfile
 import unittest
 
 import roslib.packages
+import rospkg
 import rostest
 
 
@@ -78,6 +79,7 @@ class RefusedParameters(unittest.TestCase):
         self.refused('_port:=/dev/null', '_robot_description:=a robot',
                      node='exoskeleton_driver', says=['~robot_description'])
 
+<<<<<<< HEAD
     def test_emulator_links(self):
         for link in ('_link:=', '_link:=3', '_rate:=1'):
             self.refused(link, node='exoskeleton_emulator',
@@ -105,6 +107,40 @@ class RefusedParameters(unittest.TestCase):
     def urdf():
         package = roslib.packages.get_pkg_dir('haptex')
         return pathlib.Path(package, 'urdf', 'hand_exoskeleton.urdf').read_text()
+=======
+    def refused_emulator(self, *parameters, says):
+        package = rospkg.RosPack().get_path('haptex')
+        with open(f'{package}/urdf/hand_exoskeleton.urdf', encoding='utf-8') as urdf:
+            description = urdf.read()
+        self.refused(f'_robot_description:={description}', *parameters,
+                     node='exoskeleton_emulator', says=says)
+
+    def test_emulator_links(self):
+        for link in ('_link:=', '_link:=3', '_rate:=1'):
+            self.refused_emulator(link, says=['~link', 'is not set to a string'])
+        self.refused_emulator('_link:=/no/such/folder/link', says=['/no/such/folder/link'])
+        with tempfile.NamedTemporaryFile('w') as file:
+            self.refused_emulator(f'_link:={file.name}', says=[file.name])
+
+    def test_emulator_robot_descriptions(self):
+        self.refused('_link:=/tmp/haptex_refused', node='exoskeleton_emulator',
+                     says=['parameter robot_description is not set', 'URDF'])
+        self.refused('_link:=/tmp/haptex_refused', '_robot_description:=a robot',
+                     node='exoskeleton_emulator', says=['~robot_description'])
+
+    def test_emulator_paths(self):
+        link = '_link:=/tmp/haptex_refused'
+        self.refused_emulator(link, '_path:=3', says=['~path', 'is not set to a string'])
+        self.refused_emulator(link, '_path:=dance', says=['~path', "there is no 'dance'", 'pinch'])
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as path:
+            path.write('key_frames: [')
+            path.flush()
+            self.refused_emulator(link, f'_path:={path.name}', says=[path.name])
+
+    def test_emulator_markers_that_are_neither_true_nor_false(self):
+        self.refused_emulator('_link:=/tmp/haptex_refused', '_markers:=many',
+                              says=['~markers', 'true or false'])
+>>>>>>> wt-emunode
 
 
 if __name__ == '__main__':

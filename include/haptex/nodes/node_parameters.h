@@ -5,6 +5,9 @@
 
 #include <string>
 
+#include "haptex/exoskeleton/finger.h"
+#include "haptex/exoskeleton/finger_kinematics.h"
+
 namespace haptex::nodes {
 
 /// @returns `fallback` if the parameter is not set
@@ -26,6 +29,10 @@ struct RobotDescription {
 
 /// @throws std::invalid_argument naming the parameter unless it is set to a string
 RobotDescription readRobotDescription(const ros::NodeHandle& private_node);
+
+/// @throws std::invalid_argument naming the parameter and what its URDF lacks
+exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematicsOf(
+    const RobotDescription& description);
 
 /// The path of a file from a parameter that is a path or a name in config/<directory>.
 /// @throws std::invalid_argument naming the parameter if it is not set to a string or there is no
