@@ -23,6 +23,7 @@
 
 #include "haptex/evaluation/exoskeleton_loop.h"
 #include "haptex/exoskeleton/hand_path.h"
+#include "real_exoskeleton.h"
 #include "tab_lines.h"
 
 namespace {
@@ -284,6 +285,23 @@ void deviceStep(benchmark::State& run) {
   for (auto _ : run) bench.loop.device().step(command);
 }
 
+/// What only a clock can tell, alone and beside two busy cores.
+int realTime() {
+  constexpr double kLow = 0.5, kHigh = 1.5;  // N
+  constexpr int kSteps = 300;
+  try {
+    bench::RealExoskeleton exoskeleton(urdf());
+    exoskeleton.printScheduler();
+    exoskeleton.measure("idle", kLow, kHigh, kSteps);
+    const bench::BusyCores busy(2);
+    exoskeleton.measure("busy", kLow, kHigh, kSteps);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_exoskeleton: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -303,5 +321,6 @@ int main(int argc, char** argv) {
   if (has_path) return 0;
   benchmark::RegisterBenchmark("exoskeleton/controller_tick_both_fingers", controllerTick);
   benchmark::RegisterBenchmark("exoskeleton/emulated_step_both_fingers", deviceStep);
-  return bench::runAll(argc, argv);
+  if (const int status = bench::runAll(argc, argv); status != 0) return status;
+  return realTime();
 }

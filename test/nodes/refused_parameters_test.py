@@ -6,7 +6,6 @@ import tempfile
 import unittest
 
 import roslib.packages
-import rospkg
 import rostest
 
 
@@ -79,39 +78,9 @@ class RefusedParameters(unittest.TestCase):
         self.refused('_port:=/dev/null', '_robot_description:=a robot',
                      node='exoskeleton_driver', says=['~robot_description'])
 
-<<<<<<< HEAD
-    def test_emulator_links(self):
-        for link in ('_link:=', '_link:=3', '_rate:=1'):
-            self.refused(link, node='exoskeleton_emulator',
-                         says=['~link', 'is not set to a string', 'symbolic link'])
-        with tempfile.NamedTemporaryFile() as file:
-            self.refused(f'_link:={file.name}', f'_robot_description:={self.urdf()}',
-                         node='exoskeleton_emulator', says=[file.name, 'is not a symbolic link'])
-
-    def test_emulator_robot_descriptions(self):
-        self.refused('_link:=/no/such/link', node='exoskeleton_emulator',
-                     says=['parameter robot_description is not set', 'URDF'])
-        self.refused('_link:=/no/such/link', '_robot_description:=3', node='exoskeleton_emulator',
-                     says=['~robot_description', 'is not a string'])
-
-    def test_emulator_paths_and_markers(self):
-        link, robot = '_link:=/no/such/link', f'_robot_description:={self.urdf()}'
-        self.refused(link, robot, '_path:=wave', node='exoskeleton_emulator',
-                     says=['~path', "there is no 'wave'", 'pinch'])
-        self.refused(link, robot, '_path:=3', node='exoskeleton_emulator',
-                     says=['~path', 'is not set to a string'])
-        self.refused(link, robot, '_markers:=many', node='exoskeleton_emulator',
-                     says=['~markers', 'is not true or false'])
-
-    @staticmethod
-    def urdf():
-        package = roslib.packages.get_pkg_dir('haptex')
-        return pathlib.Path(package, 'urdf', 'hand_exoskeleton.urdf').read_text()
-=======
     def refused_emulator(self, *parameters, says):
-        package = rospkg.RosPack().get_path('haptex')
-        with open(f'{package}/urdf/hand_exoskeleton.urdf', encoding='utf-8') as urdf:
-            description = urdf.read()
+        package = roslib.packages.get_pkg_dir('haptex')
+        description = pathlib.Path(package, 'urdf', 'hand_exoskeleton.urdf').read_text()
         self.refused(f'_robot_description:={description}', *parameters,
                      node='exoskeleton_emulator', says=says)
 
@@ -140,7 +109,6 @@ class RefusedParameters(unittest.TestCase):
     def test_emulator_markers_that_are_neither_true_nor_false(self):
         self.refused_emulator('_link:=/tmp/haptex_refused', '_markers:=many',
                               says=['~markers', 'true or false'])
->>>>>>> wt-emunode
 
 
 if __name__ == '__main__':
