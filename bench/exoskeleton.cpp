@@ -2,8 +2,9 @@
 // (commander, driver, line, firmware, emulated device on a person's fingers) answers in simulated
 // time: step response, closed-loop bandwidth, and how long forces outlive the death of the
 // commander and of the driver. The processor's time is that of a tick of the driver and of a step
-// of the emulator. bench_exoskeleton CSV writes the curves, too; scripts/plot_exoskeleton draws
-// them.
+// of the emulator. How late the driver's loop wakes up and how long a command takes to the sensor
+// is measured with real threads and a real pseudo-terminal. bench_exoskeleton CSV writes the curves
+// of the first two and ends; scripts/plot_exoskeleton draws them.
 //
 // The fingers are as far apart as for taking a sample and are pushed apart. "person" has the finger
 // of the emulator (400 N/m), "stiff" one of 1500 N/m: the softer the finger, the more the device
