@@ -6,6 +6,7 @@
 #include <string>
 
 #include "haptex/exoskeleton/clock.h"
+#include "haptex/exoskeleton/device_link.h"
 #include "haptex/exoskeleton/device_messages.h"
 #include "haptex/exoskeleton/finger.h"
 #include "haptex/exoskeleton/finger_controller.h"
@@ -22,8 +23,8 @@ namespace haptex::exoskeleton {
 /// a newer command, and returns at the slew limit.
 class DeviceController {
  public:
-  /// Without a state for this long the device is lost. The same as DeviceLink::kStateTimeout.
-  static constexpr Time kStateTimeout = std::chrono::milliseconds(10);
+  /// Without a state for this long the device is lost.
+  static constexpr Time kStateTimeout = DeviceLink::kStateTimeout;
   /// Just before the firmware starts to take the motors to zero, DeviceEnd::kRampStart.
   static constexpr Time kRoundTrip = std::chrono::milliseconds(4);
   /// The device's clock may be this much ahead of ours before it counts as another one.
