@@ -13,7 +13,6 @@
 #include "haptex/nodes/driver_messages.h"
 #include "haptex/nodes/node_parameters.h"
 #include "haptex/nodes/ros_time.h"
-#include "haptex/nodes/steady_clock.h"
 #include "haptex/nodes/transforms.h"
 
 namespace haptex::nodes {
@@ -134,6 +133,7 @@ void EmulatorNode::work(Time now) {
   const exoskeleton::HandPlace place = motion_.at(now);
   for (const Finger finger : kFingers) emulator_.setTarget(finger, place.fingertips[finger]);
   emulator_.advanceTo(now);
+  places_.write(place);
 }
 
 /// On the publishing thread.
@@ -154,7 +154,8 @@ void EmulatorNode::publishTruth() {
 }
 
 void EmulatorNode::publishHand() {
-  const exoskeleton::HandPlace place = motion_.at(steadyNow());
+  if (!places_.update() && hands_ == 0) return;  // the emulator has not begun
+  const exoskeleton::HandPlace& place = places_.value();
   geometry_msgs::TransformStamped message;
   message.header.stamp = ros::Time::now();
   message.header.frame_id = kFixedFrame;

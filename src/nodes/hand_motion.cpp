@@ -23,20 +23,23 @@ void requireNear(const Eigen::Vector3d& position, const char* what) {
 HandMotion::HandMotion(exoskeleton::HandPath path) : path_(std::move(path)) {}
 
 exoskeleton::HandPlace HandMotion::at(exoskeleton::Time now) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  {
+    const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+    if (lock.owns_lock()) known_ = taken_;  // else the next time
+  }
   if (!start_) start_ = now;
   exoskeleton::HandPlace place = path_.at(exoskeleton::seconds(now - *start_));
   for (const Finger finger : exoskeleton::kFingers) {
-    if (targets_[finger]) place.fingertips[finger] = *targets_[finger];
+    if (known_.targets[finger]) place.fingertips[finger] = *known_.targets[finger];
   }
-  if (hand_base_) place.hand_base = *hand_base_;
+  if (known_.hand_base) place.hand_base = *known_.hand_base;
   return place;
 }
 
 void HandMotion::take(Finger finger, const Eigen::Vector3d& target) {
   requireNear(target, "target");
   const std::lock_guard<std::mutex> lock(mutex_);
-  targets_[finger] = target;
+  taken_.targets[finger] = target;
 }
 
 void HandMotion::take(const Eigen::Isometry3d& hand_base) {
@@ -45,7 +48,7 @@ void HandMotion::take(const Eigen::Isometry3d& hand_base) {
     throw std::invalid_argument("orientation of hand_base: allowed are finite numbers");
   }
   const std::lock_guard<std::mutex> lock(mutex_);
-  hand_base_ = hand_base;
+  taken_.hand_base = hand_base;
 }
 
 }  // namespace haptex::nodes

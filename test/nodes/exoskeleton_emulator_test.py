@@ -82,7 +82,7 @@ class ExoskeletonEmulator(unittest.TestCase):
         self.eventually(lambda: self.targets and self.hand, 'targets and hand')
         for finger, place in REST.items():
             self.assertTrue(close(self.targets[finger], place), finger)
-        self.assertTrue(close(self.hand.translation, (-0.1, 0.0, 0.0)))
+        self.assertTrue(close(self.hand.translation, (0.005, -0.094, -0.315)))
 
     def test_2_takes_points_in_the_frame_of_the_hand(self):
         self.send_point('index', (0.08, 0.02, -0.06))

@@ -20,6 +20,7 @@
 #include "haptex/nodes/periodic_thread.h"
 #include "haptex/nodes/ring.h"
 #include "haptex/nodes/target_input.h"
+#include "haptex/nodes/triple_buffer.h"
 
 namespace haptex::nodes {
 
@@ -75,6 +76,7 @@ class EmulatorNode {
   TargetInput targets_;
   tf2_ros::TransformBroadcaster broadcaster_;
 
+  TripleBuffer<exoskeleton::HandPlace> places_;  // from the emulator's thread to hand_timer_
   // From the emulator's thread to the publishing one.
   Ring<EmulatorSample, 64> truth_;
   std::atomic<bool> truth_wanted_{false};

@@ -12,8 +12,7 @@
 
 namespace haptex::nodes {
 
-/// May be used by several threads; none waits for another for longer than it takes to evaluate the
-/// path.
+/// at() is for one thread, which does not wait for the others: take() may be called from any.
 class HandMotion {
  public:
   /// Largest coordinate that is taken (m): no hand is further away.
@@ -32,11 +31,18 @@ class HandMotion {
   void take(const Eigen::Isometry3d& hand_base);
 
  private:
-  std::mutex mutex_;  // guards the following
-  exoskeleton::HandPath path_;
+  struct Taken {
+    exoskeleton::PerFinger<std::optional<Eigen::Vector3d>> targets;
+    std::optional<Eigen::Isometry3d> hand_base;
+  };
+
+  const exoskeleton::HandPath path_;
+  // Of the thread of at().
   std::optional<exoskeleton::Time> start_;
-  exoskeleton::PerFinger<std::optional<Eigen::Vector3d>> targets_;
-  std::optional<Eigen::Isometry3d> hand_base_;
+  Taken known_;
+
+  std::mutex mutex_;  // guards the next
+  Taken taken_;
 };
 
 }  // namespace haptex::nodes
