@@ -2,8 +2,9 @@
 // (commander, driver, line, firmware, emulated device on a person's fingers) answers in simulated
 // time: step response, closed-loop bandwidth, and how long forces outlive the death of the
 // commander and of the driver. The processor's time is that of a tick of the driver and of a step
-// of the emulator. bench_exoskeleton CSV writes the curves, too; scripts/plot_exoskeleton draws
-// them.
+// of the emulator. How late the driver's loop wakes up and how long a command takes to the sensor
+// is measured with real threads and a real pseudo-terminal. bench_exoskeleton CSV writes the curves
+// of the first two and ends; scripts/plot_exoskeleton draws them.
 //
 // The fingers are as far apart as for taking a sample and are pushed apart. "person" has the finger
 // of the emulator (400 N/m), "stiff" one of 1500 N/m: the softer the finger, the more the device
@@ -23,6 +24,7 @@
 
 #include "haptex/evaluation/exoskeleton_loop.h"
 #include "haptex/exoskeleton/hand_path.h"
+#include "real_exoskeleton.h"
 #include "tab_lines.h"
 
 namespace {
@@ -284,6 +286,23 @@ void deviceStep(benchmark::State& run) {
   for (auto _ : run) bench.loop.device().step(command);
 }
 
+/// What only a clock can tell, alone and beside two busy cores.
+int realTime() {
+  constexpr double kLow = 0.5, kHigh = 1.5;  // N
+  constexpr int kSteps = 300;
+  try {
+    bench::RealExoskeleton exoskeleton(urdf());
+    exoskeleton.printScheduler();
+    exoskeleton.measure("idle", kLow, kHigh, kSteps);
+    const bench::BusyCores busy(2);
+    exoskeleton.measure("busy", kLow, kHigh, kSteps);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_exoskeleton: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -303,5 +322,6 @@ int main(int argc, char** argv) {
   if (has_path) return 0;
   benchmark::RegisterBenchmark("exoskeleton/controller_tick_both_fingers", controllerTick);
   benchmark::RegisterBenchmark("exoskeleton/emulated_step_both_fingers", deviceStep);
-  return bench::runAll(argc, argv);
+  if (const int status = bench::runAll(argc, argv); status != 0) return status;
+  return realTime();
 }

@@ -5,9 +5,9 @@
 namespace haptex::exoskeleton {
 namespace {
 
-// s. The driver's clock may be faster than the device's, and what it sends in a second must not
-// take longer here.
-constexpr double kShortPeriod = 0.99 * seconds(DeviceEnd::kCommandPeriod);
+// s. A lag behind the driver is made up for by this much: its clock may be faster, and commands
+// that keep changing must not leave the torques behind for long.
+constexpr double kShortPeriod = 0.95 * seconds(DeviceEnd::kCommandPeriod);
 
 }  // namespace
 
@@ -52,9 +52,10 @@ void DeviceEnd::takeCommand(const Frame& frame, Time now) {
 // does itself.
 void DeviceEnd::approach(const DeviceCommand& command, int ahead, Time now) {
   const PerFinger<MotorVector> present = torques(now);
-  double left = (1.0 - watchdogShare(now)) * seconds(kMotorsOff - kRampStart);
+  const double fallen = (1.0 - watchdogShare(now)) * seconds(kMotorsOff - kRampStart);
+  double left = fallen;
   if (last_command_) left += std::max(0.0, seconds(reached_ - lineEnd(now)));
-  double duration = 0.0;
+  double duration = fallen;  // at least: the first command of a driver may be any
   for (const Finger finger : kFingers) {
     const MotorVector& last = command_.torques[finger];
     const MotorVector& next = command.torques[finger];

@@ -7,6 +7,8 @@ namespace {
 
 // m/s. No finger is faster; keeps the products of the passivity observer finite.
 constexpr double kFastest = 10.0;
+// A ramp at exactly kMaximumSlew must end in exactly zero, not in what rounding leaves of it.
+constexpr double kRounding = 1.0 + 1e-12;
 
 }  // namespace
 
@@ -28,7 +30,7 @@ Vector3d slewLimited(const Vector3d& target, const Vector3d& previous, double dt
   const double most = kMaximumSlew * std::clamp(dt, 0.0, kLongestSlew);
   const Vector3d change = target - previous;
   const double size = change.norm();
-  if (size <= most) return target;
+  if (size <= most * kRounding) return target;
   return previous + change * (most / size);
 }
 

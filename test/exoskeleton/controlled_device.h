@@ -62,8 +62,7 @@ struct ControlledDevice {
       for (const Finger finger : kFingers) {
         EmulatedFinger& emulated = fingers[finger];
         emulated.relax(obeyed.mode == DriveMode::kHoming);
-        emulated.step(obeyed.mode == DriveMode::kOff ? MotorVector::Zero()
-                                                     : obeyed.torques[finger],
+        emulated.step(obeyed.mode == DriveMode::kOff ? MotorVector::Zero() : obeyed.torques[finger],
                       1.0 / (1000.0 * kSubsteps));
       }
     }

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 import unittest
 import xmlrpc.client
@@ -25,7 +26,8 @@ LINK, LOOP = 'exoskeleton link', 'exoskeleton loop'  # names in the diagnostics
 FORCE = 'exoskeleton force of the index'
 NAN, INFINITY = float('nan'), float('inf')
 HELD = Vector3(0.0, 0.0, 3.0)  # N, stretches the index, away from the stops
-CLOSE = 0.3  # N, of noise and friction
+CLOSE = 0.3  # N: of noise and friction, and of a finger that comes to rest
+NO_FORCE = 0.01  # N, of motors
 FRAME_FAULTS = ('drop', 'drop_bytes', 'duplicate', 'flip', 'truncate', 'delay', 'reorder',
                 'garbage', 'oversize', 'wrong_version')
 
@@ -46,11 +48,12 @@ def command(force=Vector3(0.0, 0.0, 0.0), age=0.0, frame='hand_base'):
 
 
 class Listener:
-    """The last message of a topic; of a WrenchStamped one also the largest force, and when a force
-    was felt last."""
+    """The last message of a topic; of a WrenchStamped one also the largest force, and the stamp of
+    the last that was not close to none."""
 
-    def __init__(self, topic, kind):
+    def __init__(self, topic, kind, close=CLOSE):
         self.last = None
+        self.close_to_none = close
         self.largest = 0.0
         self.last_felt = None
         self.subscriber = rospy.Subscriber(topic, kind, self.take, tcp_nodelay=True)
@@ -60,7 +63,7 @@ class Listener:
         if isinstance(message, WrenchStamped):
             force = norm(message.wrench.force)
             self.largest = max(self.largest, force)
-            if force >= CLOSE:
+            if force >= self.close_to_none:
                 self.last_felt = message.header.stamp
 
     @property
@@ -98,7 +101,7 @@ class Exoskeleton(unittest.TestCase):
         self.addCleanup(self.measured.close)
         self.felt = Listener('emulator/index/contact_force', WrenchStamped)
         self.addCleanup(self.felt.close)
-        self.driven = Listener('emulator/index/motor_force', WrenchStamped)
+        self.driven = Listener('emulator/index/motor_force', WrenchStamped, NO_FORCE)
         self.addCleanup(self.driven.close)
         self.recover()
 
@@ -163,16 +166,22 @@ class Exoskeleton(unittest.TestCase):
 
         self.eventually(held, lambda: 'the force held: ' + self.diagnostics[FORCE].message)
 
-    def await_gone(self, listener, killed):
-        """@returns how long the force was felt after the moment of the kill, s"""
-        self.eventually(lambda: norm(listener.force) < CLOSE, 'no force', 1.0)
-        return (listener.last_felt - killed).to_sec()
+    def await_no_force(self, killed, who, also=()):
+        """Within a second, which is generous: how long it took is printed."""
+        def gone():
+            return all(norm(listener.force) < listener.close_to_none
+                       for listener in (self.driven, self.felt, *also))
 
-    def value(self, status, key):
-        """A value of the next diagnostics of the driver."""
+        self.eventually(gone, f'no force without a {who}', 1.0)
+        for listener, what in ((self.driven, 'motor force'), (self.felt, 'force on the finger')):
+            took = 1e3 * (listener.last_felt - killed).to_sec()
+            print(f'{what} below {listener.close_to_none} N {took:.1f} ms after the {who} was killed')
+
+    def values(self, status):
+        """Those of the next diagnostics of the driver."""
         self.diagnostics.pop(status, None)
         self.eventually(lambda: status in self.diagnostics, f'diagnostics of {status}')
-        return {item.key: item.value for item in self.diagnostics[status].values}[key]
+        return {item.key: item.value for item in self.diagnostics[status].values}
 
     @staticmethod
     def process(node):
@@ -215,9 +224,8 @@ class Exoskeleton(unittest.TestCase):
         self.assertGreater(norm(self.measured.force), CLOSE)
         killed = rospy.Time.now()
         commander.send_signal(signal.SIGKILL)
-        took = self.await_gone(self.measured, killed)
-        print(f'measured force gone {1e3 * took:.1f} ms after the commander was killed')
-        self.assertGreater(int(self.value(FORCE, 'watchdog trips')), 0)
+        self.await_no_force(killed, 'commander', [self.measured])
+        self.assertGreater(int(self.values(FORCE)['watchdog trips']), 0)
 
     def test_no_force_after_the_driver_was_killed_and_works_when_it_is_back(self):
         self.hold()
@@ -226,53 +234,54 @@ class Exoskeleton(unittest.TestCase):
         self.assertGreater(norm(self.felt.force), CLOSE)
         killed = rospy.Time.now()
         os.kill(driver, signal.SIGKILL)
-        took = self.await_gone(self.felt, killed)
-        print(f'felt force gone {1e3 * took:.1f} ms after the driver was killed')
+        self.await_no_force(killed, 'driver')
         self.state.last = None
         self.recover()
         self.await_held()
 
-    def dropped(self, reason):
-        return int(self.value(FORCE, f'commands dropped: {reason}'))
-
     def test_drops_and_counts_bad_commands(self):
+        bad = {'not finite': lambda: [command(Vector3(0.0, 0.0, number))
+                                      for number in (NAN, INFINITY, -INFINITY)],
+               'another frame': lambda: [command(HELD, frame='index_tip'), command(HELD, frame='')],
+               'too old': lambda: [command(HELD, age=1.0)],
+               'from the future': lambda: [command(HELD, age=-1.0)],
+               'out of order': lambda: [command(), command(HELD, age=0.01)]}
         self.eventually(lambda: self.commander.get_num_connections() > 0, 'a connection')
-        for reason, messages in (
-                ('not finite', lambda: [command(Vector3(0.0, 0.0, number))
-                                        for number in (NAN, INFINITY, -INFINITY)]),
-                ('another frame', lambda: [command(HELD, frame='index_tip'),
-                                           command(HELD, frame='')]),
-                ('too old', lambda: [command(HELD, age=1.0)]),
-                ('from the future', lambda: [command(HELD, age=-1.0)]),
-                ('out of order', lambda: [command(), command(HELD, age=0.01)])):
-            before = self.dropped(reason)
-            self.measured.largest = 0.0
+        before = self.values(FORCE)
+        self.measured.largest = 0.0
+        for messages in bad.values():
             for _ in range(20):
                 for message in messages():
                     self.commander.publish(message)
                     time.sleep(0.002)
-            self.assertGreater(self.dropped(reason), before, reason)
-            self.assertLess(self.measured.largest, CLOSE, reason)
+        after = self.values(FORCE)
+        for reason in bad:
+            key = f'commands dropped: {reason}'
+            self.assertGreater(int(after[key]), int(before[key]), reason)
+        self.assertTrue(after['why the last command was dropped'])
+        self.assertLess(self.measured.largest, CLOSE)
 
     def test_says_why_there_is_no_force(self):
         key = 'why there is no force'
-        self.eventually(lambda: 'command' in self.value(FORCE, key), 'nobody commands')
+        self.eventually(lambda: 'command' in self.values(FORCE)[key], 'nobody commands')
         self.assertTrue(self.ask['pause']().success)
-        self.eventually(lambda: 'paused' in self.value(FORCE, key), 'paused')
+        self.eventually(lambda: 'paused' in self.values(FORCE)[key], 'paused')
         self.assertTrue(self.ask['disable']().success)
-        self.eventually(lambda: 'disabled' in self.value(FORCE, key), 'disabled')
+        self.eventually(lambda: 'disabled' in self.values(FORCE)[key], 'disabled')
         self.assertEqual(self.state.last.state, 'DISABLED')
 
     def test_diagnoses_link_and_loop(self):
-        self.assertGreater(float(self.value(LINK, 'states received (1/s)')), 0.0)
-        for key in ('states lost', 'corrupt frames', 'bytes of garbage'):
-            self.assertGreaterEqual(int(self.value(LINK, key)), 0)
-        granted = self.value(LOOP, 'SCHED_FIFO')
+        link, loop = self.values(LINK), self.values(LOOP)
+        self.assertGreater(float(link['states received (1/s)']), 0.0)
+        for key in ('states lost', 'corrupt frames', 'bytes of garbage', 'timeouts'):
+            self.assertGreaterEqual(int(link[key]), 0)
+        granted = loop['SCHED_FIFO']
         self.assertTrue(granted == 'granted' or granted.startswith('not granted: '), granted)
-        jitter = [float(self.value(LOOP, f'wake-up jitter {which} since the start (us)'))
-                  for which in ('p50', 'p99', 'p99.9', 'max')]
-        self.assertEqual(jitter, sorted(jitter))
-        self.assertGreater(jitter[0], 0.0)
+        for when in ('of the last second', 'since the start'):
+            jitter = [float(loop[f'wake-up jitter {which} {when} (us)'])
+                      for which in ('p50', 'p99', 'p99.9', 'max')]
+            self.assertEqual(jitter, sorted(jitter))
+            self.assertGreater(jitter[0], 0.0)
 
     def test_refuses_to_enable_a_device_that_was_switched_off(self):
         self.assertTrue(self.cycle_power().success)
@@ -284,6 +293,20 @@ class Exoskeleton(unittest.TestCase):
         self.assertFalse(refusal.success)
         self.assertTrue(refusal.message)
         self.eventually(lambda: not self.state.last.is_homed, 'not homed')
+
+    def test_answers_others_while_it_homes(self):
+        self.granted('disable')
+        answers = []
+        homing = threading.Thread(target=lambda: answers.append(self.ask['home']()))
+        homing.start()
+        self.eventually(lambda: self.state.last.is_busy, 'homing')
+        for name in ('home', 'enable'):
+            self.assertFalse(self.ask[name]().success)
+            self.assertTrue(homing.is_alive())
+        self.assertTrue(self.ask['disable']().success)
+        homing.join(WAIT)
+        self.assertFalse(answers[0].success)
+        self.assertIn('ended by another request', answers[0].message)
 
     def suffer(self, faults, duration=0.4):
         """Faults while a force is commanded: both nodes live, the force stays safe and returns."""

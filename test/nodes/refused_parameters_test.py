@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """A node ends with an error that names what is wrong with its parameters or files."""
+import pathlib
 import subprocess
 import tempfile
 import unittest
 
 import roslib.packages
-import rospkg
 import rostest
 
 
@@ -79,9 +79,8 @@ class RefusedParameters(unittest.TestCase):
                      node='exoskeleton_driver', says=['~robot_description'])
 
     def refused_emulator(self, *parameters, says):
-        package = rospkg.RosPack().get_path('haptex')
-        with open(f'{package}/urdf/hand_exoskeleton.urdf', encoding='utf-8') as urdf:
-            description = urdf.read()
+        package = roslib.packages.get_pkg_dir('haptex')
+        description = pathlib.Path(package, 'urdf', 'hand_exoskeleton.urdf').read_text()
         self.refused(f'_robot_description:={description}', *parameters,
                      node='exoskeleton_emulator', says=says)
 

@@ -16,16 +16,17 @@ namespace haptex::exoskeleton {
 
 /// The firmware's command watchdog: from kRampStart to kMotorsOff after the last command the
 /// torques go to zero in a straight line, so that the force neither jumps nor outlives a dead
-/// driver. When commands come again the torques come back no faster than they went: a delayed line
-/// does not jerk the fingers either.
+/// driver by more than 10 ms, of which a command spends up to 0.3 ms on the line. When commands
+/// come again the torques come back no faster than they went: a delayed line does not jerk the
+/// fingers either.
 ///
 /// The driver limits how much the force changes from one command to the next. Where commands got
 /// lost, or several come at once, the torques go to the last one in a straight line that takes as
 /// long as the driver took, and after the watchdog as long as it had them fall.
 class DeviceEnd {
  public:
-  static constexpr Time kRampStart = std::chrono::milliseconds(5);
-  static constexpr Time kMotorsOff = std::chrono::milliseconds(10);
+  static constexpr Time kRampStart = std::chrono::microseconds(4500);
+  static constexpr Time kMotorsOff = std::chrono::microseconds(9500);
 
   /// From one command to the next.
   static constexpr Time kCommandPeriod = std::chrono::milliseconds(1);

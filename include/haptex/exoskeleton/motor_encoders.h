@@ -12,10 +12,10 @@ namespace haptex::exoskeleton {
 /// Encoders of one finger. Their counts wrap around at 32 bits and start anywhere.
 ///
 /// Velocities are first differences through two equal low-pass filters of first order at
-/// kVelocityBandwidth, discretised exactly for whatever period the states have. They are about
-/// 2 / (2 pi 60 Hz) + half a period = 5.8 ms late. A single count, which the difference alone
-/// would show as 3 rad/s for 1 ms, makes at most 2 pi 60 Hz / e * 3.07 mrad = 0.43 rad/s of the
-/// motor, 3 mm/s at a fingertip 0.1 m from the joint.
+/// kVelocityBandwidth, discretised exactly for whatever period the states have. At 1 kHz each
+/// filter is 2.2 ms late and the difference half a period, 4.9 ms together. A single count, which
+/// the difference alone would show as 3 rad/s for 1 ms, makes at most 2 pi 60 Hz / e * 3.07 mrad =
+/// 0.43 rad/s of the motor, 3 mm/s at a fingertip 0.1 m from the joint.
 ///
 /// Not thread-safe, does not allocate.
 class MotorEncoders {
