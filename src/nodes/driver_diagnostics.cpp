@@ -8,7 +8,6 @@ namespace haptex::nodes {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
-using exoskeleton::Finger;
 using exoskeleton::kFingers;
 using exoskeleton::LinkStatistics;
 using exoskeleton::LinkStatus;

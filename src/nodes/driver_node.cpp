@@ -20,9 +20,7 @@ namespace haptex::nodes {
 namespace {
 
 using exoskeleton::Finger;
-using exoskeleton::FingerKinematics;
 using exoskeleton::kFingers;
-using exoskeleton::PerFinger;
 using exoskeleton::Time;
 
 constexpr Time kJointPeriod = std::chrono::milliseconds(10);
@@ -135,15 +133,15 @@ void DriverNode::publishMeasured(const DriverSnapshot& snapshot) {
   if (!snapshot.operating_state.is_homed) return;
   const ros::Time stamp = rosTimeOf(snapshot.state_time);
   for (const Finger finger : kFingers) publishFinger(finger, snapshot, stamp);
-  const auto isDue = [&](Time& due, Time period) {
+  const auto is_due = [&](Time& due, Time period) {
     if (snapshot.state_time < due) return false;
     due = snapshot.state_time + period - DriverLoop::kPeriod / 2;
     return true;
   };
-  if (isDue(joints_due_, kJointPeriod) && joint_publisher_.getNumSubscribers() > 0) {
+  if (is_due(joints_due_, kJointPeriod) && joint_publisher_.getNumSubscribers() > 0) {
     joint_publisher_.publish(jointStateMessage(kinematics_, snapshot.fingers, stamp));
   }
-  if (isDue(markers_due_, kMarkerPeriod) && marker_publisher_.getNumSubscribers() > 0) {
+  if (is_due(markers_due_, kMarkerPeriod) && marker_publisher_.getNumSubscribers() > 0) {
     marker_publisher_.publish(forceMarkers(snapshot.fingers, stamp));
   }
 }
