@@ -71,6 +71,9 @@ class SafetyChain {
   /// A command or measurement was dropped because it was not finite.
   void countNotFinite() { ++statistics_.not_finite; }
 
+  /// The command of the coming tick was shortened to kMaximumForce before it came here.
+  void countSaturated() { ++statistics_.saturated; }
+
   /// Latches: the force goes to zero within kWatchdogRamp, from the next tick on, and stays there
   /// until clearFault().
   void latchFault();

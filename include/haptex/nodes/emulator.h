@@ -48,7 +48,8 @@ class Emulator {
   static constexpr exoskeleton::Time kPeriod = std::chrono::milliseconds(1);
   /// More lag than this is given up. Less than it takes the firmware's watchdog to act, so that
   /// catching up never trips it.
-  static constexpr exoskeleton::Time kLargestLag = exoskeleton::DeviceEnd::kRampStart;
+  static constexpr exoskeleton::Time kLargestLag = std::chrono::milliseconds(4);
+  static_assert(kLargestLag < exoskeleton::DeviceEnd::kRampStart);
   /// How long the device is off when its power is cycled.
   static constexpr exoskeleton::Time kOffTime = std::chrono::milliseconds(200);
 
