@@ -74,7 +74,7 @@ void FingerController::command(const ForceCommand& command, bool obeyed, Time no
     return;
   }
   if (!obeyed) return;
-  command_ = command;
+  command_.take(command, measurement_.pose.translation(), measurement_.velocity);
   has_command_ = true;
   chain_.commandAccepted(now);
 }
@@ -95,6 +95,7 @@ MotorVector FingerController::home(Time now) {
 
 void FingerController::startForces(Time now) {
   has_command_ = false;
+  command_.rest();
   chain_.start(now);
 }
 
@@ -112,16 +113,20 @@ ForceInput FingerController::forceInput(bool obeyed) const {
   input.measured_now = measured_now_;
   input.sensor_works = sensor_works_;
   input.obeyed = obeyed;
-  input.stopping = chain_.stopping();
   input.jacobian = jacobian_;
+  input.motor_velocities = encoders_.velocities();
   return input;
 }
 
 MotorVector FingerController::renderForces(NoForceReason hold, Time now) {
   const bool held = hold != NoForceReason::kNone || !has_command_ || outside_limits_ || singular_;
-  const Vector3d wanted =
-      held ? Vector3d::Zero()
-           : evaluate(command_, measurement_.pose.translation(), measurement_.velocity);
+  Vector3d wanted = Vector3d::Zero();
+  if (held || chain_.commandsStopped()) {
+    command_.rest();
+  } else {
+    wanted = command_.tick(measurement_.pose.translation(), measurement_.velocity);
+    if (command_.saturated()) chain_.countSaturated();
+  }
   chain_.tick(wanted, measurement_.velocity, now);
   return control_.tick(forceInput(hold != NoForceReason::kNoDevice));
 }

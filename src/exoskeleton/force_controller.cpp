@@ -19,7 +19,6 @@ double share(double time_constant) {
   return -std::expm1(-ForceController::kPeriod / time_constant);
 }
 
-const double kSmoothingShare = share(ForceController::kSmoothing);
 const double kResponseShare = share(ForceController::kResponse);
 const double kSlowShare = share(ForceController::kSlow);
 const double kErrorShare = share(ForceController::kErrorFilter);
@@ -34,8 +33,8 @@ void filter(const Vector3d& in, double share_of_way, Vector3d& first, Vector3d& 
 }  // namespace
 
 void ForceController::reset() {
-  for (Vector3d* vector : {&half_smooth_, &smooth_, &half_expected_, &expected_, &half_slow_,
-                           &slow_, &force_, &error_, &integral_, &correction_}) {
+  for (Vector3d* vector : {&half_expected_, &expected_, &half_slow_, &slow_, &force_, &error_,
+                           &integral_, &correction_}) {
     vector->setZero();
   }
   on_its_way_.fill(Vector3d::Zero());
@@ -45,21 +44,16 @@ void ForceController::reset() {
   released_ = true;
 }
 
-void ForceController::feedForward(const ForceInput& input) {
-  if (input.stopping || !input.obeyed) {
-    half_smooth_ = smooth_ = slewLimited(input.desired, smooth_, kPeriod);
-  } else {
-    filter(input.desired, kSmoothingShare, half_smooth_, smooth_);
-  }
+void ForceController::expect(const ForceInput& input) {
   filter(on_its_way_[oldest_], kResponseShare, half_expected_, expected_);
-  on_its_way_[oldest_] = smooth_;
+  on_its_way_[oldest_] = input.desired;
   oldest_ = (oldest_ + 1) % kLatency;
   filter(expected_, kSlowShare, half_slow_, slow_);
 }
 
-void ForceController::integrate(const Vector3d& measured) {
+void ForceController::integrate(const Vector3d& desired, const Vector3d& measured) {
   error_ += kErrorShare * (expected_ - measured - error_);
-  const double change = (smooth_ - slow_).norm();
+  const double change = (desired - slow_).norm();
   const Vector3d next = saturated(
       integral_ + kIntegral * kPeriod / (1.0 + change / kLargeChange) * error_, kMaximumCorrection);
   // The torques are at their limit: more of the same would only have to be undone later.
@@ -68,8 +62,9 @@ void ForceController::integrate(const Vector3d& measured) {
 }
 
 MotorVector ForceController::torques(const ForceInput& input) {
-  force_ = slewLimited(smooth_ + correction_, force_, kPeriod);
-  MotorVector torques = input.jacobian.transpose() * force_;
+  force_ = slewLimited(input.desired + correction_, force_, kPeriod);
+  MotorVector torques =
+      input.jacobian.transpose() * force_ - release_left_ * kDamping * input.motor_velocities;
   torque_limited_ = false;
   for (int i = 0; i < kMotors; ++i) {
     const double needed = (kMaximumForce + kMaximumCorrection) * input.jacobian.col(i).norm();
@@ -85,14 +80,14 @@ MotorVector ForceController::tick(const ForceInput& input) {
   released_ = false;
   share_ *= release_left_;  // enabled again before the release was through
   release_left_ = 1.0;
-  feedForward(input);
+  expect(input);
   const bool sensor_works = input.sensor_works && input.measured.allFinite();
   const bool feedback = sensor_works && input.obeyed;
   if (!sensor_works) ++feed_forward_only_;
   if (!feedback) {
     error_.setZero();
   } else if (input.measured_now) {
-    integrate(input.measured);
+    integrate(input.desired, input.measured);
   }
   share_ = std::clamp(share_ + (feedback ? kFadeStep : -kFadeStep), 0.0, 1.0);
   correction_ = share_ * saturated(integral_ + kProportional * error_, kMaximumCorrection);
@@ -103,11 +98,9 @@ MotorVector ForceController::release(const ForceInput& input) {
   if (released_) return MotorVector::Zero();
   const double left = release_left_;
   release_left_ = std::max(0.0, release_left_ - kReleaseStep);
-  // The safety chain's ramp is slow enough; its smoothing would outlive it.
-  half_smooth_ = smooth_ = slewLimited(input.desired, smooth_, kPeriod);
   correction_ *= left > 0.0 ? release_left_ / left : 0.0;
   const MotorVector last = torques(input);
-  if (release_left_ == 0.0 && smooth_.isZero(0.0) && force_.isZero(0.0)) {
+  if (release_left_ == 0.0 && force_.isZero(0.0)) {
     reset();
     return MotorVector::Zero();
   }

@@ -136,13 +136,12 @@ TEST(ForceController, WithoutANewMeasurementTheCorrectionStays) {
   EXPECT_EQ(controller.correction(), correction);
 }
 
-TEST(ForceController, AStoppedForceIsFollowedWithoutSmoothing) {
+TEST(ForceController, FollowsTheDesiredForceAtOnce) {
   ForceController controller = settled({5.0, 0.0, 0.0});
   for (const double left : {4.0, 3.0, 2.0, 1.0, 0.0}) {
-    ForceInput stopping = input({left, 0.0, 0.0}, {5.0, 0.0, 0.0});
-    stopping.stopping = true;
-    const Vector3d force = forceOf(controller.tick(stopping));
-    EXPECT_LT((force - controller.correction() - stopping.desired).norm(), 0.05) << left;
+    const Vector3d desired(left, 0.0, 0.0);
+    const Vector3d force = forceOf(controller.tick(input(desired, {5.0, 0.0, 0.0})));
+    EXPECT_LT((force - controller.correction() - desired).norm(), 0.05) << left;
   }
 }
 
@@ -179,7 +178,6 @@ TEST(ForceController, WhateverIsMeasuredTorquesAreFiniteBoundedAndObeyTheSlewLim
     ForceInput now = input(desired, measured);
     now.sensor_works = generator() % 100 != 0;
     now.obeyed = generator() % 500 > 3;
-    now.stopping = generator() % 300 == 0;
     const bool releasing = generator() % 1000 == 0;
     const MotorVector torques = releasing ? controller.release(now) : controller.tick(now);
     ASSERT_TRUE(torques.allFinite());

@@ -14,6 +14,7 @@
 #include "haptex/exoskeleton/homing.h"
 #include "haptex/exoskeleton/motor_encoders.h"
 #include "haptex/exoskeleton/safety_chain.h"
+#include "haptex/exoskeleton/smooth_command.h"
 
 namespace haptex::exoskeleton {
 
@@ -106,7 +107,7 @@ class FingerController {
   SafetyChain chain_;
   ForceController control_;
   FingerMeasurement measurement_;
-  ForceCommand command_;
+  SmoothCommand command_;
   Eigen::Matrix3d jacobian_ = Eigen::Matrix3d::Zero();
   bool has_command_ = false;
   bool measured_now_ = false;

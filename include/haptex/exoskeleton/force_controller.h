@@ -23,18 +23,16 @@ struct ForceInput {
   /// The device gets the torques. If not, there is nothing to learn from what it measures, and the
   /// correction fades: torques must not jump when the device obeys again.
   bool obeyed = true;
-  /// The desired force is on its way to zero because of the watchdog or a fault: it is followed
-  /// without smoothing, which would make it outlive them.
-  bool stopping = false;
   Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();  ///< m/rad, of the motors
+  MotorVector motor_velocities = MotorVector::Zero();  ///< rad/s
 };
 
-/// Explicit force control: torques = J^T (r + c) with
-///   r, the feed-forward: the desired force through two low-pass filters of kSmoothing, because a
-///     step would make device, pulp and finger ring at 30 to 70 Hz;
+/// Explicit force control: torques = J^T (r + c) - kDamping w with
+///   r, the feed-forward: the desired force, in which SmoothCommand has left no steps;
 ///   c, the correction: kProportional e + kIntegral times the integral of e, of norm at most
 ///     kMaximumCorrection, where e is what is expected to be measured minus what is measured, low-
-///     pass filtered with kErrorFilter.
+///     pass filtered with kErrorFilter;
+///   w, the motors' velocities.
 /// Friction, the weight of the links, errors of motors and kinematics are not modelled: the
 /// integral takes them.
 ///
@@ -43,21 +41,20 @@ struct ForceInput {
 /// fingers lag behind that is left to their own dynamics: the integral slows down by the factor
 /// 1 + |r - slow r| / kLargeChange while r changes.
 ///
-/// The constants were found by a search on the emulated fingers for the largest bandwidth that
-/// keeps the overshoot of a 3 N step below 15 % in all poses and directions, for fingers of 100 to
-/// 1500 N/m and a line of 3 ms. Measured there: a static error of at most 0.004 N away from
-/// singular poses; at most 12 % of overshoot; -3 dB at 7 to 37 Hz (median 10 to 14) for 1500 N/m
-/// and at 5 to 7 Hz for 400 N/m. There the device has to follow the give of the finger, and feed-
-/// forward alone, unfiltered, reaches no more than 7 to 10 Hz. The loop is stable with twice the
-/// gains, and with 10 ms instead of 3.
+/// The constants, and SmoothCommand::kSmoothing, were found by a search on the emulated fingers for
+/// the largest bandwidth that keeps the overshoot of a 3 N step below 15 % in all poses and
+/// directions, for fingers of 100 to 1500 N/m and a line of 3 ms. Measured there, away from
+/// singular poses: a static error of at most 0.004 N and an overshoot of at most 7 %; -3 dB at 7 to
+/// 45 Hz (median 14 to 30) for 1500 N/m, 6 to 10 Hz (median 8) for 400 N/m and 3 to 4 Hz for
+/// 100 N/m: the device has to follow the give of the finger, against its own friction. The loop is
+/// stable with three times the gains, and with 10 ms instead of 3.
 ///
-/// r + c changes by at most kMaximumSlew, too, whatever the sensor says.
+/// r + c changes at most by kMaximumSlew, whatever the sensor says.
 ///
 /// To be called once per millisecond. Not thread-safe, does not allocate.
 class ForceController {
  public:
   static constexpr double kPeriod = 0.001;       ///< s
-  static constexpr double kSmoothing = 0.0045;   ///< s
   static constexpr std::size_t kLatency = 3;     ///< periods, from torque to its measured effect
   static constexpr double kResponse = 0.003;     ///< s
   static constexpr double kProportional = 0.2;   ///< N/N
@@ -65,6 +62,10 @@ class ForceController {
   static constexpr double kErrorFilter = 0.006;  ///< s
   static constexpr double kSlow = 0.03;          ///< s, twice, of the slow r
   static constexpr double kLargeChange = 0.3;    ///< N
+  /// N m s/rad on each motor axis: damps what the finger does not, the swinging of a curled finger
+  /// to its side, where the device weighs 0.1 kg. 30 1/s of the inertia there, for velocities 8 ms
+  /// old.
+  static constexpr double kDamping = 4e-6;
   /// N. The links weigh 0.25 N, friction is up to 0.1 N, and 10 % of an error of the motors' torque
   /// constant are 0.5 N at the largest force. The person feels no more than this if the feedback
   /// is wrong.
@@ -94,11 +95,10 @@ class ForceController {
   std::uint64_t feedForwardOnly() const { return feed_forward_only_; }
 
  private:
-  void feedForward(const ForceInput& input);
-  void integrate(const Eigen::Vector3d& measured);
+  void expect(const ForceInput& input);
+  void integrate(const Eigen::Vector3d& desired, const Eigen::Vector3d& measured);
   MotorVector torques(const ForceInput& input);
 
-  Eigen::Vector3d half_smooth_, smooth_;              // N, the feed-forward
   std::array<Eigen::Vector3d, kLatency> on_its_way_;  // N, ring of feed-forwards
   std::size_t oldest_ = 0;
   Eigen::Vector3d half_expected_, expected_;       // N

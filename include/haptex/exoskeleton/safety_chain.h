@@ -71,6 +71,9 @@ class SafetyChain {
   /// A command or measurement was dropped because it was not finite.
   void countNotFinite() { ++statistics_.not_finite; }
 
+  /// The command of the coming tick was shortened to kMaximumForce before it came here.
+  void countSaturated() { ++statistics_.saturated; }
+
   /// Latches: the force goes to zero within kWatchdogRamp, from the next tick on, and stays there
   /// until clearFault().
   void latchFault();
@@ -87,8 +90,6 @@ class SafetyChain {
   /// True if no command has been accepted yet or the last one is too old, as of the last tick.
   bool commandsStopped() const { return commands_stopped_; }
   bool faultLatched() const { return fault_latched_; }
-  /// True if watchdog or fault take the force to zero or keep it there.
-  bool stopping() const { return commands_stopped_ || fault_latched_; }
   const SafetyStatistics& statistics() const { return statistics_; }
 
  private:
