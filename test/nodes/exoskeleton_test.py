@@ -160,7 +160,7 @@ class Exoskeleton(unittest.TestCase):
     def await_held(self):
         """Where the machine stood still for 10 ms, the device has to be made ready again."""
         def held():
-            if self.state.last.state != 'ENABLED':
+            if not self.state.last or self.state.last.state != 'ENABLED':
                 self.recover()
             return difference(self.measured.force, HELD) < CLOSE
 
@@ -185,8 +185,12 @@ class Exoskeleton(unittest.TestCase):
 
     @staticmethod
     def process(node):
+        """Its number, or None while it does not answer."""
         uri = rosgraph.Master('/test').lookupNode(rospy.resolve_name(node))
-        return xmlrpc.client.ServerProxy(uri).getPid('/test')[2]
+        try:
+            return xmlrpc.client.ServerProxy(uri).getPid('/test')[2]
+        except OSError:
+            return None
 
     def test_commanded_force_reaches_the_finger(self):
         self.hold()
@@ -235,7 +239,9 @@ class Exoskeleton(unittest.TestCase):
         killed = rospy.Time.now()
         os.kill(driver, signal.SIGKILL)
         self.await_no_force(killed, 'driver')
-        self.state.last = None
+        self.eventually(lambda: self.process('exoskeleton_driver') not in (None, driver),
+                        'another driver')
+        self.state.last = self.measured.last = None  # of the dead one
         self.recover()
         self.await_held()
 
