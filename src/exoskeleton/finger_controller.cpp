@@ -48,7 +48,8 @@ void FingerController::updatePose() {
 
   const auto below = kinematics_.lowerLimits() - m.joint_angles;
   const auto above = m.joint_angles - kinematics_.upperLimits();
-  outside_limits_ = !(below.cwiseMax(above).maxCoeff() <= kLimitTolerance);
+  const double tolerated = outside_limits_ ? 0.0 : kLimitTolerance;
+  outside_limits_ = !(below.cwiseMax(above).maxCoeff() <= tolerated);
   const Configuration configuration = kinematics_.configuration(m.joint_angles);
   const double edge = singular_ ? kLeaveSingular * kSingular : kSingular;
   singular_ = configuration.singular || configuration.smallest_singular_value < edge;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <random>
 
@@ -23,12 +24,12 @@ struct ControlledDevice {
       : fingers{{EmulatedFinger(shippedUrdf(), Finger::kIndex, mechanics),
                  EmulatedFinger(shippedUrdf(), Finger::kThumb, mechanics)}},
         controller(shippedUrdf()),
-        states_on_the_way(state_delay, read()),
+        state_delay(state_delay),
         commands_on_the_way(command_delay) {}
 
   DeviceState read() {
     DeviceState state;
-    state.time = static_cast<std::uint32_t>(now.count() / 1000);
+    state.time = clock_offset + static_cast<std::uint32_t>(now.count() / 1000);
     state.last_command = last_command;
     for (const Finger finger : kFingers) {
       const EmulatedFinger& emulated = fingers[finger];
@@ -40,8 +41,8 @@ struct ControlledDevice {
       Eigen::Vector3d force = emulated.thimble().linear().transpose() * emulated.contactForce();
       for (int i = 0; i < 3; ++i) force[i] += noise(generator);
       state.fingers[finger].force = kForceStep * (force / kForceStep).array().round();
-      if (spoil) spoil(state);
     }
+    if (spoil) spoil(state);
     return state;
   }
 
@@ -49,12 +50,15 @@ struct ControlledDevice {
   void tick() {
     now += std::chrono::milliseconds(1);
     states_on_the_way.push_back(read());
-    const DeviceState state = states_on_the_way.front();
-    states_on_the_way.pop_front();
+    std::optional<DeviceState> state;
+    if (states_on_the_way.size() > state_delay) {
+      if (states_arrive) state = states_on_the_way.front();
+      states_on_the_way.pop_front();
+    }
     for (const Finger finger : kFingers) {
       if (wanted[finger]) controller.command(finger, *wanted[finger], now);
     }
-    commands_on_the_way.push_back(controller.tick(states_arrive ? &state : nullptr, now));
+    commands_on_the_way.push_back(controller.tick(state ? &*state : nullptr, now));
     if (commands_arrive) obeyed = commands_on_the_way.front();
     if (commands_arrive) ++last_command;
     commands_on_the_way.pop_front();
@@ -99,11 +103,13 @@ struct ControlledDevice {
   bool states_arrive = true;
   bool commands_arrive = true;
   int count_offset = 100000;
-  void (*spoil)(DeviceState&) = nullptr;
+  std::uint32_t clock_offset = 0;           ///< us
+  std::function<void(DeviceState&)> spoil;  ///< changes what the device says
   DeviceCommand obeyed;
   std::uint8_t last_command = 0;
   std::mt19937 generator{7};
   std::normal_distribution<double> noise{0.0, 0.002};
+  std::size_t state_delay;
   std::deque<DeviceState> states_on_the_way;
   std::deque<DeviceCommand> commands_on_the_way;
 };

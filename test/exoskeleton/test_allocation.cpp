@@ -1,7 +1,10 @@
 // An executable of its own, because it counts every call of malloc in the process.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "../malloc_counter.h"
+#include "haptex/exoskeleton/device_controller.h"
 #include "haptex/exoskeleton/emulated_device.h"
 #include "haptex/exoskeleton/finger_kinematics.h"
 #include "shipped_urdf.h"
@@ -43,6 +46,39 @@ TEST(ExoskeletonAllocation, TheEmulatedDeviceDoesNotAllocateAfterConstruction) {
   }
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(before, 0) << "the count does not work";
+}
+
+TEST(ExoskeletonAllocation, TheControllersTickDoesNotAllocateWhateverHappens) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  EmulatedDevice device(shippedUrdf(), 1);
+  DeviceController controller(shippedUrdf());
+  ForceCommand force;
+  force.force = {0.0, 0.5, 1.0};
+  ForceCommand bad;
+  bad.force.setConstant(std::numeric_limits<double>::quiet_NaN());
+  Time now{0};
+  const auto run = [&](int ticks, bool connected) {
+    const long before = allocations;
+    for (int i = 0; i < ticks; ++i) {
+      now += std::chrono::milliseconds(1);
+      const DeviceState state = device.read();
+      controller.command(Finger::kIndex, i % 7 == 0 ? bad : force, now);
+      const DeviceCommand& command = controller.tick(connected ? &state : nullptr, now);
+      for (int step = 0; step < 8; ++step) device.step(command);
+    }
+    return allocations - before;
+  };
+  EXPECT_EQ(run(50, true), 0);
+  ASSERT_EQ(controller.home(), "");
+  EXPECT_EQ(run(7000, true), 0);
+  ASSERT_EQ(controller.enable(), "");
+  EXPECT_EQ(run(1000, true), 0);
+  EXPECT_EQ(controller.measured(Finger::kIndex).no_force, NoForceReason::kNone);
+  EXPECT_EQ(run(100, false), 0);
+  EXPECT_EQ(controller.fault(), "no states from the device") << "no fault was raised in a tick";
+  EXPECT_EQ(run(100, true), 0);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ struct FingerMeasurement {
 class FingerController {
  public:
   /// rad. A joint may be this far outside of its limits (3 degrees: the give of the stops and of
-  /// the homing) before forces end.
+  /// the homing) before forces end. They return when it is within again.
   static constexpr double kLimitTolerance = 0.052;
   /// After a singular configuration forces return where the smallest singular value is this many
   /// times kSingular, so that they do not flicker at its edge.
