@@ -13,6 +13,14 @@
 
 namespace haptex::exoskeleton {
 
+/// Tenths of the work of the long tests that are done: one with sanitizers, which are ten times as
+/// slow.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kThoroughness = 1;
+#else
+constexpr int kThoroughness = 10;
+#endif
+
 /// Ticks of 1 ms. Encoders and force sensors as EmulatedDevice has them, but with mechanics that a
 /// test chooses, and fingers that it may put anywhere.
 struct ControlledDevice {

@@ -494,7 +494,7 @@ TEST(DeviceController, WhateverThePersonTheLineAndTheCommanderDoTorquesAreSafe) 
   std::array<Vector3d, 2> before{kZero, kZero};
   const auto once_in = [&](unsigned n) { return generator() % n == 0; };
   int rendered = 0;
-  for (int i = 0; i < 30000; ++i) {
+  for (int i = 0; i < 3000 * kThoroughness; ++i) {
     if (once_in(800)) device.controller.pause();
     if (once_in(800)) device.controller.disable();
     if (once_in(100)) device.controller.enable();
@@ -525,7 +525,7 @@ TEST(DeviceController, WhateverThePersonTheLineAndTheCommanderDoTorquesAreSafe) 
       if (force.norm() > 1.0) ++rendered;
     }
   }
-  EXPECT_GT(rendered, 5000) << "the test hardly rendered a force";
+  EXPECT_GT(rendered, 300 * kThoroughness) << "the test hardly rendered a force";
 }
 
 TEST(DeviceController, EveryReasonIsSaidInWords) {
