@@ -1,11 +1,14 @@
 // The device controller in a closed loop with two emulated fingers, over a line that delays.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <deque>
 #include <functional>
 #include <optional>
 #include <random>
+#include <string>
 
 #include "haptex/exoskeleton/device_controller.h"
 #include "haptex/exoskeleton/emulated_finger.h"
@@ -121,5 +124,29 @@ struct ControlledDevice {
   std::deque<DeviceState> states_on_the_way;
   std::deque<DeviceCommand> commands_on_the_way;
 };
+
+const Eigen::Vector3d kDown(0.0, 0.6, -0.8);
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Enabled, past the soft start, with these forces (N) on both fingers for a second.
+inline ControlledDevice rendering(const Eigen::Vector3d& force) {
+  ControlledDevice device;
+  EXPECT_TRUE(device.start()) << device.controller.fault();
+  for (const Finger finger : kFingers) device.want(finger, force);
+  device.run(1.0);
+  return device;
+}
+
+inline NoForceReason reason(const ControlledDevice& device, Finger finger = Finger::kIndex) {
+  return device.controller.measured(finger).no_force;
+}
+
+/// N, norm of the desired force.
+inline double desired(const ControlledDevice& device, Finger finger = Finger::kIndex) {
+  return device.controller.measured(finger).desired_force.norm();
+}
 
 }  // namespace haptex::exoskeleton
