@@ -37,8 +37,9 @@ const std::vector<std::uint8_t>& SimulatedLine::arrived(Time now) {
   return arrived_;
 }
 
-ExoskeletonLoop::ExoskeletonLoop(const std::string& urdf, unsigned seed)
-    : device_(urdf, seed),
+ExoskeletonLoop::ExoskeletonLoop(const std::string& urdf, unsigned seed,
+                                 const FingerMechanics& mechanics)
+    : device_(urdf, seed, mechanics),
       device_end_(Identity{}),
       to_device_(seed + 1, SerialPort::kBaudRate),
       to_driver_(seed + 2, SerialPort::kBaudRate),

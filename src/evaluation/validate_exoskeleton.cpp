@@ -7,8 +7,10 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "haptex/evaluation/pinch.h"
+#include "haptex/evaluation/static_force.h"
 #include "haptex/evaluation/validation.h"
 #include "haptex/exoskeleton/finger_kinematics.h"
 
@@ -28,6 +30,12 @@ using exoskeleton::MotorVector;
 constexpr int kSteps = 11;           // of the grid in each driven joint, from limit to limit
 constexpr double kMotorStep = 1e-3;  // rad, for differences: truncation and rounding below 1e-9
 constexpr double kDegree = M_PI / 180.0;
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kForcePoses = 2;  // a second of the simulated loop takes one of the processor
+#else
+constexpr int kForcePoses = 24;
+#endif
+constexpr double kForceTolerance = 0.005;  // N, the resolution of the HAPTEX exoskeleton
 
 /// What the URDF's comment says of a finger, typed here anew.
 struct Anthropometry {
@@ -205,12 +213,32 @@ void validatePinch(const std::string& urdf, const Sink& sink) {
   }
 }
 
+/// Of each force the pose with the largest static error.
+void validateForces(const std::string& urdf, const Sink& sink) {
+  const std::vector<double> forces = {0.05, 0.2, 1.0, 5.0};  // N
+  const std::vector<StaticForce> all = staticForces(urdf, kForcePoses, forces);
+  for (const Finger finger : kFingers) {
+    for (const double force : forces) {
+      std::ostringstream name;
+      name << "exoskeleton/" << exoskeleton::name(finger) << "/static_force_" << force << "_N";
+      Quantity worst{name.str(), force, force, -1.0, kForceTolerance};
+      for (const StaticForce& one : all) {
+        if (one.finger != finger || std::abs(one.commanded.norm() - force) > 1e-9) continue;
+        keepWorse(worst, {name.str(), force, one.measured.norm(), one.error(), kForceTolerance});
+      }
+      if (worst.error < 0.0) throw std::logic_error(name.str() + ": no pose");
+      sink(worst);
+    }
+  }
+}
+
 }  // namespace
 
 void validateExoskeleton(const std::string& config_directory, const Sink& sink) {
   const std::string urdf = read(config_directory + "/../urdf/hand_exoskeleton.urdf");
   for (const Finger finger : kFingers) validateKinematics(urdf, finger, sink);
   validatePinch(urdf, sink);
+  validateForces(urdf, sink);
 }
 
 }  // namespace haptex::evaluation

@@ -127,7 +127,7 @@ void DeviceController::watchDevice(Time now) {
   if (state_seen_ && now - last_state_ <= kStateTimeout) return;
   has_device_ = false;
   const bool motors_on = operatingState().mode == Mode::kEnabled || operatingState().is_busy;
-  if (!motors_on) return;
+  if (!motors_on || (state_seen_ && now - last_state_ <= kLostAfter)) return;
   device_lost_ = true;
   latch(kLost);
 }
@@ -164,7 +164,7 @@ void DeviceController::driveFingers(Time now) {
         enabled ? controller.renderForces(why, now) : controller.endForces(now);
     if (!controller.forcesEnded()) ended = false;
   }
-  forces_on_ = !ended;
+  forces_on_ = enabled || !ended;
 }
 
 NoForceReason DeviceController::hold(Time now) const {

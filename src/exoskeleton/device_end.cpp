@@ -3,6 +3,13 @@
 #include <algorithm>
 
 namespace haptex::exoskeleton {
+namespace {
+
+// s. A lag behind the driver is made up for by this much: its clock may be faster, and commands
+// that keep changing must not leave the torques behind for long.
+constexpr double kShortPeriod = 0.95 * seconds(DeviceEnd::kCommandPeriod);
+
+}  // namespace
 
 DeviceEnd::DeviceEnd(const Identity& identity) : identity_(identity) {}
 
@@ -28,15 +35,39 @@ void DeviceEnd::takeHello(const Frame& frame) {
 }
 
 void DeviceEnd::takeCommand(const Frame& frame, Time now) {
-  if (!greeted_ || numbersAhead(frame.sequence, command_number_) == 0) return;
+  const int ahead = numbersAhead(frame.sequence, command_number_);
+  if (!greeted_ || ahead == 0) return;
   // After a Hello the command of a dead driver may still come twice, with a number that looks new.
   if (last_command_ && frame.sequence == obeyed_number_) return;
   const auto command = decodeCommand(frame);
   if (!command) return;
-  share_then_ = watchdogShare(now);
+  approach(*command, ahead, now);
   last_command_ = now;
   command_ = *command;
   command_number_ = obeyed_number_ = frame.sequence;
+}
+
+// The driver took a period for each change of at most its slew limit. A line that is on its way
+// keeps its speed: a steady command is reached in time, and one that moves on no faster than it
+// does itself.
+void DeviceEnd::approach(const DeviceCommand& command, int ahead, Time now) {
+  const PerFinger<MotorVector> present = torques(now);
+  const double fallen = (1.0 - watchdogShare(now)) * seconds(kMotorsOff - kRampStart);
+  double left = fallen;
+  if (last_command_) left += std::max(0.0, seconds(reached_ - lineEnd(now)));
+  double duration = fallen;  // at least: the first command of a driver may be any
+  for (const Finger finger : kFingers) {
+    const MotorVector& last = command_.torques[finger];
+    const MotorVector& next = command.torques[finger];
+    const double way = (next - present[finger]).norm();
+    if (way == 0.0) continue;
+    const double line_speed = left > 0.0 ? (last - present[finger]).norm() / left : 0.0;
+    const double driver_speed = (next - last).norm() / (ahead * seconds(kCommandPeriod));
+    duration = std::max(duration, way / std::max(line_speed, driver_speed));
+  }
+  duration = std::min(duration, left + ahead * kShortPeriod);
+  from_ = present;
+  reached_ = now + std::chrono::round<Time>(std::chrono::duration<double>(duration));
 }
 
 Bytes DeviceEnd::answer() {
@@ -47,18 +78,34 @@ Bytes DeviceEnd::answer() {
 
 double DeviceEnd::watchdogShare(Time now) const {
   if (!last_command_) return 0.0;
-  constexpr double kRamp = seconds(kMotorsOff - kRampStart);
-  const double rising = share_then_ + seconds(now - *last_command_) / kRamp;
-  const double falling = seconds(*last_command_ + kMotorsOff - now) / kRamp;
-  return std::clamp(std::min(rising, falling), 0.0, 1.0);
+  const double left = seconds(*last_command_ + kMotorsOff - now);
+  return std::clamp(left / seconds(kMotorsOff - kRampStart), 0.0, 1.0);
+}
+
+Time DeviceEnd::lineEnd(Time now) const { return std::min(now, *last_command_ + kRampStart); }
+
+PerFinger<MotorVector> DeviceEnd::torques(Time now) const {
+  double way = 1.0;
+  if (last_command_) {
+    const Time until = lineEnd(now);
+    if (until < reached_) {
+      way = seconds(until - *last_command_) / seconds(reached_ - *last_command_);
+    }
+  }
+  PerFinger<MotorVector> torques;
+  for (const Finger finger : kFingers) {
+    const MotorVector& from = from_[finger];
+    torques[finger] = watchdogShare(now) * (from + way * (command_.torques[finger] - from));
+  }
+  return torques;
 }
 
 DeviceCommand DeviceEnd::command(Time now) {
   const bool off = !last_command_ || now - *last_command_ >= kMotorsOff;
   if (off || command_.mode == DriveMode::kOff) return {};
-  DeviceCommand command = command_;
-  const double share = watchdogShare(now);
-  for (const Finger finger : kFingers) command.torques[finger] *= share;
+  DeviceCommand command;
+  command.mode = command_.mode;
+  command.torques = torques(now);
   return command;
 }
 

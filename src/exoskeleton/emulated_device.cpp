@@ -14,8 +14,10 @@ static_assert(kMicrosecondsPerStep * EmulatedDevice::kRate == 1e6);
 
 }  // namespace
 
-EmulatedDevice::EmulatedDevice(const std::string& urdf, unsigned seed)
-    : fingers_{{EmulatedSide(urdf, Finger::kIndex), EmulatedSide(urdf, Finger::kThumb)}},
+EmulatedDevice::EmulatedDevice(const std::string& urdf, unsigned seed,
+                               const FingerMechanics& mechanics)
+    : fingers_{{EmulatedSide(urdf, Finger::kIndex, mechanics),
+                EmulatedSide(urdf, Finger::kThumb, mechanics)}},
       generator_(seed) {
   // Nobody knows where the fingers are when the device is switched on.
   std::uniform_real_distribution<double> share(0.4, 0.6);

@@ -129,6 +129,8 @@ MotorVector FingerController::renderForces(NoForceReason hold, Time now) {
     if (command_.saturated()) chain_.countSaturated();
   }
   chain_.tick(wanted, measurement_.velocity, now);
+  // Who is not asked for a force gives none: neither feedback nor damping outlive the commands.
+  if (chain_.stopping()) return control_.release(forceInput(true));
   return control_.tick(forceInput(hold != NoForceReason::kNoDevice));
 }
 

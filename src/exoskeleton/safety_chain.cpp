@@ -105,7 +105,7 @@ const Vector3d& SafetyChain::tick(const Vector3d& wanted, const Vector3d& veloci
   force = slewLimited(saturated(finiteOrZero(force, force_finite), kMaximumForce), force_, dt);
   force_ = saturated(force, kMaximumForce);
   // When the commands return, the slew limit starts from what is rendered then.
-  if (commands_stopped_ || fault_latched_) slewed_ = force_;
+  if (stopping()) slewed_ = force_;
   last_tick_ = now;
   return force_;
 }

@@ -23,19 +23,60 @@ double readPositive(const ros::NodeHandle& private_node, const std::string& name
   return value;
 }
 
-std::string readScenePath(const ros::NodeHandle& private_node) {
-  const std::string name = private_node.resolveName("scene");
-  std::string scene;
-  if (!private_node.getParam("scene", scene)) {
-    throw std::invalid_argument("parameter " + name +
-                                " is not set to a string: allowed is the path of a scene file or "
-                                "the name of one in config/scenes");
+std::string readText(const ros::NodeHandle& private_node, const std::string& name,
+                     const std::string& allowed) {
+  std::string text;
+  if (!private_node.getParam(name, text) || text.empty()) {
+    throw std::invalid_argument("parameter " + private_node.resolveName(name) +
+                                " is not set to a string: allowed is " + allowed);
+  }
+  return text;
+}
+
+RobotDescription readRobotDescription(const ros::NodeHandle& private_node) {
+  RobotDescription description;
+  if (!private_node.searchParam("robot_description", description.parameter)) {
+    throw std::invalid_argument(
+        "parameter robot_description is not set: it is to be the text of the exoskeleton's URDF");
+  }
+  if (!private_node.getParam(description.parameter, description.urdf)) {
+    throw std::invalid_argument("parameter " + description.parameter +
+                                " is not a string: it is to be the text of the exoskeleton's URDF");
+  }
+  return description;
+}
+
+exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematicsOf(
+    const RobotDescription& description) {
+  using exoskeleton::Finger;
+  using exoskeleton::FingerKinematics;
+  try {
+    return {{FingerKinematics(description.urdf, Finger::kIndex),
+             FingerKinematics(description.urdf, Finger::kThumb)}};
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("parameter " + description.parameter + ": " + error.what());
+  }
+}
+
+std::string readConfigPath(const ros::NodeHandle& private_node, const std::string& name,
+                           const std::string& directory) {
+  const std::string full_name = private_node.resolveName(name);
+  std::string value;
+  if (!private_node.getParam(name, value)) {
+    throw std::invalid_argument("parameter " + full_name +
+                                " is not set to a string: allowed is the path of a file or the "
+                                "name of one in config/" +
+                                directory);
   }
   try {
-    return findConfigFile("scenes", scene);
+    return findConfigFile(directory, value);
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("parameter " + name + ": " + error.what());
+    throw std::invalid_argument("parameter " + full_name + ": " + error.what());
   }
+}
+
+std::string readScenePath(const ros::NodeHandle& private_node) {
+  return readConfigPath(private_node, "scene", "scenes");
 }
 
 }  // namespace haptex::nodes

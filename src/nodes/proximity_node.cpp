@@ -1,7 +1,5 @@
 #include "haptex/nodes/proximity_node.h"
 
-#include <tf2/exceptions.h>
-
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -10,6 +8,7 @@
 #include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/node_parameters.h"
 #include "haptex/nodes/obstacles.h"
+#include "haptex/nodes/transforms.h"
 
 namespace haptex::nodes {
 namespace {
@@ -43,13 +42,6 @@ ClothProximity::Obstacles makeObstacles(const std::vector<cloth::Obstacle>& obst
     made.emplace(obstacle.name, makeObstacle(obstacle));
   }
   return made;
-}
-
-Eigen::Isometry3d fromMessage(const geometry_msgs::Transform& message) {
-  const Eigen::Quaterniond rotation(message.rotation.w, message.rotation.x, message.rotation.y,
-                                    message.rotation.z);
-  return Eigen::Translation3d(message.translation.x, message.translation.y, message.translation.z) *
-         rotation.normalized();
 }
 
 std::vector<int> trianglesOf(const haptex::QueryProximity::Response& response) {
@@ -116,7 +108,8 @@ bool ProximityNode::query(haptex::QueryProximity::Request& request,
                           haptex::QueryProximity::Response& response) {
   std::optional<Eigen::Isometry3d> world_from_frame;
   response = proximity_.answer(
-      request, [&] { return *(world_from_frame = worldFromFrame(request.header)); },
+      request,
+      [&] { return *(world_from_frame = transformFrom(request.header, kFixedFrame, transforms_)); },
       ClothProximity::Clock::now());
   if (!response.success) {
     ROS_WARN_THROTTLE(1.0, "proximity/query refused: %s", response.message.c_str());
@@ -130,29 +123,6 @@ bool ProximityNode::query(haptex::QueryProximity::Request& request,
     shown_ = std::move(shown);
   }
   return true;
-}
-
-/// Transform from the frame of a request to the world frame, at its stamp.
-/// @throws std::invalid_argument naming the frame, what is wrong with it and what to do
-Eigen::Isometry3d ProximityNode::worldFromFrame(const std_msgs::Header& header) const {
-  const std::string what = "header.frame_id = '" + header.frame_id + "'";
-  if (header.frame_id.empty()) {
-    throw std::invalid_argument(what + ": name the frame of the points, '" + kFixedFrame +
-                                "' or one that tf connects with it");
-  }
-  try {
-    return fromMessage(
-        transforms_.lookupTransform(kFixedFrame, header.frame_id, header.stamp).transform);
-  } catch (const tf2::ExtrapolationException& error) {
-    throw std::invalid_argument(what + ": tf has no transform to '" + kFixedFrame +
-                                "' at the time header.stamp; stamp 0 takes the latest, and a later "
-                                "one can be asked for again when it is there (" +
-                                error.what() + ")");
-  } catch (const tf2::TransformException& error) {
-    throw std::invalid_argument(what + ": tf does not connect it with '" + kFixedFrame +
-                                "'; publish that transform, or give the points in '" + kFixedFrame +
-                                "' (" + error.what() + ")");
-  }
 }
 
 void ProximityNode::publishMarkers() {

@@ -19,6 +19,8 @@ TEST(DeviceFaults, WithoutStatesItHoldsTheMeasurementAndThenFaults) {
   device.run(0.007);
   EXPECT_EQ(device.controller.operatingState().mode, Mode::kEnabled);
   EXPECT_EQ(desired(device), 0.0) << "the device may not get the commands either";
+  device.run(0.040);
+  EXPECT_EQ(device.controller.operatingState().mode, Mode::kEnabled) << "silent, but not lost";
   device.run(0.001);
   EXPECT_EQ(device.controller.operatingState().mode, Mode::kFault);
   EXPECT_EQ(device.controller.fault(), "no states from the device");
@@ -34,6 +36,18 @@ TEST(DeviceFaults, WithoutStatesItHoldsTheMeasurementAndThenFaults) {
   EXPECT_EQ(device.controller.enable(), "");
   device.run(1.0);
   EXPECT_LT((device.fingers[Finger::kIndex].contactForce() - 3.0 * kDown).norm(), 0.02);
+}
+
+TEST(DeviceFaults, AShortSilenceEndsTheForceAndIsNoFault) {
+  ControlledDevice device = rendering(3.0 * kDown);
+  device.states_arrive = false;
+  device.run(0.030);
+  EXPECT_EQ(desired(device), 0.0);
+  EXPECT_EQ(reason(device), NoForceReason::kNoDevice);
+  device.states_arrive = true;
+  device.run(0.5);
+  EXPECT_EQ(device.controller.operatingState().mode, Mode::kEnabled);
+  EXPECT_NEAR(desired(device), 3.0, 1e-6);
 }
 
 TEST(DeviceFaults, LosingADeviceWithoutForcesIsNoFault) {
@@ -58,7 +72,7 @@ TEST(DeviceFaults, LosingTheDeviceWhileHomingIsAFault) {
   ASSERT_EQ(device.controller.home(), "");
   device.run(0.3);
   device.states_arrive = false;
-  device.run(0.02);
+  device.run(0.06);
   EXPECT_EQ(device.controller.fault(), "no states from the device");
   EXPECT_EQ(device.obeyed.mode, DriveMode::kOff);
 }

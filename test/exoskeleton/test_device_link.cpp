@@ -207,14 +207,14 @@ TEST(DeviceLink, SpeaksWithADevice) {
     const auto toDevice = [&](Bytes bytes) { device.receive(bytes.data, bytes.size, now); };
     const auto toLink = [&](Bytes bytes) { link.receive(bytes.data, bytes.size, now); };
     toDevice(link.poll(now));
-    toDevice(link.send(commandOf(DriveMode::kForce, i)));
+    toDevice(link.send(commandOf(DriveMode::kForce, 700)));
     toLink(device.answer());
     toLink(device.report(stateAt(static_cast<std::uint32_t>(i)), now));
     const DeviceState* state = link.takeState();
     ASSERT_NE(state, nullptr) << i;
     EXPECT_EQ(state->time, static_cast<std::uint32_t>(i));
     EXPECT_EQ(state->last_command, link.lastCommand());
-    const bool whole = equal(device.command(now), commandOf(DriveMode::kForce, i));
+    const bool whole = equal(device.command(now), commandOf(DriveMode::kForce, 700));
     EXPECT_EQ(whole, i >= 6) << i;  // the device takes five milliseconds to let torques come
   }
   EXPECT_EQ(link.statistics().handshakes, 1u);

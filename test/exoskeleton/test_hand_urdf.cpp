@@ -125,6 +125,8 @@ std::vector<Skin> allSkin() {
 struct Part {
   std::string link, name;
   std::vector<Vector3d> points;  // m, in the link
+  Vector3d centre;               // m, in the link
+  double radius;                 // m, around the centre; holds all points
 };
 
 std::vector<Vector3d> pointsOf(const urdf::Geometry& shape) {
@@ -146,7 +148,9 @@ std::vector<Vector3d> pointsOf(const urdf::Geometry& shape) {
   for (int i = 0; i <= count.x(); ++i) {
     for (int j = 0; j <= count.y(); ++j) {
       for (int k = 0; k <= count.z(); ++k) {
-        const Vector3d share = Vector3d(i, j, k).cwiseQuotient(count.cast<double>());
+        const Eigen::Vector3i at(i, j, k);
+        if ((at.array() > 0).all() && (at.array() < count.array()).all()) continue;  // inside
+        const Vector3d share = at.cast<double>().cwiseQuotient(count.cast<double>());
         Vector3d point = half.cwiseProduct(2.0 * share - Vector3d::Ones());
         const bool ball = shape.type == urdf::Geometry::SPHERE;
         const double out = ball ? point.norm() : point.head<2>().norm();
@@ -163,9 +167,11 @@ std::vector<Part> allParts() {
   for (const auto& [name, link] : model().links_) {
     for (const auto& visual : link->visual_array) {
       if (isSkin(*visual)) continue;
-      Part part{name, visual->name, pointsOf(*visual->geometry)};
+      Part part{name, visual->name, pointsOf(*visual->geometry), Vector3d::Zero(), 0.0};
+      for (const Vector3d& point : part.points) part.radius = std::max(part.radius, point.norm());
       const Isometry3d in_link = toEigen(visual->origin);
       for (Vector3d& point : part.points) point = in_link * point;
+      part.centre = in_link.translation();
       found.push_back(part);
     }
   }
@@ -186,6 +192,7 @@ Clearance clearance(const JointAngles& angles) {
     const Isometry3d at = pose(model(), part.link, angles);
     for (const Skin& skin : skins) {
       const Isometry3d to_skin = (pose(model(), skin.link, angles) * skin.in_link).inverse() * at;
+      if (distance(skin, to_skin * part.centre) - part.radius >= found.smallest) continue;
       for (const Vector3d& point : part.points) {
         const double away = distance(skin, to_skin * point);
         if (away < found.smallest) {

@@ -8,6 +8,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <memory>
@@ -177,6 +178,7 @@ TEST(SerialPort, NoticesThatTheOtherEndIsGone) {
   device.reset();
   std::uint8_t byte = 0;
   EXPECT_FALSE(reader.closed());
+  errno = EAGAIN;  // of some call before
   EXPECT_EQ(reader.read(&byte, 1), 0u);
   EXPECT_TRUE(reader.closed());
   EXPECT_FALSE(reader.write({&byte, 1}));
@@ -250,6 +252,31 @@ TEST(PseudoTerminal, IsSilentWhileNobodyHasTheOtherEndOpen) {
     ASSERT_TRUE(driver.write(view(bytes)));
     EXPECT_EQ(readFrom(device, bytes.size()), bytes);
   }
+}
+
+TEST(PseudoTerminal, NeverFillsUpWhileNobodyHasTheOtherEndOpen) {
+  PseudoTerminal device;
+  const ByteVector lost(1000, 1), bytes = {4, 5, 6};
+  for (int i = 0; i < 2; ++i) {  // nobody yet, and nobody any more
+    for (int k = 0; k < 100; ++k) EXPECT_TRUE(device.write(view(lost))) << i;
+    SerialPort driver(device.path());
+    ASSERT_TRUE(device.write(view(bytes)));
+    EXPECT_EQ(readFrom(driver, bytes.size()), bytes);
+  }
+}
+
+TEST(PseudoTerminal, ForgetsWhatADriverThatIsGoneHasNotRead) {
+  PseudoTerminal device;
+  const ByteVector lost(1000, 1), bytes = {4, 5, 6};
+  {
+    SerialPort driver(device.path());
+    while (device.write(view(lost))) {
+    }
+  }
+  EXPECT_TRUE(device.write(view(lost)));
+  SerialPort driver(device.path());
+  ASSERT_TRUE(device.write(view(bytes)));
+  EXPECT_EQ(readFrom(driver, bytes.size()), bytes);
 }
 
 TEST(PseudoTerminal, IsRawAlsoForAProgramThatSetsNothing) {

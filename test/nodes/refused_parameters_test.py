@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """A node ends with an error that names what is wrong with its parameters or files."""
+import pathlib
 import subprocess
 import tempfile
 import unittest
@@ -63,6 +64,51 @@ class RefusedParameters(unittest.TestCase):
         for value in ('-2', '17', '1.5', 'all'):
             self.refused(f'_volume_level:={value}', node='proximity',
                          says=['~volume_level', 'allowed are whole numbers from -1 to 16'])
+
+    def test_driver_ports(self):
+        for port in ('_port:=', '_port:=3', '_rate:=1'):
+            self.refused(port, node='exoskeleton_driver',
+                         says=['~port', 'is not set to a string', '/dev/ttyUSB0'])
+
+    def test_driver_robot_descriptions(self):
+        self.refused('_port:=/dev/null', node='exoskeleton_driver',
+                     says=['parameter robot_description is not set', 'URDF'])
+        self.refused('_port:=/dev/null', '_robot_description:=3', node='exoskeleton_driver',
+                     says=['~robot_description', 'is not a string'])
+        self.refused('_port:=/dev/null', '_robot_description:=a robot',
+                     node='exoskeleton_driver', says=['~robot_description'])
+
+    def refused_emulator(self, *parameters, says):
+        package = roslib.packages.get_pkg_dir('haptex')
+        description = pathlib.Path(package, 'urdf', 'hand_exoskeleton.urdf').read_text()
+        self.refused(f'_robot_description:={description}', *parameters,
+                     node='exoskeleton_emulator', says=says)
+
+    def test_emulator_links(self):
+        for link in ('_link:=', '_link:=3', '_rate:=1'):
+            self.refused_emulator(link, says=['~link', 'is not set to a string'])
+        self.refused_emulator('_link:=/no/such/folder/link', says=['/no/such/folder/link'])
+        with tempfile.NamedTemporaryFile('w') as file:
+            self.refused_emulator(f'_link:={file.name}', says=[file.name])
+
+    def test_emulator_robot_descriptions(self):
+        self.refused('_link:=/tmp/haptex_refused', node='exoskeleton_emulator',
+                     says=['parameter robot_description is not set', 'URDF'])
+        self.refused('_link:=/tmp/haptex_refused', '_robot_description:=a robot',
+                     node='exoskeleton_emulator', says=['~robot_description'])
+
+    def test_emulator_paths(self):
+        link = '_link:=/tmp/haptex_refused'
+        self.refused_emulator(link, '_path:=3', says=['~path', 'is not set to a string'])
+        self.refused_emulator(link, '_path:=dance', says=['~path', "there is no 'dance'", 'pinch'])
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as path:
+            path.write('key_frames: [')
+            path.flush()
+            self.refused_emulator(link, f'_path:={path.name}', says=[path.name])
+
+    def test_emulator_markers_that_are_neither_true_nor_false(self):
+        self.refused_emulator('_link:=/tmp/haptex_refused', '_markers:=many',
+                              says=['~markers', 'true or false'])
 
 
 if __name__ == '__main__':

@@ -72,8 +72,10 @@ class ExoskeletonLoop {
 
   /// Commands no force at first.
   /// @param urdf text of the exoskeleton's URDF @param seed of noise and faults
+  /// @param mechanics of device and person
   /// @throws std::invalid_argument as DeviceController
-  ExoskeletonLoop(const std::string& urdf, unsigned seed);
+  ExoskeletonLoop(const std::string& urdf, unsigned seed,
+                  const exoskeleton::FingerMechanics& mechanics = {});
 
   /// Connects, homes, enables, and waits until the soft start is over and the person is back.
   /// @throws std::runtime_error naming what failed

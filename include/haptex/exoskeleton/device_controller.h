@@ -23,8 +23,11 @@ namespace haptex::exoskeleton {
 /// a newer command, and returns at the slew limit.
 class DeviceController {
  public:
-  /// Without a state for this long the device is lost.
+  /// Without a state for this long the device is silent: forces go to zero and come back with it.
   static constexpr Time kStateTimeout = DeviceLink::kStateTimeout;
+  /// Without a state for this long while the motors are on the device is lost, which is a fault. A
+  /// serial adapter may hold back bytes for 16 ms, and a busy machine either process for longer.
+  static constexpr Time kLostAfter = std::chrono::milliseconds(50);
   /// Just before the firmware starts to take the motors to zero, DeviceEnd::kRampStart.
   static constexpr Time kRoundTrip = std::chrono::milliseconds(4);
   /// The device's clock may be this much ahead of ours before it counts as another one.

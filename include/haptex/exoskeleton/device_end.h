@@ -16,12 +16,20 @@ namespace haptex::exoskeleton {
 
 /// The firmware's command watchdog: from kRampStart to kMotorsOff after the last command the
 /// torques go to zero in a straight line, so that the force neither jumps nor outlives a dead
-/// driver. When commands come again the torques come back no faster than they went: a delayed line
-/// does not jerk the fingers either.
+/// driver by more than 10 ms, of which a command spends up to 0.3 ms on the line. When commands
+/// come again the torques come back no faster than they went: a delayed line does not jerk the
+/// fingers either.
+///
+/// The driver limits how much the force changes from one command to the next. Where commands got
+/// lost, or several come at once, the torques go to the last one in a straight line that takes as
+/// long as the driver took, and after the watchdog as long as it had them fall.
 class DeviceEnd {
  public:
-  static constexpr Time kRampStart = std::chrono::milliseconds(5);
-  static constexpr Time kMotorsOff = std::chrono::milliseconds(10);
+  static constexpr Time kRampStart = std::chrono::microseconds(4500);
+  static constexpr Time kMotorsOff = std::chrono::microseconds(9500);
+
+  /// From one command to the next.
+  static constexpr Time kCommandPeriod = std::chrono::milliseconds(1);
 
   explicit DeviceEnd(const Identity& identity);
 
@@ -47,8 +55,13 @@ class DeviceEnd {
  private:
   void takeHello(const Frame& frame);
   void takeCommand(const Frame& frame, Time now);
+  void approach(const DeviceCommand& command, int ahead, Time now);
   /// Share of the torques that the watchdog leaves, 0 to 1.
   double watchdogShare(Time now) const;
+  /// How far the line to the last command has come: it stops where the watchdog starts.
+  Time lineEnd(Time now) const;
+  /// The torques of the last command, or on the way to them, times the watchdog's share.
+  PerFinger<MotorVector> torques(Time now) const;
 
   Identity identity_;
   FrameParser parser_{LineEnd::kDevice};
@@ -58,9 +71,10 @@ class DeviceEnd {
   std::uint8_t state_number_ = 0;
   std::uint8_t command_number_ = 0;  // of the last command, or what a Hello since has set
   DeviceCommand command_;
+  PerFinger<MotorVector> from_{{MotorVector::Zero(), MotorVector::Zero()}};  // when command_ came
+  Time reached_{};                    // when the torques of command_ are
   std::uint8_t obeyed_number_ = 0;    // of command_
   std::optional<Time> last_command_;  // when command_ came
-  double share_then_ = 0.0;           // of the torques, when command_ came
   Time last_bytes_{};
 };
 

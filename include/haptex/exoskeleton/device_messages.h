@@ -9,8 +9,9 @@
 
 namespace haptex::exoskeleton {
 
-/// Version of the protocol, exchanged in the handshake. The checksum of every frame is seeded with
-/// it, so that bytes of another version are never taken for ours.
+/// Version of the protocol, exchanged in the handshake. The checksum of states and commands is
+/// seeded with it, so that those of another version are never taken for ours; Hello and Identity
+/// are readable in every version.
 constexpr std::uint8_t kProtocolVersion = 1;
 
 /// Counts of an incremental encoder per revolution of its motor: 512 lines, four edges each.

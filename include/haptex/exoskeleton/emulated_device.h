@@ -34,8 +34,9 @@ class EmulatedDevice {
   static constexpr double kForceNoise = 0.002;
 
   /// @param urdf text of the exoskeleton's URDF: geometry, masses, limits
+  /// @param mechanics of both fingers
   /// @throws std::invalid_argument as FingerKinematics
-  EmulatedDevice(const std::string& urdf, unsigned seed);
+  EmulatedDevice(const std::string& urdf, unsigned seed, const FingerMechanics& mechanics = {});
 
   /// Where the person moves the fingertip to (m, in hand_base), from the next step on. A target out
   /// of reach is replaced by the nearest one that the finger can reach.
@@ -57,7 +58,8 @@ class EmulatedDevice {
 
  private:
   struct EmulatedSide {
-    EmulatedSide(const std::string& urdf, Finger finger) : dynamics(urdf, finger) {}
+    EmulatedSide(const std::string& urdf, Finger finger, const FingerMechanics& mechanics)
+        : dynamics(urdf, finger, mechanics) {}
 
     EmulatedFinger dynamics;
     MotorVector switched_on_at = MotorVector::Zero();  // rad, where the encoders count from

@@ -28,15 +28,15 @@ struct FingerMechanics {
   /// The person's fingertip as a mass (kg) held at a place by a stiffness (N/m) and a damping
   /// (N s/m). Hajian and Howe, Identification of the mechanical impedance at the human finger tip,
   /// J. Biomech. Eng. 119 (1997), fit this model to index fingers that push with 2 to 20 N; mass,
-  /// stiffness and damping are representative of theirs, the damping ratio is 1.3.
+  /// stiffness and damping are representative of theirs, the damping ratio is 1.6.
   double fingertip_mass = 0.006;
   double fingertip_stiffness = 400.0;
-  double fingertip_damping = 4.0;
+  double fingertip_damping = 5.0;
   /// N s/m, of a finger that lets itself be moved.
   double relaxed_damping = 0.5;
   /// N/m and N s/m, of the pulp between thimble and fingertip: representative.
   double pulp_stiffness = 1750.0;
-  double pulp_damping = 2.0;
+  double pulp_damping = 3.0;
 
   /// m/s^2; hand_base is held upright. Acts on the device: the person carries the own finger.
   Eigen::Vector3d gravity{0.0, 0.0, -9.80665};

@@ -90,6 +90,8 @@ class SafetyChain {
   /// True if no command has been accepted yet or the last one is too old, as of the last tick.
   bool commandsStopped() const { return commands_stopped_; }
   bool faultLatched() const { return fault_latched_; }
+  /// True if watchdog or fault take the force to zero or keep it there.
+  bool stopping() const { return commands_stopped_ || fault_latched_; }
   const SafetyStatistics& statistics() const { return statistics_; }
 
  private:

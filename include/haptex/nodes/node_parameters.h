@@ -5,6 +5,9 @@
 
 #include <string>
 
+#include "haptex/exoskeleton/finger.h"
+#include "haptex/exoskeleton/finger_kinematics.h"
+
 namespace haptex::nodes {
 
 /// @returns `fallback` if the parameter is not set
@@ -12,9 +15,32 @@ namespace haptex::nodes {
 ///   finite and > 0
 double readPositive(const ros::NodeHandle& private_node, const std::string& name, double fallback);
 
-/// The path of a scene file from a parameter that is a path or a name in config/scenes.
+/// @param allowed what the parameter may be, for the message
+/// @throws std::invalid_argument naming the parameter and what is allowed unless it is set to a
+///   string that is not empty
+std::string readText(const ros::NodeHandle& private_node, const std::string& name,
+                     const std::string& allowed);
+
+/// A robot's URDF from the parameter robot_description of the nearest namespace that has one.
+struct RobotDescription {
+  std::string parameter;  ///< its full name
+  std::string urdf;
+};
+
+/// @throws std::invalid_argument naming the parameter unless it is set to a string
+RobotDescription readRobotDescription(const ros::NodeHandle& private_node);
+
+/// @throws std::invalid_argument naming the parameter and what its URDF lacks
+exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematicsOf(
+    const RobotDescription& description);
+
+/// The path of a file from a parameter that is a path or a name in config/<directory>.
 /// @throws std::invalid_argument naming the parameter if it is not set to a string or there is no
 ///   such file
+std::string readConfigPath(const ros::NodeHandle& private_node, const std::string& name,
+                           const std::string& directory);
+
+/// The path of a scene file: ~scene, as readConfigPath().
 std::string readScenePath(const ros::NodeHandle& private_node);
 
 }  // namespace haptex::nodes

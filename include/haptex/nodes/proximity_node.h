@@ -49,7 +49,6 @@ class ProximityNode {
   void takeMesh(const haptex::ClothMeshConstPtr& message);
   void takeState(const haptex::ClothStateConstPtr& message);
   bool query(haptex::QueryProximity::Request& request, haptex::QueryProximity::Response& response);
-  Eigen::Isometry3d worldFromFrame(const std_msgs::Header& header) const;
   void publishMarkers();
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 

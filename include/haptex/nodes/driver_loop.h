@@ -1,0 +1,127 @@
+// The exoskeleton's driver without ROS: what happens once per millisecond between the port and
+// those who command forces, make requests and look at what was measured.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <string>
+
+#include "haptex/exoskeleton/device_controller.h"
+#include "haptex/exoskeleton/device_link.h"
+#include "haptex/nodes/port_keeper.h"
+#include "haptex/nodes/request_box.h"
+#include "haptex/nodes/ring.h"
+#include "haptex/nodes/triple_buffer.h"
+
+namespace haptex::nodes {
+
+/// A text that is copied without allocating; its end is cut off if it is too long.
+class FixedText {
+ public:
+  static constexpr std::size_t kCapacity = 255;
+
+  FixedText() = default;
+  explicit FixedText(const std::string& text);
+
+  std::string str() const { return characters_.data(); }
+  bool operator==(const FixedText& other) const { return characters_ == other.characters_; }
+
+ private:
+  std::array<char, kCapacity + 1> characters_{};
+};
+
+/// What the driver knows after a tick.
+struct DriverSnapshot {
+  exoskeleton::Time state_time{0};  ///< when the newest state of the device was received
+  exoskeleton::PerFinger<exoskeleton::FingerMeasurement> fingers;
+  exoskeleton::OperatingState operating_state;
+  FixedText fault;  ///< what latched the fault; empty without one
+  exoskeleton::LinkStatus link = exoskeleton::LinkStatus::kConnecting;
+  exoskeleton::LinkStatistics link_statistics;
+  exoskeleton::Identity identity;
+  bool port_open = false;
+  // Counts since the construction, no units.
+  std::uint64_t ticks = 0;
+  std::uint64_t states = 0;         ///< of the device, taken
+  std::uint64_t ports_lost = 0;     ///< times an open port was found closed
+  std::uint64_t frames_unsent = 0;  ///< which the line did not take in time
+};
+
+/// Owns port, link and controller. One thread ticks, any others do the rest; tick() waits for none
+/// of them. It does not allocate, but for the answer to a refused request and for the text of a
+/// fault.
+class DriverLoop {
+ public:
+  using Time = exoskeleton::Time;
+  static constexpr Time kPeriod = std::chrono::milliseconds(1);
+
+  /// Times are those of steadyNow().
+  /// @param port path of a serial port, which need not be there yet
+  /// @param urdf text of the exoskeleton's URDF
+  /// @throws std::invalid_argument as exoskeleton::FingerKinematics
+  DriverLoop(const std::string& port, const std::string& urdf);
+
+  /// By one thread, once per kPeriod: states in, commands and requests, torques out.
+  void tick(Time now);
+
+  /// By any thread: the newest commanded force of a finger, for the next tick.
+  /// @param arrival when it came
+  void command(exoskeleton::Finger finger, const exoskeleton::ForceCommand& command, Time arrival);
+
+  /// By any thread: asks between two ticks. See RequestBox::ask(). After it status() shows what it
+  /// led to.
+  exoskeleton::Refusal ask(DriverRequest request) { return requests_.ask(request); }
+
+  /// By one thread: the oldest snapshot not yet taken of a tick in which a state came, waiting for
+  /// one if there is none. Those are kept for 64 ms, then newer ones are lost.
+  /// @returns false if none came in time
+  bool takeMeasured(DriverSnapshot& snapshot, Time patience) {
+    return measured_.read(snapshot, patience);
+  }
+  /// By any thread: snapshots that nobody took in time.
+  std::uint64_t lostSnapshots() const { return measured_.lost(); }
+
+  /// By any thread: what is known after the last tick.
+  DriverSnapshot status() const;
+
+  /// By any thread: why there is no open port; empty while there is one.
+  std::string portTrouble() const { return ports_.trouble(); }
+  const std::string& port() const { return ports_.path(); }
+
+ private:
+  struct StampedCommand {
+    exoskeleton::ForceCommand command;
+    Time arrival{0};
+  };
+  struct CommandBox {
+    std::mutex writers;  // guards writing; never taken by the loop
+    TripleBuffer<StampedCommand> newest;
+  };
+
+  void takePort();
+  void receive(Time now);
+  void takeCommands();
+  exoskeleton::Refusal carryOut(DriverRequest request);
+  void send(exoskeleton::Bytes bytes);
+  void dropClosedPort();
+  void show();
+
+  // Touched by the thread that ticks only.
+  exoskeleton::DeviceController controller_;
+  exoskeleton::DeviceLink link_;
+  const exoskeleton::DeviceState* state_ = nullptr;  // of this tick; nullptr if none came
+  DriverSnapshot snapshot_;
+  std::array<std::uint8_t, 4096> received_{};  // more than a line brings in 40 ms
+
+  // Between threads.
+  PortKeeper ports_;
+  RequestBox requests_;
+  exoskeleton::PerFinger<CommandBox> commands_;
+  Ring<DriverSnapshot, 64> measured_;
+  mutable std::mutex status_readers_;  // guards reading; never taken by the loop
+  mutable TripleBuffer<DriverSnapshot> status_;
+};
+
+}  // namespace haptex::nodes

@@ -1,0 +1,127 @@
+// The node exoskeleton_driver: parameters, topics, services and diagnostics of the exoskeleton.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <haptex/ServoForce.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "haptex/exoskeleton/finger_kinematics.h"
+#include "haptex/nodes/driver_loop.h"
+#include "haptex/nodes/periodic_thread.h"
+#include "haptex/nodes/servo_force_filter.h"
+
+namespace haptex::nodes {
+
+/// Parameters of the node, read once at the start.
+struct DriverNodeParameters {
+  std::string port;  ///< ~port: path of the device's serial port; it need not be there yet
+  std::string urdf;  ///< robot_description, of the nearest namespace that has one
+  exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematics;  ///< of the urdf
+
+  /// @throws std::invalid_argument naming the parameter, what is wrong with it and what is allowed
+  static DriverNodeParameters read(const ros::NodeHandle& private_node);
+};
+
+/// Below the namespace of `node`, for each finger: subscribes to <finger>/servo_cf (ServoForce);
+/// advertises <finger>/measured_cp, measured_cv, measured_cf (geometry_msgs), one message for every
+/// state of the device, joint_states at 100 Hz, exoskeleton/force_markers
+/// (visualization_msgs/MarkerArray, 25 Hz) and exoskeleton/operating_state (latched); nothing is
+/// measured before the device is homed. Services exoskeleton/enable, disable, pause, home,
+/// clear_fault (std_srvs/Trigger). Nothing is computed for topics without subscribers.
+///
+/// Forces come in on one thread, the loop of 1 kHz runs on another, a third publishes, a fourth
+/// opens the port, and services and diagnostics run wherever the caller spins; the loop waits for
+/// none of them.
+class DriverNode {
+ public:
+  /// @throws std::exception with a message naming what was wrong with a parameter
+  DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
+  ~DriverNode();
+
+ private:
+  using Finger = exoskeleton::Finger;
+  using Time = exoskeleton::Time;
+  using Trigger = std_srvs::Trigger;
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+
+  struct FingerTopics {
+    ros::Publisher pose;
+    ros::Publisher twist;
+    ros::Publisher wrench;
+    ros::Subscriber forces;
+    ServoForceFilter filter;
+    std::mutex mutex;        // guards the next
+    std::string last_drop;   // why the last command was dropped
+    Time last_drop_time{0};  // when
+    bool has_dropped = false;
+  };
+
+  DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+             DriverNodeParameters parameters);
+
+  void advertiseTopics();
+  void takeForce(Finger finger, const haptex::ServoForceConstPtr& message);
+
+  // On the publishing thread.
+  void publish();
+  void publishMeasured(const DriverSnapshot& snapshot);
+  void publishFinger(Finger finger, const DriverSnapshot& snapshot, const ros::Time& stamp);
+  void publishOperatingState(const DriverSnapshot& snapshot);
+
+  void advertiseServices();
+  bool enable(Trigger::Request& request, Trigger::Response& response);
+  bool disable(Trigger::Request& request, Trigger::Response& response);
+  bool pause(Trigger::Request& request, Trigger::Response& response);
+  bool home(Trigger::Request& request, Trigger::Response& response);
+  bool clearFault(Trigger::Request& request, Trigger::Response& response);
+
+  void addDiagnostics();
+  void diagnoseLink(Status& status);
+  void diagnoseLoop(Status& status);
+  void diagnoseForce(Finger finger, Status& status);
+  std::string whyNoDevice(const DriverSnapshot& snapshot) const;
+  std::string whyNoForce(Finger finger, const DriverSnapshot& snapshot);
+
+  ros::NodeHandle node_;
+  ros::NodeHandle force_node_;  // whose callbacks run on a thread of their own
+  ros::CallbackQueue force_queue_;
+  ros::AsyncSpinner force_spinner_;
+
+  // Used by the publishing thread only.
+  exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematics_;
+  Time joints_due_{0};
+  Time markers_due_{0};
+  Time operating_state_due_{0};
+  exoskeleton::OperatingState published_state_;
+  FixedText published_fault_;
+
+  DriverLoop loop_;
+  PeriodicThread loop_thread_;
+
+  exoskeleton::PerFinger<FingerTopics> fingers_;
+  ros::Publisher joint_publisher_;
+  ros::Publisher marker_publisher_;
+  ros::Publisher operating_state_publisher_;
+  std::vector<ros::ServiceServer> services_;
+
+  diagnostic_updater::Updater diagnostics_;  // used by its timer only, and so are the next
+  DriverSnapshot diagnosed_;
+  Time diagnosed_time_{0};
+  DurationHistogram::Counts diagnosed_lateness_;
+  std::uint64_t diagnosed_missed_ = 0;
+  ros::SteadyTimer diagnostics_timer_;
+
+  std::atomic<bool> stopping_{false};
+  std::thread publishing_thread_;
+};
+
+}  // namespace haptex::nodes

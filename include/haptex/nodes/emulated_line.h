@@ -1,0 +1,67 @@
+// The serial line of the emulated exoskeleton: a pseudo-terminal with faults in both directions.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "haptex/exoskeleton/bytes.h"
+#include "haptex/exoskeleton/clock.h"
+#include "haptex/exoskeleton/fault_injector.h"
+#include "haptex/exoskeleton/pseudo_terminal.h"
+#include "haptex/nodes/emulator_fault.h"
+
+namespace haptex::nodes {
+
+/// Counts since the construction, no units.
+struct LineStatistics {
+  std::uint64_t bytes_in = 0;    ///< read from the port, before faults
+  std::uint64_t bytes_out = 0;   ///< written to the port, after faults
+  std::uint64_t bytes_lost = 0;  ///< not taken by the port: nobody reads at the other end
+  std::uint64_t ports = 0;       ///< opened
+};
+
+/// Not thread-safe. Allocates nothing while no port is opened, as far as FaultInjector does not.
+class EmulatedLine {
+ public:
+  /// How long to wait before trying again to open a port that could not be opened.
+  static constexpr exoskeleton::Time kRetryPeriod = std::chrono::milliseconds(100);
+
+  /// @param link symbolic link to the port, see PseudoTerminal
+  /// @throws std::runtime_error as PseudoTerminal
+  explicit EmulatedLine(const std::string& link);
+
+  /// A fault of kind kLine or kClosedPort.
+  void inject(const EmulatorFault& fault, exoskeleton::Time now);
+
+  /// What comes out of the line at the device's end. Opens the port if its time has come. Valid
+  /// until the next call.
+  exoskeleton::Bytes receive(exoskeleton::Time now);
+
+  /// A frame goes from the device into the line; it may be empty.
+  void send(exoskeleton::Bytes frame, exoskeleton::Time now);
+
+  /// Writes to the port what has come out of the line at its end.
+  void flush(exoskeleton::Time now);
+
+  bool open() const { return terminal_ != nullptr; }
+  /// Why the port could not be opened again, empty if nothing went wrong.
+  const std::string& trouble() const { return trouble_; }
+  const LineStatistics& statistics() const { return statistics_; }
+
+ private:
+  void sendSingly(exoskeleton::Bytes bytes, exoskeleton::Time now);
+  void reopen(exoskeleton::Time now);
+
+  std::string link_;
+  std::unique_ptr<exoskeleton::PseudoTerminal> terminal_;  // none while the port is closed
+  exoskeleton::Time reopen_at_{0};
+  std::string trouble_;
+  exoskeleton::FaultInjector to_device_;
+  exoskeleton::FaultInjector from_device_;
+  std::vector<std::uint8_t> buffer_;
+  LineStatistics statistics_;
+};
+
+}  // namespace haptex::nodes

@@ -1,0 +1,26 @@
+// The clock of the exoskeleton's nodes, which nobody can set.
+#pragma once
+
+#include <ctime>
+
+#include "haptex/exoskeleton/clock.h"
+
+namespace haptex::nodes {
+
+/// CLOCK_MONOTONIC.
+inline exoskeleton::Time steadyNow() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
+}
+
+/// @param time >= 0
+inline timespec toTimespec(exoskeleton::Time time) {
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(time);
+  timespec converted{};
+  converted.tv_sec = whole.count();
+  converted.tv_nsec = (time - whole).count();
+  return converted;
+}
+
+}  // namespace haptex::nodes

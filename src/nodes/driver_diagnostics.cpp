@@ -1,0 +1,172 @@
+// The diagnostics of DriverNode: the link, the loop, and for each finger why it feels no force.
+#include <string>
+
+#include "haptex/nodes/driver_node.h"
+#include "haptex/nodes/steady_clock.h"
+
+namespace haptex::nodes {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using exoskeleton::kFingers;
+using exoskeleton::LinkStatistics;
+using exoskeleton::LinkStatus;
+using exoskeleton::NoForceReason;
+using exoskeleton::Time;
+
+constexpr double kDiagnosticsPeriod = 1.0;  // s
+constexpr Time kRecent = std::chrono::seconds(1);
+
+double microseconds(Time time) { return 1e-3 * static_cast<double>(time.count()); }
+
+void addJitter(diagnostic_updater::DiagnosticStatusWrapper& status, const std::string& when,
+               const DurationHistogram::Counts& lateness) {
+  status.add("wake-up jitter p50 " + when + " (us)", microseconds(lateness.quantile(0.5)));
+  status.add("wake-up jitter p99 " + when + " (us)", microseconds(lateness.quantile(0.99)));
+  status.add("wake-up jitter p99.9 " + when + " (us)", microseconds(lateness.quantile(0.999)));
+  status.add("wake-up jitter max " + when + " (us)", microseconds(lateness.largest));
+}
+
+/// Frames that were lost or spoilt, no unit.
+std::uint64_t spoilt(const LinkStatistics& statistics) {
+  return statistics.lost_states + statistics.received.corrupt_frames;
+}
+
+}  // namespace
+
+void DriverNode::addDiagnostics() {
+  diagnostics_.setHardwareID(loop_.port());
+  diagnostics_.add("exoskeleton link", [this](Status& status) { diagnoseLink(status); });
+  diagnostics_.add("exoskeleton loop", [this](Status& status) { diagnoseLoop(status); });
+  for (const Finger finger : kFingers) {
+    diagnostics_.add(std::string("exoskeleton force of the ") + name(finger),
+                     [this, finger](Status& status) { diagnoseForce(finger, status); });
+  }
+  diagnosed_time_ = steadyNow();
+  diagnostics_timer_ = node_.createSteadyTimer(
+      ros::WallDuration(kDiagnosticsPeriod),
+      [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
+}
+
+std::string DriverNode::whyNoDevice(const DriverSnapshot& snapshot) const {
+  const std::string trouble = loop_.portTrouble();
+  if (!trouble.empty()) return trouble;
+  return loop_.port() + ": " + describe(snapshot.link);
+}
+
+void DriverNode::diagnoseLink(Status& status) {
+  const DriverSnapshot now = loop_.status();
+  const Time time = steadyNow();
+  const double elapsed = exoskeleton::seconds(time - diagnosed_time_);
+  const std::uint64_t newly_spoilt =
+      spoilt(now.link_statistics) - spoilt(diagnosed_.link_statistics);
+  if (now.link != LinkStatus::kConnected) {
+    status.summary(DiagnosticStatus::ERROR, "no device: " + whyNoDevice(now));
+  } else if (newly_spoilt > 0) {
+    status.summaryf(DiagnosticStatus::WARN, "connected, but %lu frames were lost or corrupt lately",
+                    static_cast<unsigned long>(newly_spoilt));
+  } else {
+    status.summary(DiagnosticStatus::OK, "connected");
+  }
+  const LinkStatistics& link = now.link_statistics;
+  status.add("port", loop_.port());
+  status.add("link", describe(now.link));
+  status.add("serial number of the device", now.identity.serial_number);
+  status.add("firmware of the device", now.identity.firmware);
+  status.add("states received (1/s)",
+             static_cast<double>(now.states - diagnosed_.states) / elapsed);
+  status.add("states lost", link.lost_states);
+  status.add("states repeated or out of order", link.repeated_states);
+  status.add("corrupt frames", link.received.corrupt_frames);
+  status.add("bytes of garbage", link.received.garbage_bytes);
+  status.add("timeouts", link.timeouts);
+  status.add("answers in another version", link.version_mismatches);
+  status.add("handshakes", link.handshakes);
+  status.add("times the port was lost", now.ports_lost);
+  status.add("frames that the line did not take", now.frames_unsent);
+  diagnosed_ = now;
+  diagnosed_time_ = time;
+}
+
+void DriverNode::diagnoseLoop(Status& status) {
+  const DurationHistogram::Counts lateness = loop_thread_.lateness().counts();
+  const std::uint64_t missed = loop_thread_.missed();
+  const std::uint64_t newly_missed = missed - diagnosed_missed_;
+  const std::string& refused = loop_thread_.refusedScheduler();
+  if (newly_missed > 0) {
+    status.summaryf(DiagnosticStatus::WARN, "missed %lu periods lately",
+                    static_cast<unsigned long>(newly_missed));
+  } else if (!refused.empty()) {
+    status.summary(DiagnosticStatus::WARN, "in time, but without SCHED_FIFO: " + refused);
+  } else {
+    status.summary(DiagnosticStatus::OK, "in time");
+  }
+  status.add("SCHED_FIFO", refused.empty() ? "granted" : "not granted: " + refused);
+  status.add("periods", loop_thread_.periods());
+  status.add("periods missed", missed);
+  addJitter(status, "of the last second", lateness.since(diagnosed_lateness_));
+  addJitter(status, "since the start", lateness);
+  status.add("measurements that nobody took in time", loop_.lostSnapshots());
+  diagnosed_lateness_ = lateness;
+  diagnosed_missed_ = missed;
+}
+
+std::string DriverNode::whyNoForce(Finger finger, const DriverSnapshot& snapshot) {
+  const NoForceReason reason = snapshot.fingers[finger].no_force;
+  switch (reason) {
+    case NoForceReason::kNone:
+      return "";
+    case NoForceReason::kNoDevice:
+      if (snapshot.link == LinkStatus::kConnected) {
+        return "the device does not obey: commands do not reach it, or its watchdog has tripped";
+      }
+      return "no device: " + whyNoDevice(snapshot);
+    case NoForceReason::kFault:
+      return "fault: " + snapshot.fault.str() + "; then call exoskeleton/clear_fault";
+    case NoForceReason::kNoCommand: {
+      FingerTopics& topics = fingers_[finger];
+      const std::lock_guard<std::mutex> lock(topics.mutex);
+      if (topics.has_dropped && steadyNow() - topics.last_drop_time < kRecent) {
+        return std::string("commands on ") + name(finger) +
+               "/servo_cf are dropped: " + topics.last_drop;
+      }
+      return describe(reason);
+    }
+    default:
+      return describe(reason);
+  }
+}
+
+void DriverNode::diagnoseForce(Finger finger, Status& status) {
+  const DriverSnapshot now = loop_.status();
+  const exoskeleton::FingerMeasurement& measured = now.fingers[finger];
+  const std::string why = whyNoForce(finger, now);
+  const bool trouble =
+      measured.no_force == NoForceReason::kNoDevice || measured.no_force == NoForceReason::kFault;
+  if (why.empty()) {
+    status.summary(DiagnosticStatus::OK, "the commanded force is rendered");
+  } else {
+    status.summary(trouble ? DiagnosticStatus::ERROR : DiagnosticStatus::OK, "no force: " + why);
+  }
+  status.add("state", exoskeleton::name(now.operating_state.mode));
+  status.add("homed", now.operating_state.is_homed ? "yes" : "no");
+  status.add("why there is no force", why.empty() ? "nothing stands in its way" : why);
+  status.add("desired force (N)", measured.desired_force.norm());
+  status.add("measured force (N)", measured.force.norm());
+  const exoskeleton::SafetyStatistics& safety = measured.safety;
+  status.add("watchdog trips", safety.watchdog_trips);
+  status.add("periods with saturated force", safety.saturated);
+  status.add("periods with limited slew", safety.slew_limited);
+  status.add("periods in which the passivity controller dissipated", safety.passivity_limited);
+  status.add("observed energy (J)", safety.observed_energy);
+  status.add("commands or measurements that were not finite", safety.not_finite);
+  FingerTopics& topics = fingers_[finger];
+  status.add("commands taken", topics.filter.taken());
+  for (const ServoForceFlaw flaw : kServoForceFlaws) {
+    status.add(std::string("commands dropped: ") + name(flaw), topics.filter.dropped(flaw));
+  }
+  const std::lock_guard<std::mutex> lock(topics.mutex);
+  status.add("why the last command was dropped", topics.last_drop);
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,174 @@
+#include "haptex/nodes/driver_node.h"
+
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/TwistStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <haptex/OperatingState.h>
+#include <sensor_msgs/JointState.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "haptex/nodes/driver_messages.h"
+#include "haptex/nodes/hand_markers.h"
+#include "haptex/nodes/node_parameters.h"
+#include "haptex/nodes/ros_time.h"
+#include "haptex/nodes/steady_clock.h"
+
+namespace haptex::nodes {
+namespace {
+
+using exoskeleton::Finger;
+using exoskeleton::kFingers;
+using exoskeleton::Time;
+
+constexpr Time kJointPeriod = std::chrono::milliseconds(10);
+constexpr Time kMarkerPeriod = std::chrono::milliseconds(40);
+constexpr Time kOperatingStatePeriod = std::chrono::milliseconds(100);
+constexpr Time kPublisherPatience = std::chrono::milliseconds(10);
+constexpr std::uint32_t kMeasuredQueue = 10;  // messages, for a subscriber that is slow for 10 ms
+
+std::string topic(Finger finger, const char* of_finger) {
+  return std::string(name(finger)) + "/" + of_finger;
+}
+
+bool sameState(const exoskeleton::OperatingState& a, const exoskeleton::OperatingState& b) {
+  return a.mode == b.mode && a.is_homed == b.is_homed && a.is_busy == b.is_busy;
+}
+
+}  // namespace
+
+DriverNodeParameters DriverNodeParameters::read(const ros::NodeHandle& private_node) {
+  const std::string port =
+      readText(private_node, "port", "the path of a serial port, for example /dev/ttyUSB0");
+  const RobotDescription description = readRobotDescription(private_node);
+  return {port, description.urdf, kinematicsOf(description)};
+}
+
+DriverNode::DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : DriverNode(node, private_node, DriverNodeParameters::read(private_node)) {}
+
+DriverNode::DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                       DriverNodeParameters parameters)
+    : node_(node),
+      force_node_(node),
+      force_spinner_(1, &force_queue_),
+      kinematics_(std::move(parameters.kinematics)),
+      loop_(parameters.port, parameters.urdf),
+      loop_thread_(DriverLoop::kPeriod, [this](Time now) { loop_.tick(now); }),
+      diagnostics_(node, private_node) {
+  if (!loop_thread_.refusedScheduler().empty()) {
+    ROS_WARN("The loop runs without SCHED_FIFO, on a busy machine it will be late: %s",
+             loop_thread_.refusedScheduler().c_str());
+  }
+  advertiseTopics();
+  advertiseServices();
+  addDiagnostics();
+  publishing_thread_ = std::thread([this] { publish(); });
+  force_spinner_.start();
+}
+
+DriverNode::~DriverNode() {
+  force_spinner_.stop();
+  stopping_ = true;
+  publishing_thread_.join();
+}
+
+void DriverNode::advertiseTopics() {
+  force_node_.setCallbackQueue(&force_queue_);
+  for (const Finger finger : kFingers) {
+    FingerTopics& topics = fingers_[finger];
+    topics.pose =
+        node_.advertise<geometry_msgs::PoseStamped>(topic(finger, "measured_cp"), kMeasuredQueue);
+    topics.twist =
+        node_.advertise<geometry_msgs::TwistStamped>(topic(finger, "measured_cv"), kMeasuredQueue);
+    topics.wrench =
+        node_.advertise<geometry_msgs::WrenchStamped>(topic(finger, "measured_cf"), kMeasuredQueue);
+    const boost::function<void(const haptex::ServoForceConstPtr&)> take =
+        [this, finger](const haptex::ServoForceConstPtr& message) { takeForce(finger, message); };
+    // Only the latest force counts.
+    topics.forces = force_node_.subscribe<haptex::ServoForce>(topic(finger, "servo_cf"), 1, take,
+                                                              ros::VoidConstPtr(),
+                                                              ros::TransportHints().tcpNoDelay());
+  }
+  marker_publisher_ =
+      node_.advertise<visualization_msgs::MarkerArray>("exoskeleton/force_markers", 2);
+  joint_publisher_ = node_.advertise<sensor_msgs::JointState>("joint_states", 10);
+  operating_state_publisher_ =
+      node_.advertise<haptex::OperatingState>("exoskeleton/operating_state", 1, true);
+}
+
+void DriverNode::takeForce(Finger finger, const haptex::ServoForceConstPtr& message) {
+  const Time arrival = steadyNow();
+  const ros::Time now = ros::Time::now();
+  FingerTopics& topics = fingers_[finger];
+  if (const auto command = topics.filter.take(*message, now, arrival)) {
+    loop_.command(finger, *command, arrival);
+    return;
+  }
+  const std::string why = topics.filter.explain(*message, now);
+  ROS_WARN_THROTTLE(1.0, "%s/servo_cf dropped: %s", name(finger), why.c_str());
+  const std::lock_guard<std::mutex> lock(topics.mutex);
+  topics.last_drop = why;
+  topics.last_drop_time = arrival;
+  topics.has_dropped = true;
+}
+
+void DriverNode::publish() {
+  DriverSnapshot snapshot;
+  while (!stopping_) {
+    if (loop_.takeMeasured(snapshot, kPublisherPatience)) {
+      publishMeasured(snapshot);
+    } else {
+      snapshot = loop_.status();
+    }
+    publishOperatingState(snapshot);
+  }
+}
+
+void DriverNode::publishMeasured(const DriverSnapshot& snapshot) {
+  // Before homing nobody knows where the fingers are, and then the sensors' forces have no
+  // direction either.
+  if (!snapshot.operating_state.is_homed) return;
+  const ros::Time stamp = rosTimeOf(snapshot.state_time);
+  for (const Finger finger : kFingers) publishFinger(finger, snapshot, stamp);
+  const auto is_due = [&](Time& due, Time period) {
+    if (snapshot.state_time < due) return false;
+    due = snapshot.state_time + period - DriverLoop::kPeriod / 2;
+    return true;
+  };
+  if (is_due(joints_due_, kJointPeriod) && joint_publisher_.getNumSubscribers() > 0) {
+    joint_publisher_.publish(jointStateMessage(kinematics_, snapshot.fingers, stamp));
+  }
+  if (is_due(markers_due_, kMarkerPeriod) && marker_publisher_.getNumSubscribers() > 0) {
+    marker_publisher_.publish(forceMarkers(snapshot.fingers, stamp));
+  }
+}
+
+void DriverNode::publishFinger(Finger finger, const DriverSnapshot& snapshot,
+                               const ros::Time& stamp) {
+  const exoskeleton::FingerMeasurement& measured = snapshot.fingers[finger];
+  const FingerTopics& topics = fingers_[finger];
+  if (topics.pose.getNumSubscribers() > 0) topics.pose.publish(poseMessage(measured, stamp));
+  if (topics.wrench.getNumSubscribers() > 0) topics.wrench.publish(wrenchMessage(measured, stamp));
+  if (topics.twist.getNumSubscribers() > 0) {
+    const Eigen::Vector3d angular =
+        angularVelocity(kinematics_[finger], measured.joint_angles, measured.joint_velocities);
+    topics.twist.publish(twistMessage(measured, angular, stamp));
+  }
+}
+
+void DriverNode::publishOperatingState(const DriverSnapshot& snapshot) {
+  const Time now = steadyNow();
+  const bool changed = !sameState(snapshot.operating_state, published_state_) ||
+                       !(snapshot.fault == published_fault_);
+  if (!changed && now < operating_state_due_) return;
+  operating_state_due_ = now + kOperatingStatePeriod;
+  published_state_ = snapshot.operating_state;
+  published_fault_ = snapshot.fault;
+  operating_state_publisher_.publish(
+      operatingStateMessage(snapshot.operating_state, snapshot.fault.str(), ros::Time::now()));
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,247 @@
+// What the whole loop promises while 3 N are commanded, whatever happens to it. In simulated time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <iostream>
+#include <limits>
+#include <string>
+
+#include "haptex/evaluation/exoskeleton_loop.h"
+#include "haptex/exoskeleton/hand_path.h"
+#include "shipped_urdf.h"
+
+namespace haptex::exoskeleton {
+namespace {
+
+using Eigen::Vector3d;
+using evaluation::ExoskeletonLoop;
+using evaluation::LoopSample;
+using std::chrono::milliseconds;
+
+constexpr double kCommanded = 3.0;  // N
+/// N per millisecond. The safety chain lets through 1; feedback on the force sensor, damping, the
+/// motion of the finger while a torque stays, and the rounding of torques come on top.
+constexpr double kLargestChange = 1e-3 * kMaximumSlew + 0.15;
+/// N, 20 ms after the commander's death. The motors are off for 4 ms then; the person's finger
+/// returns from a deflection of 7.5 mm and accelerates 9 to 12 g of device and rotors, whose weight
+/// and friction it always feels.
+constexpr double kLeftAfterCommander = 0.6;
+/// N, the weight of the links and the friction of the transmissions, which stay for ever.
+constexpr double kWeightAndFriction = 0.25;
+
+/// A command of 22 bytes on the line, and steps of the device: the firmware counts from the last
+/// command that it got.
+constexpr Time kOnTheLine = std::chrono::microseconds(375);
+
+/// What the fingers felt at worst.
+struct Worst {
+  double contact_force = 0.0;  ///< N
+  double change = 0.0;         ///< N per millisecond, of the motor force
+  bool finite = true;
+  Time motors_on{0};  ///< when there was a motor force last
+};
+
+/// Two fingers as far apart as for taking the sample, pushed apart by what is commanded.
+class FaultyLoop {
+ public:
+  explicit FaultyLoop(unsigned seed = 1) : loop(shippedUrdf(), seed) {
+    const HandPlace open = loadHandPath(HAPTEX_SOURCE_DIRECTORY "/config/paths/pinch.yaml").at(1.5);
+    const Vector3d index = open.fingertips[Finger::kIndex];
+    const Vector3d thumb = open.fingertips[Finger::kThumb];
+    apart_ = (index - thumb).normalized();
+    loop.device().setTarget(Finger::kIndex, index);
+    loop.device().setTarget(Finger::kThumb, thumb);
+    loop.makeReady();
+    command(kCommanded);
+    loop.run(milliseconds(1500));
+  }
+
+  /// Pushes the fingers apart (N).
+  void command(double force) {
+    loop.setCommander([this, force](Finger finger, Time) {
+      ForceCommand command;
+      command.force = force * direction(finger);
+      return command;
+    });
+  }
+
+  Vector3d direction(Finger finger) const { return finger == Finger::kIndex ? apart_ : -apart_; }
+
+  Worst watch(Time duration) {
+    Worst worst;
+    PerFinger<std::deque<Vector3d>> millisecond;
+    loop.run(duration, [&](const ExoskeletonLoop& now) {
+      for (const Finger finger : kFingers) {
+        const LoopSample sample = now.sample(finger);
+        std::deque<Vector3d>& forces = millisecond[finger];
+        forces.push_back(sample.motor_force);
+        if (forces.size() > ExoskeletonLoop::kStepsPerTick + 1) forces.pop_front();
+        worst.contact_force = std::max(worst.contact_force, sample.contact_force.norm());
+        worst.change = std::max(worst.change, (forces.back() - forces.front()).norm());
+        if (!sample.contact_force.allFinite() || !sample.motor_force.allFinite()) {
+          worst.finite = false;
+        }
+        if (!sample.motor_force.isZero(0.0)) worst.motors_on = sample.time;
+      }
+    });
+    return worst;
+  }
+
+  double contactForce() const {
+    return std::max(loop.sample(Finger::kIndex).contact_force.norm(),
+                    loop.sample(Finger::kThumb).contact_force.norm());
+  }
+
+  /// What a person does after a fault: clears it and enables again.
+  void recover() {
+    loop.run(milliseconds(300));  // until the link greets again
+    if (loop.controller().operatingState().mode == Mode::kFault) {
+      ASSERT_EQ(loop.controller().clearFault(), "");
+    }
+    if (loop.controller().operatingState().mode == Mode::kDisabled) {
+      ASSERT_EQ(loop.controller().enable(), "");
+    }
+    loop.run(milliseconds(1000));
+    for (const Finger finger : kFingers) {
+      EXPECT_LT((loop.sample(finger).contact_force - kCommanded * direction(finger)).norm(), 0.1);
+    }
+  }
+
+  ExoskeletonLoop loop;
+
+ private:
+  Vector3d apart_;
+};
+
+void expectSafe(const Worst& worst, const std::string& what) {
+  EXPECT_TRUE(worst.finite) << what;
+  EXPECT_LE(worst.contact_force, kMaximumForce) << what;
+  EXPECT_LE(worst.change, kLargestChange) << what;
+}
+
+class FaultsOfTheLine : public testing::TestWithParam<bool> {};
+
+TEST_P(FaultsOfTheLine, NeitherJerkNorOverloadAFinger) {
+  FaultyLoop faulty;
+  evaluation::SimulatedLine& line = GetParam() ? faulty.loop.toDevice() : faulty.loop.toDriver();
+  double largest_change = 0.0, largest_force = 0.0;
+  for (const LineFault fault : lineFaults()) {
+    const double probability = fault == LineFault::kStall ? 1.0 : 0.3;
+    line.faults().set(fault, probability, faulty.loop.now() + milliseconds(400));
+    const Worst worst = faulty.watch(milliseconds(600));
+    expectSafe(worst, name(fault));
+    largest_change = std::max(largest_change, worst.change);
+    largest_force = std::max(largest_force, worst.contact_force);
+    ASSERT_NO_FATAL_FAILURE(faulty.recover()) << name(fault);
+  }
+  std::cout << (GetParam() ? "to the device" : "to the driver") << ": largest change of force "
+            << largest_change << " N/ms, largest contact force " << largest_force << " N\n";
+  EXPECT_GT(largest_change, 0.3) << "no fault reached the fingers: the test tests nothing";
+}
+
+INSTANTIATE_TEST_SUITE_P(EachDirection, FaultsOfTheLine, testing::Bool(), [](const auto& info) {
+  return std::string(info.param ? "ToTheDevice" : "ToTheDriver");
+});
+
+TEST(Faults, MixedInBothDirectionsAreAsHarmless) {
+  FaultyLoop faulty(2);
+  for (const double probability : {0.01, 0.05, 0.2}) {
+    for (const LineFault fault : lineFaults()) {
+      const double share = fault == LineFault::kStall ? 0.0 : probability;
+      faulty.loop.toDevice().faults().set(fault, share, faulty.loop.now() + milliseconds(1000));
+      faulty.loop.toDriver().faults().set(fault, share, faulty.loop.now() + milliseconds(1000));
+    }
+    const Worst worst = faulty.watch(milliseconds(1200));
+    expectSafe(worst, std::to_string(probability));
+    std::cout << "mixed, each with probability " << probability << ": largest change of force "
+              << worst.change << " N/ms, largest contact force " << worst.contact_force << " N\n";
+    ASSERT_NO_FATAL_FAILURE(faulty.recover()) << probability;
+  }
+}
+
+TEST(Faults, AClosedPortTakesTheForceToZeroUntilItIsClearedAndEnabledAgain) {
+  FaultyLoop faulty;
+  const Time closed = faulty.loop.now();
+  faulty.loop.closePort();
+  const Worst worst = faulty.watch(milliseconds(300));
+  expectSafe(worst, "closed");
+  EXPECT_LE(worst.motors_on - closed, DeviceEnd::kMotorsOff + kOnTheLine);
+  EXPECT_LT(faulty.contactForce(), kWeightAndFriction);
+  EXPECT_EQ(faulty.loop.controller().operatingState().mode, Mode::kFault);
+  EXPECT_EQ(faulty.loop.controller().clearFault(), "");
+  EXPECT_NE(faulty.loop.controller().enable(), "") << "there is no device";
+
+  faulty.loop.openPort();
+  expectSafe(faulty.watch(milliseconds(300)), "opened");
+  EXPECT_LT(faulty.contactForce(), kWeightAndFriction) << "nobody has enabled it";
+  faulty.recover();
+}
+
+TEST(Faults, ASaturatedSensorLeavesTheForceWithinAHalfNewton) {
+  FaultyLoop faulty;
+  for (const bool saturated : {true, false}) {
+    for (const Finger finger : kFingers) faulty.loop.device().saturateSensor(finger, saturated);
+    expectSafe(faulty.watch(milliseconds(1000)), "saturated");
+    for (const Finger finger : kFingers) {
+      const Vector3d force = faulty.loop.sample(finger).contact_force;
+      EXPECT_LT((force - kCommanded * faulty.direction(finger)).norm(), 0.5);
+    }
+  }
+}
+
+TEST(Faults, TheForceIsGoneTwentyMillisecondsAfterTheCommandersDeath) {
+  double largest = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    FaultyLoop faulty(1 + i);
+    faulty.loop.run(i * std::chrono::microseconds(250));  // at any moment of the driver's period
+    const Time death = faulty.loop.now();
+    faulty.loop.killCommander();
+    expectSafe(faulty.watch(milliseconds(20)), "killed");
+    for (const Finger finger : kFingers) {
+      EXPECT_TRUE(faulty.loop.sample(finger).motor_force.isZero(0.0)) << i;
+    }
+    largest = std::max(largest, faulty.contactForce());
+    EXPECT_LT(faulty.contactForce(), kLeftAfterCommander) << i;
+    const Worst after = faulty.watch(milliseconds(480));
+    expectSafe(after, "afterwards");
+    EXPECT_LE(after.motors_on, death + milliseconds(20)) << "the motors came on again";
+    EXPECT_LT(faulty.contactForce(), kWeightAndFriction) << i;
+  }
+  std::cout << "contact force 20 ms after the commander's death " << largest << " N\n";
+}
+
+TEST(Faults, CommandsThatAreNotFiniteAreAsGoodAsNone) {
+  FaultyLoop faulty;
+  const auto dropped = [&] {
+    return faulty.loop.controller().measured(Finger::kIndex).safety.not_finite;
+  };
+  ASSERT_EQ(dropped(), 0u);
+  faulty.command(std::numeric_limits<double>::quiet_NaN());
+  expectSafe(faulty.watch(milliseconds(20)), "not finite");
+  for (const Finger finger : kFingers) {
+    EXPECT_TRUE(faulty.loop.sample(finger).motor_force.isZero(0.0));
+  }
+  EXPECT_GE(dropped(), 19u);
+  faulty.command(kCommanded);
+  expectSafe(faulty.watch(milliseconds(500)), "finite again");
+  faulty.recover();
+}
+
+TEST(Faults, TheMotorsAreOffWithinTenMillisecondsAfterTheDriversDeath) {
+  for (int i = 0; i < 4; ++i) {
+    FaultyLoop faulty(1 + i);
+    faulty.loop.run(i * std::chrono::microseconds(250));
+    const Time death = faulty.loop.now();
+    faulty.loop.killDriver();
+    const Worst worst = faulty.watch(milliseconds(500));
+    expectSafe(worst, "killed");
+    EXPECT_LE(worst.motors_on - death, milliseconds(10)) << i;
+    EXPECT_LT(faulty.contactForce(), kWeightAndFriction) << i;
+  }
+}
+
+}  // namespace
+}  // namespace haptex::exoskeleton
