@@ -1,17 +1,28 @@
 // The device controller in a closed loop with two emulated fingers, over a line that delays.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <deque>
 #include <functional>
 #include <optional>
 #include <random>
+#include <string>
 
 #include "haptex/exoskeleton/device_controller.h"
 #include "haptex/exoskeleton/emulated_finger.h"
 #include "shipped_urdf.h"
 
 namespace haptex::exoskeleton {
+
+/// Tenths of the work of the long tests that are done: one with sanitizers, which are ten times as
+/// slow.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kThoroughness = 1;
+#else
+constexpr int kThoroughness = 10;
+#endif
 
 /// Ticks of 1 ms. Encoders and force sensors as EmulatedDevice has them, but with mechanics that a
 /// test chooses, and fingers that it may put anywhere.
@@ -113,5 +124,29 @@ struct ControlledDevice {
   std::deque<DeviceState> states_on_the_way;
   std::deque<DeviceCommand> commands_on_the_way;
 };
+
+const Eigen::Vector3d kDown(0.0, 0.6, -0.8);
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Enabled, past the soft start, with these forces (N) on both fingers for a second.
+inline ControlledDevice rendering(const Eigen::Vector3d& force) {
+  ControlledDevice device;
+  EXPECT_TRUE(device.start()) << device.controller.fault();
+  for (const Finger finger : kFingers) device.want(finger, force);
+  device.run(1.0);
+  return device;
+}
+
+inline NoForceReason reason(const ControlledDevice& device, Finger finger = Finger::kIndex) {
+  return device.controller.measured(finger).no_force;
+}
+
+/// N, norm of the desired force.
+inline double desired(const ControlledDevice& device, Finger finger = Finger::kIndex) {
+  return device.controller.measured(finger).desired_force.norm();
+}
 
 }  // namespace haptex::exoskeleton

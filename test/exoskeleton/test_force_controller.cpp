@@ -246,7 +246,7 @@ TEST(ForceControlOfTheDevice, StaticErrorIsBelowTheSensorsResolution) {
   ASSERT_TRUE(device.start()) << device.controller.fault();
   std::mt19937 generator(1);
   int poses = 0;
-  for (int trial = 0; trial < 100 && poses < 20; ++trial) {
+  for (int trial = 0; trial < 100 && poses < 2 * kThoroughness; ++trial) {
     const Finger finger = kFingers[trial % 2];
     FingerKinematics kinematics(shippedUrdf(), finger);
     if (!moveAnywhere(device, finger, kinematics, generator)) continue;
@@ -264,7 +264,7 @@ TEST(ForceControlOfTheDevice, StaticErrorIsBelowTheSensorsResolution) {
     EXPECT_LE((mean - desired).norm(), 0.005) << name(finger) << " " << desired.transpose();
     ++poses;
   }
-  EXPECT_EQ(poses, 20);
+  EXPECT_EQ(poses, 2 * kThoroughness);
 }
 
 TEST(ForceControlOfTheDevice, StepsOvershootByLessThanFifteenPercent) {
@@ -273,7 +273,7 @@ TEST(ForceControlOfTheDevice, StepsOvershootByLessThanFifteenPercent) {
     ASSERT_TRUE(device.start()) << device.controller.fault();
     std::mt19937 generator(2);
     int poses = 0;
-    for (int trial = 0; trial < 100 && poses < 10; ++trial) {
+    for (int trial = 0; trial < 100 && poses < kThoroughness; ++trial) {
       const Finger finger = kFingers[trial % 2];
       FingerKinematics kinematics(shippedUrdf(), finger);
       if (!moveAnywhere(device, finger, kinematics, generator)) continue;
@@ -289,7 +289,7 @@ TEST(ForceControlOfTheDevice, StepsOvershootByLessThanFifteenPercent) {
       EXPECT_NEAR(device.fingers[finger].contactForce().dot(direction), 3.0, 0.15) << stiffness;
       ++poses;
     }
-    EXPECT_EQ(poses, 10);
+    EXPECT_EQ(poses, kThoroughness);
   }
 }
 

@@ -84,8 +84,8 @@ class ForceController {
   ///   kMaximumCorrection needs and what a DeviceCommand can say
   MotorVector tick(const ForceInput& input);
 
-  /// Instead of tick(), before the motors are switched off: the feedback fades within kRelease,
-  /// whatever is measured, while the desired force goes to zero.
+  /// Instead of tick(), when commands have stopped or the motors are to be switched off: the
+  /// feedback fades within kRelease, whatever is measured, while the desired force goes to zero.
   MotorVector release(const ForceInput& input);
   /// True once release() gives no torques any more.
   bool released() const { return released_; }
