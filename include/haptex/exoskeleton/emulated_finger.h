@@ -10,8 +10,7 @@
 
 namespace haptex::exoskeleton {
 
-/// Representative values, chosen to fit the published ranges that are named; none was measured on
-/// the HAPTEX device.
+/// Representative values; none was measured on the HAPTEX device.
 struct FingerMechanics {
   /// kg m^2, of each motor: that of a slim one, 13 mm in diameter.
   double rotor_inertia = 4e-8;
@@ -27,8 +26,8 @@ struct FingerMechanics {
 
   /// The person's fingertip as a mass (kg) held at a place by a stiffness (N/m) and a damping
   /// (N s/m). Hajian and Howe, Identification of the mechanical impedance at the human finger tip,
-  /// J. Biomech. Eng. 119 (1997), fit this model to index fingers that push with 2 to 20 N; mass,
-  /// stiffness and damping are representative of theirs, the damping ratio is 1.6.
+  /// J. Biomech. Eng. 119 (1997), use this model; the values are representative, with a damping
+  /// ratio of 1.6, and not taken from their tables.
   double fingertip_mass = 0.006;
   double fingertip_stiffness = 400.0;
   double fingertip_damping = 5.0;
