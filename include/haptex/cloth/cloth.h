@@ -46,8 +46,21 @@ struct JacobianBlock {
   Eigen::Matrix3d by_velocity;  ///< N.s/m
 };
 
+/// A force on a point of a triangle that depends on where the point is:
+///   force(x) = force - stiffness (x - position),  x = sum_i weights[i] x_i over the corners.
+/// World frame.
+struct PointLoad {
+  int triangle;               ///< of the mesh
+  Eigen::Vector3d weights;    ///< barycentric, sum 1
+  Eigen::Vector3d position;   ///< m
+  Eigen::Vector3d force;      ///< N
+  Eigen::Matrix3d stiffness;  ///< N/m, symmetric, positive semidefinite
+};
+
 class Cloth {
  public:
+  static constexpr std::size_t kMostPointLoads = 4096;
+
   /// @throws std::invalid_argument if the mesh has defects, the density is not finite and > 0, or
   ///   gravity is not finite
   Cloth(ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects);
@@ -71,6 +84,16 @@ class Cloth {
   /// @throws std::invalid_argument if the particle does not exist or the force is not finite
   void setExternalForce(int particle, const Eigen::Vector3d& force);
   const std::vector<Eigen::Vector3d>& externalForces() const { return external_forces_; }
+
+  /// Replaces the point loads, which act until replaced; none at first. The step treats their
+  /// stiffness implicitly, so that a stiff contact stays stable at every time step. Allocates
+  /// nothing.
+  /// @throws std::invalid_argument naming the load if its triangle does not exist, a number is not
+  ///   finite, the weights do not sum to 1 within 1e-6, the stiffness is not symmetric to 1e-6 of
+  ///   its norm or has a negative diagonal, or there are more than kMostPointLoads; nothing has
+  ///   changed then
+  void setPointLoads(const std::vector<PointLoad>& loads);
+  const std::vector<PointLoad>& pointLoads() const { return point_loads_; }
 
   /// Attaches a particle to a place, or gives an attached one a new path.
   /// @throws std::invalid_argument if the particle does not exist, a number is not finite, or the
@@ -111,6 +134,7 @@ class Cloth {
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> external_forces_;
   std::vector<std::optional<AttachmentPath>> attachments_;
+  std::vector<PointLoad> point_loads_;  // has the capacity of kMostPointLoads
 };
 
 }  // namespace haptex::cloth

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "haptex/material/strain_stress_curve.h"
@@ -25,13 +26,30 @@ struct MembraneCurves {
   StrainStressCurve viscous;
 };
 
+/// Bending rigidity: moment per width over curvature (N.m), KES value B.
+struct BendingRigidity {
+  double weft;  ///< when the weft is curved, >= 0
+  double warp;  ///< when the warp is curved, >= 0
+};
+
+/// Lateral compression between two plates.
+struct Compression {
+  double thickness;  ///< m, without pressure, > 0
+  StrainStressCurve
+      pressure;  ///< Pa against compressive strain (thickness - compressed) / thickness
+};
+
 struct Fabric {
   std::string name;
-  std::string description;                       ///< for people; may be empty
-  double areal_density = 0.0;                    ///< kg/m^2, > 0
-  MembraneCurves weft;                           ///< along the rest coordinate u
-  MembraneCurves warp;                           ///< along the rest coordinate v
-  MembraneCurves shear;                          ///< against U.V, without the factor 1/2
+  std::string description;     ///< for people; may be empty
+  double areal_density = 0.0;  ///< kg/m^2, > 0
+  MembraneCurves weft;         ///< along the rest coordinate u
+  MembraneCurves warp;         ///< along the rest coordinate v
+  MembraneCurves shear;        ///< against U.V, without the factor 1/2
+  // What a scene without bending or contact does not need.
+  std::optional<BendingRigidity> bending;
+  std::optional<Compression> compression;
+  std::optional<double> friction;  ///< coefficient of kinetic friction against skin, KES MIU, > 0
   std::map<std::string, Provenance> provenance;  ///< by key, for example "warp.elastic"
 };
 

@@ -1,0 +1,124 @@
+// The small-scale layer: the cloth around the fingertips at 1 kHz, and the forces between them.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "haptex/cloth/cloth.h"
+#include "haptex/contact/contact_law.h"
+#include "haptex/contact/fingertip.h"
+#include "haptex/contact/haptic_settings.h"
+#include "haptex/contact/patch.h"
+
+namespace haptex::contact {
+
+/// Where a fingertip touches a particle of the layer.
+struct ContactPoint {
+  Eigen::Vector3d position;          ///< m, of the particle, world frame
+  Eigen::Vector3d normal;            ///< unit, from the fingertip's centre to the particle
+  double normal_force;               ///< N, >= 0
+  Eigen::Vector3d tangential_force;  ///< N, on the cloth
+};
+
+/// What one fingertip feels after a step. World frame. The force is the cloth's on the fingertip:
+///   force(p, v) = force - stiffness (p - position) - damping (v - velocity)
+struct FingertipContact {
+  bool touching = false;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();      ///< N
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< m, of the fingertip
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< m/s
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, symmetric, positive semidefinite
+  Eigen::Matrix3d damping = Eigen::Matrix3d::Zero();    ///< N.s/m, likewise
+
+  // For the tactile renderer and for the eye. Zero without contact.
+  double area = 0.0;          ///< m^2, at rest, of the cloth that is touched
+  double normal_force = 0.0;  ///< N, sum of the magnitudes over the contact points
+  double penetration = 0.0;   ///< m, deepest
+  bool slipping = false;      ///< at least half of the normal force is on points that slip
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();            ///< m, of pressure
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();            ///< unit, mean, out of the fingertip
+  Eigen::Vector3d sliding_velocity = Eigen::Vector3d::Zero();  ///< m/s, fingertip over cloth
+  Eigen::Vector2d fabric_position = Eigen::Vector2d::Zero();   ///< m, centre in (weft, warp)
+  Eigen::Vector2d fabric_velocity = Eigen::Vector2d::Zero();   ///< m/s, sliding in (weft, warp)
+  std::vector<ContactPoint> points;                            ///< at most kMostContactPoints
+};
+
+/// The cloth around the fingertips, refined and stepped at 1 kHz between the states of the
+/// large-scale layer, and its contact with the fingertips.
+///
+/// One thread, the fast one, calls receive(), exchange() and step(); these allocate nothing.
+/// Another one may call preparePatch() at the same time.
+class HapticLayer {
+ public:
+  static constexpr std::size_t kMostContactPoints = 1024;
+
+  /// @param mesh, fabric, effects those of the large-scale layer
+  /// @throws std::invalid_argument if the fabric lacks a property that contact needs (friction,
+  ///   compression; bending for a patch), or what cloth::Cloth throws
+  HapticLayer(cloth::ClothMesh mesh, material::Fabric fabric, const cloth::ModelledEffects& effects,
+              const HapticSettings& settings);
+
+  const HapticSettings& settings() const { return settings_; }
+  const ContactLaw& law() const { return law_; }
+
+  /// Cuts the elements out of the mesh and refines them; does all that needs memory or long.
+  /// Constant: any thread.
+  /// @param triangles of the large-scale mesh, in any order, repetition allowed; may be empty
+  /// @param attached  one per large-scale particle, nonzero where it is held
+  /// @returns null if there are no triangles
+  /// @throws std::invalid_argument if a triangle does not exist or `attached` has another size
+  std::unique_ptr<Patch> preparePatch(const std::vector<int>& triangles,
+                                      const std::vector<char>& attached) const;
+
+  /// A state of the large-scale layer. From now on the layer moves from where it is to this state
+  /// within `period`, so it follows one period behind, and never jumps.
+  /// @param period s, of simulated time since the last state; > 0
+  /// @throws std::invalid_argument if the sizes differ from the mesh or a number is not finite;
+  ///   nothing has changed then
+  void receive(const std::vector<Eigen::Vector3d>& positions,
+               const std::vector<Eigen::Vector3d>& velocities, double period);
+
+  /// Goes on with another patch: particles that both have keep their state, others come from the
+  /// large-scale state; forces do not jump.
+  /// @param next null: no patch
+  /// @returns the one before, to be destroyed where time does not matter
+  std::unique_ptr<Patch> exchange(std::unique_ptr<Patch> next);
+
+  /// Advances by settings().time_step. A fingertip that is absent does not touch.
+  /// Without a state yet there is no contact.
+  void step(const PerFingertip<std::optional<Fingertip>>& fingertips);
+
+  /// False if the last step was not finite: the layer has then started again from the large-scale
+  /// state, and the forces are zero.
+  bool lastStepAccepted() const { return last_step_accepted_; }
+  std::size_t particleCount() const { return patch_ ? patch_->particleCount() : 0; }
+  const Patch* patch() const { return patch_.get(); }
+
+  const PerFingertip<FingertipContact>& contacts() const { return contacts_; }
+  /// What acts on the large-scale cloth, see cloth::Cloth::setPointLoads().
+  const std::vector<cloth::PointLoad>& loads() const { return loads_; }
+
+ private:
+  HapticSettings settings_;
+  ContactLaw law_;
+  std::unique_ptr<Patch> patch_;
+  PerFingertip<FingertipContact> contacts_;
+  std::vector<cloth::PointLoad> loads_;
+  bool last_step_accepted_ = true;
+};
+
+/// Where to look for the elements of a patch: everything within `distance` of the capsule from
+/// `begin` to `end` with `radius` (m, world frame).
+struct SearchVolume {
+  Eigen::Vector3d begin;
+  Eigen::Vector3d end;
+  double radius;
+  double distance;
+};
+/// Around the fingertip now and, if settings.predict, `seconds` later.
+SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
+                          const HapticSettings& settings);
+
+}  // namespace haptex::contact
