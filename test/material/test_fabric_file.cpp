@@ -165,7 +165,8 @@ INSTANTIATE_TEST_SUITE_P(
     Keys, FabricFileRefuses,
     testing::Values(
         Refusal{"UnknownProperty", "name:", "colour: red\nname:", "colour",
-                "unknown key, allowed here: name, areal_density, weft, warp, shear, description"},
+                "unknown key, allowed here: name, areal_density, weft, warp, shear, description, "
+                "bending, compression, friction"},
         Refusal{"UnknownDirectionKey", "viscous:", "plastic:", "warp.plastic",
                 "unknown key, allowed here: elastic, viscous"},
         Refusal{"UnknownCurveKey", "modulus: 100", "moduls: 100", "weft.elastic.moduls",
@@ -199,10 +200,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "'100' must be a map with the keys elastic, viscous"},
         Refusal{"FileNotAMap", kValid, "- name\n", "",
                 "a list of 1 must be a map with the keys name, areal_density, weft, warp, shear, "
-                "description"},
+                "description, bending, compression, friction"},
         Refusal{"EmptyFile", kValid, "---\n", "",
                 "nothing must be a map with the keys name, areal_density, weft, warp, shear, "
-                "description"}),
+                "description, bending, compression, friction"}),
     [](const auto& info) { return info.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
