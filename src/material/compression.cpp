@@ -7,8 +7,10 @@
 namespace haptex::material {
 namespace {
 
-// Pressure from one fitted point to the next: small enough for 1e-5 of the pressure.
+// Pressure from one fitted point to the next: small enough for 2e-5 of the pressure.
 constexpr double kPressureRatio = 1.04;
+// The last step, which ends at kLargestFittedPressure, starts below this: it is not tiny.
+constexpr double kLargestStepStart = 0.99 * kLargestFittedPressure;
 
 template <typename... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
@@ -81,10 +83,14 @@ Compression compressionFromPoints(const std::vector<ThicknessPoint>& points) {
   const double slope = (last.pressure - before.pressure) / (before.thickness - last.thickness);
   const double exponent = slope * last.thickness / last.pressure;
   std::vector<ThicknessPoint> continued = points;
-  for (double ratio = kPressureRatio; last.pressure * ratio <= kLargestFittedPressure;
-       ratio *= kPressureRatio) {
-    continued.push_back({last.pressure * ratio, last.thickness * std::pow(ratio, -1.0 / exponent)});
+  const auto add = [&](double pressure) {
+    const double ratio = pressure / last.pressure;
+    continued.push_back({pressure, last.thickness * std::pow(ratio, -1.0 / exponent)});
+  };
+  for (double p = last.pressure * kPressureRatio; p < kLargestStepStart; p *= kPressureRatio) {
+    add(p);
   }
+  if (last.pressure < kLargestStepStart) add(kLargestFittedPressure);
   return fitted(continued);
 }
 
@@ -113,12 +119,13 @@ Compression compressionFromKes(const KesCompression& kes) {
     const double x = std::cbrt(a / (pressure - kKesLowPressure + a / (x0 * x0 * x0)));
     points.push_back({pressure, core + x});
   };
-  // An even number of steps from T0 to Tm, so that both are points.
+  // A whole number of steps from T0 to Tm, so that both are points.
   const int steps = static_cast<int>(
       std::ceil(std::log(kKesHighPressure / kKesLowPressure) / std::log(kPressureRatio)));
   const double step = std::pow(kKesHighPressure / kKesLowPressure, 1.0 / steps);
   for (int i = 0; i <= steps; ++i) add(kKesLowPressure * std::pow(step, i));
-  for (double p = kKesHighPressure * step; p <= kLargestFittedPressure; p *= step) add(p);
+  for (double p = kKesHighPressure * step; p < kLargestStepStart; p *= step) add(p);
+  add(kLargestFittedPressure);
   return fitted(points);
 }
 
