@@ -141,11 +141,11 @@ StrainStressCurve tabulate(const material::Compression& fabric, double pulp_stif
 ContactLaw::ContactLaw(const material::Fabric& fabric, const PulpSettings& pulp) {
   requireContactProperties(fabric);
   requirePositive("stiffness", pulp.stiffness);
-  requirePositive("damping time", pulp.damping_time);
+  requirePositive("damping", pulp.damping);
   pressure_ = tabulate(*fabric.compression, pulp.stiffness);
   half_thickness_ = 0.5 * fabric.compression->thickness;
   friction_ = *fabric.friction;
-  damping_time_ = pulp.damping_time;
+  damping_ = pulp.damping;
   tangential_stiffness_ = kTangentialByNormal * pulp.stiffness;
 }
 

@@ -130,7 +130,7 @@ TEST(ContactLaw, TakesItsNumbersFromFabricAndPulp) {
   const ContactLaw law(fabricWith({6e-4, StrainStressCurve::linear(1e4)}), {3e6, 5e-3});
   EXPECT_EQ(law.halfThickness(), 3e-4);
   EXPECT_EQ(law.friction(), 0.2);
-  EXPECT_EQ(law.dampingTime(), 5e-3);
+  EXPECT_EQ(law.damping(), 5e-3);
   EXPECT_DOUBLE_EQ(law.tangentialStiffness(), 2e6);  // Mindlin's 2/3 for a pulp of constant volume
 }
 
@@ -158,8 +158,8 @@ TEST(ContactLaw, RefusesPulpsThatAreNone) {
   EXPECT_EQ(refusalOf(fabric, {0.0, 1e-3}), "pulp: stiffness 0 must be finite and > 0");
   EXPECT_EQ(refusalOf(fabric, {-1.0, 1e-3}), "pulp: stiffness -1 must be finite and > 0");
   EXPECT_EQ(refusalOf(fabric, {nan, 1e-3}), "pulp: stiffness nan must be finite and > 0");
-  EXPECT_EQ(refusalOf(fabric, {1e7, 0.0}), "pulp: damping time 0 must be finite and > 0");
-  EXPECT_EQ(refusalOf(fabric, {1e7, nan}), "pulp: damping time nan must be finite and > 0");
+  EXPECT_EQ(refusalOf(fabric, {1e7, 0.0}), "pulp: damping 0 must be finite and > 0");
+  EXPECT_EQ(refusalOf(fabric, {1e7, nan}), "pulp: damping nan must be finite and > 0");
 }
 
 }  // namespace
