@@ -138,16 +138,21 @@ Membrane::Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool v
   for (const std::array<int, 3>& triangle : mesh.triangles) {
     elements_.push_back(restElement(mesh, pattern, triangle));
   }
-  if (kernels::canAddBatches()) {
-    for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
-      batches_.push_back(batchOf(&elements_[t]));
-    }
-  }
+  makeBatches();
   setFabric(fabric);
+}
+
+void Membrane::makeBatches() {
+  batches_.clear();
+  if (!kernels::canAddBatches()) return;
+  for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
+    batches_.push_back(batchOf(&elements_[t]));
+  }
 }
 
 void Membrane::bind(const SymmetricBlockMatrix& matrix) {
   for (MembraneElement& element : elements_) element.slots = slotsOf(element.particles, matrix);
+  makeBatches();
 }
 
 void Membrane::setFabric(const material::Fabric& fabric) {

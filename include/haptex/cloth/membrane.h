@@ -106,6 +106,7 @@ class Membrane {
   struct Frame;                                               // U, V of an element, or their rates
   struct Response;  // stress and slope of all three curves
   static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
+  void makeBatches();
   template <bool kViscous>
   void addStepOf(const MembraneElement& element, const Positions& positions,
                  const Velocities& velocities, double h, SymmetricBlockMatrix& matrix,
