@@ -222,7 +222,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"UnknownKey", "fabric: silk", "fabric: silk\nwind: 3",
                 "wind: unknown key, allowed here: fabric, attach, model, time_step, sheet, mesh, "
-                "gravity, solver, obstacles"},
+                "gravity, solver, obstacles, haptics"},
         Refusal{"MissingModel", "model: [gravity, viscosity]\n", "",
                 "the key 'model' is missing, required here: fabric, attach, model, time_step"},
         Refusal{"MissingAttach", "attach: [top]\n", "",

@@ -44,6 +44,11 @@ class Membrane {
   /// Takes the curves of another fabric.
   void setFabric(const material::Fabric& fabric);
 
+  /// For matrices with another pattern than that of the mesh's triangles alone: looks up where the
+  /// elements' blocks are.
+  /// @throws std::out_of_range if the pattern lacks one
+  void bind(const SymmetricBlockMatrix& matrix);
+
   const std::vector<MembraneElement>& elements() const { return elements_; }
 
   /// Strain of one element.
