@@ -146,27 +146,27 @@ void fillContactForces(const std::vector<cloth::PointLoad>& loads, double gain,
   }
 }
 
-haptex::QueryProximity::Request volumeQuery(const contact::SearchVolume& volume, double slack) {
+haptex::QueryProximity::Request volumeQuery(const contact::SearchVolume& volume) {
   haptex::QueryProximity::Request request;
   request.header.frame_id = kFixedFrame;
   request.shape = haptex::QueryProximity::Request::CAPSULE;
   request.points = {pointMessage(volume.begin), pointMessage(volume.end)};
   request.radii = {volume.radius};
-  request.distance = volume.distance + slack;
+  request.distance = volume.distance;
+  request.nearest = static_cast<std::uint32_t>(volume.count);
   return request;
 }
 
-void appendFound(const haptex::QueryProximity::Response& response, double distance,
-                 std::size_t triangles, std::vector<NearTriangle>& found) {
-  for (const haptex::NearElement& element : response.elements) {
+void addFound(const haptex::QueryProximity::Response& response, std::size_t triangles,
+              const contact::HapticSettings& settings, contact::PatchSelection& selection) {
+  for (std::size_t i = 0; i < response.elements.size(); ++i) {
+    const haptex::NearElement& element = response.elements[i];
     if (element.triangle >= triangles) {
       throw std::invalid_argument("elements has the triangle " + std::to_string(element.triangle) +
                                   ": the mesh has " + std::to_string(triangles));
     }
-    if (std::isnan(element.distance)) {
-      throw std::invalid_argument("elements has a distance that is not a number");
-    }
-    found.push_back({static_cast<int>(element.triangle), element.distance - distance});
+    selection.add(static_cast<int>(element.triangle), element.distance, static_cast<int>(i),
+                  settings);
   }
 }
 

@@ -18,10 +18,6 @@ constexpr Time kPatience = std::chrono::milliseconds(1);
 constexpr Time kConnectionPeriod = std::chrono::milliseconds(50);
 /// Until the forces have fallen to zero before a layer is exchanged.
 constexpr Time kFall = RendererLiveness::kFall + std::chrono::milliseconds(4);
-/// Of the margin of a patch.
-constexpr double kSlackShare = 0.25;
-
-double slackOf(const contact::HapticSettings& settings) { return kSlackShare * settings.margin; }
 
 }  // namespace
 
@@ -107,7 +103,7 @@ void PatchSupplier::buildLayer(const haptex::ClothMesh& message) {
   if (stopping_) return;
   loop_.offer(std::move(update));
   loop_.setLayerReady(true);
-  triangles_ = std::make_unique<PatchTriangles>(slackOf(builder_.settings()));
+  selection_ = std::make_unique<contact::PatchSelection>(mesh_.triangles.size());
   patch_outdated_ = false;
 }
 
@@ -143,14 +139,14 @@ void PatchSupplier::ask(const LoopView& view) {
       return;
     }
   }
-  found_.clear();
+  selection_->begin();
   for (const exoskeleton::Finger finger : kFingers) {
     const std::optional<contact::Fingertip>& fingertip = view.fingertips[finger];
     if (!fingertip) continue;
     if (!askAbout(contact::searchVolume(*fingertip, view.state_period, builder_.settings()))) return;
   }
   const Time end = steadyNow();
-  if (triangles_->update(found_)) patch_outdated_ = true;
+  if (selection_->finish()) patch_outdated_ = true;
   failed_ = false;
   loop_.reportAnswer(true);
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -164,8 +160,7 @@ void PatchSupplier::ask(const LoopView& view) {
 }
 
 bool PatchSupplier::askAbout(const contact::SearchVolume& volume) {
-  const double slack = slackOf(builder_.settings());
-  Query::Request request = volumeQuery(volume, slack);
+  Query::Request request = volumeQuery(volume);
   Query::Response response;
   loop_.reportQuestion(steadyNow());
   if (!client_.call(request, response)) {
@@ -177,7 +172,7 @@ bool PatchSupplier::askAbout(const contact::SearchVolume& volume) {
     return false;
   }
   try {
-    appendFound(response, volume.distance, mesh_.triangles.size(), found_);
+    addFound(response, mesh_.triangles.size(), builder_.settings(), *selection_);
   } catch (const std::invalid_argument& error) {
     fail(std::string("the answer of proximity/query: ") + error.what());
     return false;
@@ -190,11 +185,11 @@ void PatchSupplier::supplyPatch() {
   if (patch_attached_.size() != mesh_.rest_coordinates.size()) return;  // of another mesh
   patch_outdated_ = false;
   auto update = std::make_unique<LayerUpdate>();
-  update->patch = layer_->preparePatch(triangles_->triangles(), patch_attached_);
+  update->patch = layer_->preparePatch(selection_->elements(), patch_attached_);
   update->replaces_patch = true;
   loop_.offer(std::move(update));
   const std::lock_guard<std::mutex> lock(mutex_);
-  status_.triangles = triangles_->triangles().size();
+  status_.triangles = selection_->elements().size();
 }
 
 }  // namespace haptex::nodes

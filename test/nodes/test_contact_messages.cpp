@@ -221,35 +221,45 @@ TEST(ContactMessages, ForcesOnTheCloth) {
   EXPECT_TRUE(message.triangles.empty() && message.stiffness.empty());
 }
 
-TEST(ContactMessages, AsksForAVolumeWithSlack) {
+TEST(ContactMessages, AsksForTheNearestInAVolume) {
   contact::SearchVolume volume;
   volume.begin = {0.1, 0.2, 0.3};
   volume.end = {0.4, 0.5, 0.6};
   volume.radius = 0.0075;
-  volume.distance = 0.008;
-  const haptex::QueryProximity::Request request = volumeQuery(volume, 0.002);
+  volume.distance = 0.012;
+  volume.count = 50;
+  const haptex::QueryProximity::Request request = volumeQuery(volume);
   EXPECT_EQ(request.header.frame_id, "world");
   EXPECT_EQ(request.shape, haptex::QueryProximity::Request::CAPSULE);
   ASSERT_EQ(request.points.size(), 2u);
   EXPECT_EQ(vector(request.points[1]), volume.end);
   EXPECT_EQ(request.radii, (std::vector<double>{0.0075}));
-  EXPECT_DOUBLE_EQ(request.distance, 0.010);
-  EXPECT_EQ(request.nearest, 0u) << "all";
+  EXPECT_EQ(request.distance, 0.012);
+  EXPECT_EQ(request.nearest, 50u);
 }
 
-TEST(ContactMessages, AnswersAreCheckedAgainstTheMesh) {
+TEST(ContactMessages, SelectsWhatAnAnswerFoundAndRefusesTrianglesThatDoNotExist) {
   haptex::QueryProximity::Response response;
-  response.elements.resize(2);
-  response.elements[0].triangle = 1;
-  response.elements[0].distance = 0.009;
-  std::vector<NearTriangle> found;
-  appendFound(response, 0.008, 2, found);
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].triangle, 1);
-  EXPECT_NEAR(found[0].excess, 0.001, 1e-15);
-  EXPECT_THROW(appendFound(response, 0.008, 1, found), std::invalid_argument);
-  response.elements[0].distance = kNaN;
-  EXPECT_THROW(appendFound(response, 0.008, 2, found), std::invalid_argument);
+  response.elements.resize(3);
+  response.elements[0].triangle = 5;
+  response.elements[1].triangle = 2;
+  response.elements[2].triangle = 7;
+  response.elements[2].distance = 1.0;
+  contact::HapticSettings settings;
+  contact::PatchSelection selection(8);
+  selection.begin();
+  addFound(response, 8, settings, selection);
+  EXPECT_TRUE(selection.finish());
+  EXPECT_EQ(selection.elements(), (std::vector<int>{2, 5}));
+
+  selection.begin();
+  EXPECT_THROW(addFound(response, 7, settings, selection), std::invalid_argument);
+  settings.most_elements = 1;
+  contact::PatchSelection nearest(8);
+  nearest.begin();
+  addFound(response, 8, settings, nearest);
+  EXPECT_TRUE(nearest.finish());
+  EXPECT_EQ(nearest.elements(), (std::vector<int>{5}));
 }
 
 }  // namespace

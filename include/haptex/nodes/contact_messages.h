@@ -17,8 +17,8 @@
 #include "haptex/cloth/mesh.h"
 #include "haptex/contact/contactors.h"
 #include "haptex/contact/haptic_layer.h"
+#include "haptex/contact/patch_selection.h"
 #include "haptex/nodes/frame_follower.h"
-#include "haptex/nodes/patch_triangles.h"
 
 namespace haptex::nodes {
 
@@ -55,14 +55,12 @@ void fillContact(const contact::FingertipContact& contact,
 void fillContactForces(const std::vector<cloth::PointLoad>& loads, double gain,
                        const ros::Time& stamp, haptex::ContactForces& message);
 
-/// Asks for the elements within a volume and `slack` (m) around it.
-haptex::QueryProximity::Request volumeQuery(const contact::SearchVolume& volume, double slack);
+haptex::QueryProximity::Request volumeQuery(const contact::SearchVolume& volume);
 
-/// Appends what an answer found.
-/// @param distance m, of the volume, without the slack
-/// @throws std::invalid_argument naming the field if a triangle does not exist or a distance is not
-///   a number
-void appendFound(const haptex::QueryProximity::Response& response, double distance,
-                 std::size_t triangles, std::vector<NearTriangle>& found);
+/// Adds what an answer found to a round of a selection.
+/// @param triangles of the mesh
+/// @throws std::invalid_argument naming the field if a triangle does not exist
+void addFound(const haptex::QueryProximity::Response& response, std::size_t triangles,
+              const contact::HapticSettings& settings, contact::PatchSelection& selection);
 
 }  // namespace haptex::nodes

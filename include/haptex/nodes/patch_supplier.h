@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "haptex/contact/haptic_layer.h"
+#include "haptex/contact/patch_selection.h"
 #include "haptex/exoskeleton/clock.h"
 #include "haptex/nodes/force_loop.h"
 #include "haptex/nodes/layer_builder.h"
-#include "haptex/nodes/patch_triangles.h"
 #include "haptex/nodes/proximity_messages.h"
 
 namespace haptex::nodes {
@@ -79,8 +79,7 @@ class PatchSupplier {
   RestMesh mesh_;
   std::string fabric_;
   const contact::HapticLayer* layer_ = nullptr;  // the loop's; null: none
-  std::vector<NearTriangle> found_;
-  std::unique_ptr<PatchTriangles> triangles_;
+  std::unique_ptr<contact::PatchSelection> selection_;  // with the layer
   std::vector<char> patch_attached_;
   bool patch_outdated_ = false;
   std::uint64_t states_published_ = 0;
