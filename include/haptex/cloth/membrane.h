@@ -44,6 +44,10 @@ class Membrane {
   /// Takes the curves of another fabric.
   void setFabric(const material::Fabric& fabric);
 
+  /// Looks up the elements' slots in a matrix whose pattern has more than the mesh's edges.
+  /// @throws std::out_of_range if the pattern lacks one of them
+  void bind(const SymmetricBlockMatrix& matrix);
+
   const std::vector<MembraneElement>& elements() const { return elements_; }
 
   /// Strain of one element.
