@@ -125,8 +125,14 @@ TEST(Bending, ForcesAreTheGradientAndTheStepIsTheirLinearisation) {
   bending.bind(matrix);
   Positions positions(size);
   Velocities velocities(size);
-  for (Vector3d& position : positions) position.setRandom();
-  for (Vector3d& velocity : velocities) velocity.setRandom();
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < size; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      positions[i][axis] = normal(random);
+      velocities[i][axis] = normal(random);
+    }
+  }
   std::vector<Vector3d> forces(size, Vector3d::Zero());
   bending.addForces(positions, forces);
   Eigen::MatrixXd jacobian(3 * size, 3 * size);
