@@ -252,5 +252,30 @@ TEST(LinearSolver, AutomaticIteratesWhereItIsEasyAndFactorisesWhereItIsHard) {
   EXPECT_EQ(direct_solves_before_success(), 16);
 }
 
+TEST(SymmetricBlockMatrix, HasTheBlocksOfFurtherPairsForBothSolvers) {
+  const ClothMesh mesh = square(6);
+  const int size = static_cast<int>(mesh.rest_coordinates.size());
+  const std::vector<std::array<int, 2>> pairs = {{0, 48}, {30, 2}, {2, 30}, {0, 1}, {5, 5}};
+  const SymmetricBlockMatrix without(size, mesh.triangles);
+  SymmetricBlockMatrix matrix(size, mesh.triangles, pairs);
+  EXPECT_EQ(matrix.lowerCount(), without.lowerCount() + 2);  // {0, 1} is an edge
+  for (int i = 0; i < size; ++i) {
+    matrix.diagonal(i) = 20.0 * Eigen::Matrix3d::Identity();
+    for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) matrix.lower(s).setRandom();
+  }
+  matrix.lower(matrix.slot(48, 0)).setConstant(2.0);
+  matrix.lower(matrix.slot(30, 2)).setConstant(-3.0);
+  const BlockVector rhs = BlockVector::Random(3, size);
+  const Eigen::VectorXd exact = dense(matrix).llt().solve(stacked(rhs));
+  BlockVector x = rhs;
+  BlockCholesky cholesky(matrix);
+  ASSERT_TRUE(cholesky.factorise(matrix));
+  cholesky.solve(x);
+  EXPECT_LT((stacked(x) - exact).norm(), 1e-12 * exact.norm());
+  x.setZero();
+  EXPECT_TRUE(ConjugateGradient(size).solve(matrix, rhs, 1e-12, 1000, x).converged);
+  EXPECT_LT((stacked(x) - exact).norm(), 1e-10 * exact.norm());
+}
+
 }  // namespace
 }  // namespace haptex::cloth
