@@ -75,6 +75,8 @@ StepReport BackwardEuler::step(const Cloth& cloth, ClothState& state, double tim
     rhs_.col(i) = time_step * (cloth.externalForces()[i] + masses[i] * cloth.effects().gravity);
   }
   cloth.membrane().addStep(state.positions, state.velocities, time_step, matrix_, rhs_);
+  addPointLoadStep(cloth.pointLoads(), cloth.mesh().triangles, cloth.membrane().elements(),
+                   state.positions, state.velocities, time_step, time_step, matrix_, rhs_);
   prescribe(cloth, state, time_step);
   report.assembly_seconds = seconds(Clock::now() - start);
 
@@ -134,7 +136,8 @@ bool BackwardEuler::solveLinear(StepReport& report) {
 double BackwardEuler::incrementalPotential(const Cloth& cloth, const ClothState& begin, double h,
                                            const Positions& positions,
                                            const Velocities& velocities) const {
-  double potential = cloth.membrane().incrementalPotential(positions, begin_strains_, h);
+  double potential = cloth.membrane().incrementalPotential(positions, begin_strains_, h) +
+                     pointLoadEnergy(cloth.pointLoads(), cloth.mesh().triangles, positions);
   for (int i = 0; i < matrix_.size(); ++i) {
     if (fixed_[i]) continue;
     const double mass = cloth.masses()[i];
@@ -156,6 +159,8 @@ void BackwardEuler::assembleNewton(const Cloth& cloth, const ClothState& begin, 
                   mass * (end_.velocities[i] - begin.velocities[i]);
   }
   cloth.membrane().addNewton(end_.positions, begin_strains_, h, hessian, matrix_, rhs_);
+  addPointLoadStep(cloth.pointLoads(), cloth.mesh().triangles, cloth.membrane().elements(),
+                   end_.positions, end_.velocities, h, 0.0, matrix_, rhs_);
   if (any_fixed_) matrix_.eliminate(fixed_, prescribed_, rhs_);
   report.assembly_seconds += seconds(Clock::now() - start);
 }

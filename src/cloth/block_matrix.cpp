@@ -7,7 +7,8 @@
 namespace haptex::cloth {
 
 SymmetricBlockMatrix::SymmetricBlockMatrix(int size,
-                                           const std::vector<std::array<int, 3>>& triangles)
+                                           const std::vector<std::array<int, 3>>& triangles,
+                                           const std::vector<std::array<int, 2>>& pairs)
     : diagonal_(size, Eigen::Matrix3d::Zero()) {
   std::vector<std::vector<int>> columns_of_row(size);
   for (const std::array<int, 3>& triangle : triangles) {
@@ -16,6 +17,10 @@ SymmetricBlockMatrix::SymmetricBlockMatrix(int size,
         if (j < i) columns_of_row[i].push_back(j);
       }
     }
+  }
+  for (const std::array<int, 2>& pair : pairs) {
+    const auto [smaller, larger] = std::minmax(pair[0], pair[1]);
+    columns_of_row[larger].push_back(smaller);
   }
   row_begin_.reserve(size + 1);
   row_begin_.push_back(0);

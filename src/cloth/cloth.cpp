@@ -52,6 +52,8 @@ Cloth::Cloth(ClothMesh mesh, material::Fabric fabric, const ModelledEffects& eff
     throw std::invalid_argument("gravity has a component that is not finite");
   }
   masses_ = lumpedMasses(membrane_, mesh_.rest_coordinates.size(), fabric_.areal_density);
+  point_loads_.reserve(kMostPointLoads);
+  checked_loads_.reserve(kMostPointLoads);
 }
 
 ClothState Cloth::initialState() const {
@@ -84,6 +86,18 @@ void Cloth::setExternalForce(int particle, const Eigen::Vector3d& force) {
                                 " has a component that is not finite");
   }
   external_forces_[particle] = force;
+}
+
+void Cloth::setPointLoads(const std::vector<PointLoad>& loads) {
+  if (loads.size() > kMostPointLoads) {
+    throw std::invalid_argument("there are " + std::to_string(loads.size()) +
+                                " point loads; allowed are " + std::to_string(kMostPointLoads));
+  }
+  checked_loads_.clear();
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    checked_loads_.push_back(checkedLoad(loads[i], i, mesh_.triangles.size()));
+  }
+  std::swap(point_loads_, checked_loads_);
 }
 
 void Cloth::attach(int particle, const AttachmentPath& path) {
@@ -132,11 +146,13 @@ void Cloth::computeForces(const ClothState& state, std::vector<Eigen::Vector3d>&
     forces[i] = external_forces_[i] + masses_[i] * effects_.gravity;
   }
   membrane_.addForces(state.positions, state.velocities, forces);
+  addPointForces(point_loads_, mesh_.triangles, state.positions, forces);
 }
 
 double Cloth::potentialEnergy(const ClothState& state) const {
   requireState(state);
-  double energy = membrane_.elasticEnergy(state.positions);
+  double energy = membrane_.elasticEnergy(state.positions) +
+                  pointLoadEnergy(point_loads_, mesh_.triangles, state.positions);
   for (std::size_t i = 0; i < particleCount(); ++i) {
     energy -= (external_forces_[i] + masses_[i] * effects_.gravity).dot(state.positions[i]);
   }
@@ -152,10 +168,26 @@ double Cloth::kineticEnergy(const ClothState& state) const {
   return energy;
 }
 
+void Cloth::addPointLoadJacobian(const std::map<int, std::vector<std::size_t>>& rows_of_particle,
+                                 std::vector<JacobianRow>& rows) const {
+  for (const PointLoad& load : point_loads_) {
+    const std::array<int, 3>& corners = mesh_.triangles[load.triangle];
+    for (int i = 0; i < 3; ++i) {
+      const auto asked = rows_of_particle.find(corners[i]);
+      if (asked == rows_of_particle.end()) continue;
+      for (std::size_t r : asked->second) {
+        for (int j = 0; j < 3; ++j) {  // the membrane has made the block
+          rows[r].at(corners[j]).by_position -= load.weights[i] * load.weights[j] * load.stiffness;
+        }
+      }
+    }
+  }
+}
+
 std::vector<JacobianBlock> Cloth::jacobian(const ClothState& state,
                                            const std::vector<int>& particles) const {
   requireState(state);
-  std::vector<std::map<int, JacobianBlock>> rows(particles.size());
+  std::vector<JacobianRow> rows(particles.size());
   std::map<int, std::vector<std::size_t>> rows_of_particle;
   for (std::size_t r = 0; r < particles.size(); ++r) {
     requireParticle(particles[r]);
@@ -178,6 +210,7 @@ std::vector<JacobianBlock> Cloth::jacobian(const ClothState& state,
       }
     }
   }
+  addPointLoadJacobian(rows_of_particle, rows);
   std::vector<JacobianBlock> blocks;
   for (const auto& row : rows) {
     for (const auto& entry : row) blocks.push_back(entry.second);

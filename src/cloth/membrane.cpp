@@ -29,6 +29,12 @@ struct Membrane::Response {
 
 namespace {
 
+std::array<int, 3> slotsOf(const std::array<int, 3>& particles,
+                           const SymmetricBlockMatrix& pattern) {
+  return {pattern.slot(particles[1], particles[0]), pattern.slot(particles[2], particles[0]),
+          pattern.slot(particles[2], particles[1])};
+}
+
 MembraneElement restElement(const ClothMesh& mesh, const SymmetricBlockMatrix& pattern,
                             std::array<int, 3> particles) {
   std::sort(particles.begin(), particles.end());
@@ -39,9 +45,7 @@ MembraneElement restElement(const ClothMesh& mesh, const SymmetricBlockMatrix& p
   const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
   MembraneElement element;
   element.particles = particles;
-  element.slots = {pattern.slot(particles[1], particles[0]),
-                   pattern.slot(particles[2], particles[0]),
-                   pattern.slot(particles[2], particles[1])};
+  element.slots = slotsOf(particles, pattern);
   element.weft_weights = {(vb - vc) / d, (vc - va) / d, (va - vb) / d};
   element.warp_weights = {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d};
   element.area = 0.5 * std::abs(d);
@@ -134,12 +138,21 @@ Membrane::Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool v
   for (const std::array<int, 3>& triangle : mesh.triangles) {
     elements_.push_back(restElement(mesh, pattern, triangle));
   }
-  if (kernels::canAddBatches()) {
-    for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
-      batches_.push_back(batchOf(&elements_[t]));
-    }
-  }
+  makeBatches();
   setFabric(fabric);
+}
+
+void Membrane::makeBatches() {
+  batches_.clear();
+  if (!kernels::canAddBatches()) return;
+  for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
+    batches_.push_back(batchOf(&elements_[t]));
+  }
+}
+
+void Membrane::bind(const SymmetricBlockMatrix& matrix) {
+  for (MembraneElement& element : elements_) element.slots = slotsOf(element.particles, matrix);
+  makeBatches();
 }
 
 void Membrane::setFabric(const material::Fabric& fabric) {

@@ -26,6 +26,8 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
       path.start = cloth.mesh().initial_positions[particle];
       cloth.attach(particle, path);
     }
+    PointLoad load{7, {0.5, 0.25, 0.25}, {0, 0, 0}, {0.1, 0, 0}, Eigen::Matrix3d::Identity()};
+    const std::vector<PointLoad> loads(100, load);
     StepSettings settings;
     settings.solver = GetParam();
     settings.newton_iterations = newton_iterations;
@@ -36,6 +38,7 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
 
     const long before = allocations;
     for (double h : {0.0125, 0.001, 0.04, 1e-5}) {
+      cloth.setPointLoads(loads);
       EXPECT_TRUE(integrator.step(cloth, state, h).accepted);
       cloth.computeForces(state, forces);
     }

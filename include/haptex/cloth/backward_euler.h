@@ -43,7 +43,8 @@ struct StepReport {
 /// definite for every state and step. Attached particles reach their place exactly at the end of
 /// the step. With more than one Newton iteration the step goes on from there to the minimum of the
 /// incremental potential of backward Euler,
-///   |M^(1/2) (v - v0)|^2 / 2 + Membrane::incrementalPotential(x) - external forces . x,
+///   |M^(1/2) (v - v0)|^2 / 2 + Membrane::incrementalPotential(x) - external forces . x
+///   + pointLoadEnergy(x),
 /// by Newton iterations with a backtracking line search. They use the projected Hessian as long as
 /// the residual is large, and then the exact one where it is positive definite.
 ///

@@ -18,7 +18,9 @@ class SymmetricBlockMatrix {
  public:
   /// @param size      number of block rows
   /// @param triangles particle indices in [0, size)
-  SymmetricBlockMatrix(int size, const std::vector<std::array<int, 3>>& triangles);
+  /// @param pairs     of particle indices that have a block beside those of the triangles
+  SymmetricBlockMatrix(int size, const std::vector<std::array<int, 3>>& triangles,
+                       const std::vector<std::array<int, 2>>& pairs = {});
 
   int size() const { return static_cast<int>(diagonal_.size()); }
   int lowerCount() const { return static_cast<int>(lower_.size()); }

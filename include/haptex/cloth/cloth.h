@@ -3,12 +3,14 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "haptex/cloth/block_matrix.h"
 #include "haptex/cloth/membrane.h"
 #include "haptex/cloth/mesh.h"
+#include "haptex/cloth/point_load.h"
 #include "haptex/material/fabric.h"
 
 namespace haptex::cloth {
@@ -46,17 +48,6 @@ struct JacobianBlock {
   Eigen::Matrix3d by_velocity;  ///< N.s/m
 };
 
-/// A force on a point of a triangle that depends on where the point is:
-///   force(x) = force - stiffness (x - position),  x = sum_i weights[i] x_i over the corners.
-/// World frame.
-struct PointLoad {
-  int triangle;               ///< of the mesh
-  Eigen::Vector3d weights;    ///< barycentric, sum 1
-  Eigen::Vector3d position;   ///< m
-  Eigen::Vector3d force;      ///< N
-  Eigen::Matrix3d stiffness;  ///< N/m, symmetric, positive semidefinite
-};
-
 class Cloth {
  public:
   static constexpr std::size_t kMostPointLoads = 4096;
@@ -87,12 +78,13 @@ class Cloth {
 
   /// Replaces the point loads, which act until replaced; none at first. The step treats their
   /// stiffness implicitly, so that a stiff contact stays stable at every time step. Allocates
-  /// nothing.
+  /// nothing. On attached particles they act as any force: not.
   /// @throws std::invalid_argument naming the load if its triangle does not exist, a number is not
-  ///   finite, the weights do not sum to 1 within 1e-6, the stiffness is not symmetric to 1e-6 of
-  ///   its norm or has a negative diagonal, or there are more than kMostPointLoads; nothing has
+  ///   finite, the weights do not sum to 1 within 1e-6, the stiffness is not symmetric and positive
+  ///   semidefinite to 1e-6 of its norm, or there are more than kMostPointLoads; nothing has
   ///   changed then
   void setPointLoads(const std::vector<PointLoad>& loads);
+  /// As set, their stiffness made exactly symmetric and positive semidefinite.
   const std::vector<PointLoad>& pointLoads() const { return point_loads_; }
 
   /// Attaches a particle to a place, or gives an attached one a new path.
@@ -108,12 +100,14 @@ class Cloth {
 
   // The functions below throw std::invalid_argument if the state's size is not the cloth's.
 
-  /// Internal and external forces (N) on every particle: membrane, gravity and user-defined, not
-  /// the reaction of an attachment. At rest the reaction at an attached particle is the negative.
+  /// Internal and external forces (N) on every particle: membrane, gravity, user-defined and point
+  /// loads, not the reaction of an attachment. At rest the reaction at an attached particle is the
+  /// negative.
   /// @param forces resized to particleCount()
   void computeForces(const ClothState& state, std::vector<Eigen::Vector3d>& forces) const;
 
-  /// Elastic energy, gravity's relative to the world origin, and the user-defined forces' (J).
+  /// Elastic energy, gravity's and the user-defined forces' relative to the world origin, and the
+  /// point loads' relative to their positions (J).
   double potentialEnergy(const ClothState& state) const;
   double kineticEnergy(const ClothState& state) const;
 
@@ -126,6 +120,9 @@ class Cloth {
  private:
   void requireParticle(int particle) const;
   void requireState(const ClothState& state) const;
+  using JacobianRow = std::map<int, JacobianBlock>;  // by column
+  void addPointLoadJacobian(const std::map<int, std::vector<std::size_t>>& rows_of_particle,
+                            std::vector<JacobianRow>& rows) const;
 
   ClothMesh mesh_;
   material::Fabric fabric_;
@@ -134,7 +131,9 @@ class Cloth {
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> external_forces_;
   std::vector<std::optional<AttachmentPath>> attachments_;
-  std::vector<PointLoad> point_loads_;  // has the capacity of kMostPointLoads
+  // Both have the capacity of kMostPointLoads.
+  std::vector<PointLoad> point_loads_;
+  std::vector<PointLoad> checked_loads_;  // of setPointLoads()
 };
 
 }  // namespace haptex::cloth
