@@ -118,6 +118,72 @@ TEST(DenseKernels, SubtractTheProductForEverySizeOfRemainder) {
   }
 }
 
+TEST(DenseKernels, MultiplyByTheOwnTopBelowItsDiagonalBlocks) {
+  for (int columns : {3, 6, 9}) {
+    for (int rows = columns; rows <= columns + 29; ++rows) {
+      const int depth = 6, lda = rows + 2, ldc = rows + 3;
+      const Eigen::MatrixXd a = Eigen::MatrixXd::Random(lda, depth);
+      const Eigen::MatrixXd before = Eigen::MatrixXd::Random(ldc, columns);
+      Eigen::MatrixXd c = before;
+      multiplyByOwnTop(rows, columns, depth, a.data(), lda, c.data(), ldc);
+      Eigen::MatrixXd exact = before;
+      exact.topRows(rows) = a.topRows(rows) * a.topRows(columns).transpose();
+      for (int j = 0; j < columns; ++j)
+        exact.col(j).head(j / 3 * 3) = before.col(j).head(j / 3 * 3);
+      EXPECT_LT((c - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+    }
+  }
+}
+
+/// A panel of the factor as the kernels keep it, with its diagonal inverted.
+struct RandomPanel {
+  Eigen::MatrixXd exact;   // lower trapezoid
+  Eigen::MatrixXd stored;  // with a row more, which no kernel may change
+  RandomPanel(int rows, int columns) : exact(Eigen::MatrixXd::Random(rows, columns)) {
+    exact.triangularView<Eigen::StrictlyUpper>().setZero();
+    exact.diagonal().array() += 3.0;
+    stored = Eigen::MatrixXd::Constant(rows + 1, columns, 7.0);
+    stored.topRows(rows) = exact;
+    stored.diagonal() = exact.diagonal().cwiseInverse();
+  }
+};
+
+TEST(DenseKernels, FactoriseThreeColumnsOfEveryHeight) {
+  for (int rows = 3; rows <= 32; ++rows) {
+    const RandomPanel panel(rows, 3);
+    Eigen::MatrixXd a = panel.stored;
+    a.topRows(rows) = panel.exact * panel.exact.topRows(3).transpose();
+    ASSERT_TRUE(factoriseThreeColumns(rows, a.data(), rows + 1));
+    a.triangularView<Eigen::StrictlyUpper>().setZero();
+    Eigen::MatrixXd exact = panel.stored;
+    // Some ten operations on numbers of order 10.
+    EXPECT_LT((a - exact).cwiseAbs().maxCoeff(), 1e-13) << rows;
+  }
+}
+
+TEST(DenseKernels, SubstituteThroughPanelsOfEveryHeight) {
+  for (int columns : {3, 6, 9}) {
+    for (int rows = columns; rows <= columns + 20; ++rows) {
+      const RandomPanel panel(rows, columns);
+      const auto top = panel.exact.topRows(columns).triangularView<Eigen::Lower>();
+      const auto below = panel.exact.bottomRows(rows - columns);
+      const Eigen::VectorXd start = Eigen::VectorXd::Random(rows + 1);
+
+      Eigen::VectorXd x = start, exact = start;
+      substituteForward(rows, columns, panel.stored.data(), rows + 1, x.data());
+      exact.head(columns) = top.solve(start.head(columns));
+      exact.segment(columns, rows - columns) -= below * exact.head(columns);
+      EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+
+      x = exact = start;
+      substituteBackward(rows, columns, panel.stored.data(), rows + 1, x.data());
+      exact.head(columns) -= below.transpose() * start.segment(columns, rows - columns);
+      exact.head(columns) = top.transpose().solve(exact.head(columns)).eval();
+      EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+    }
+  }
+}
+
 TEST(Elimination, SupernodesPartitionTheColumnsAndHoldTheWholePattern) {
   const SymmetricBlockMatrix pattern = randomDefinite(square(9), 1.0);
   const Elimination elimination = analyse(pattern);
