@@ -170,6 +170,7 @@ void HapticLayer::stepPatch() {
     if (!contact.touching) continue;
     contact.stiffness = stiffness_.own(f);
     const Matrix3d stiffness = stiffness_.common(f);
+    const Vector3d ahead = aheadOf(contact, stiffness);
     Eigen::Vector2d place = Eigen::Vector2d::Zero();
     Vector3d weft = Vector3d::Zero();
     Vector3d warp = Vector3d::Zero();
@@ -183,12 +184,22 @@ void HapticLayer::stepPatch() {
       warp += share * directions.second;
       if (loads_.size() == loads_.capacity()) continue;
       loads_.push_back({patch_->cut().owners[point.particle], patch_->cut().weights[point.particle],
-                        patch_->placeOnCloth(point.particle, motion_), point.force(),
+                        patch_->placeOnCloth(point.particle, motion_) + ahead, point.force(),
                         share * stiffness});
     }
     contact.fabric_position = place;
     contact.fabric_velocity = inFabric(contact.sliding_velocity, weft, warp);
   }
+}
+
+/// How far the fingertip will have taken its contact along when the large-scale layer has made its
+/// next step. A fingertip that withdraws takes no more than its force away.
+Vector3d HapticLayer::aheadOf(const FingertipContact& contact, const Matrix3d& stiffness) const {
+  if (!settings_.predict) return Vector3d::Zero();
+  const Vector3d ahead = motion_.period() * contact.velocity;
+  const double now = -contact.normal.dot(contact.force);
+  const double change = contact.normal.dot(stiffness * ahead);
+  return change < -now ? Vector3d(now / -change * ahead) : ahead;
 }
 
 void HapticLayer::stepWholeCloth() {

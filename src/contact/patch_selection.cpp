@@ -8,14 +8,16 @@ SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
                           const HapticSettings& settings) {
   const Eigen::Vector3d end =
       settings.predict ? predict(fingertip, seconds).position : fingertip.position;
-  return {fingertip.position, end, fingertip.radius, settings.margin + PatchSelection::kHysteresis};
+  return {fingertip.position, end, fingertip.radius, settings.margin + PatchSelection::kHysteresis,
+          static_cast<std::size_t>(settings.most_elements + settings.most_elements / 4)};
 }
 
 void PatchSelection::begin() { std::fill(wanted_.begin(), wanted_.end(), 0); }
 
-void PatchSelection::add(int element, double distance, const HapticSettings& settings) {
-  const double reach = settings.margin + (chosen_[element] ? kHysteresis : 0.0);
-  if (distance <= reach) wanted_[element] = 1;
+void PatchSelection::add(int element, double distance, int rank, const HapticSettings& settings) {
+  const bool stays = chosen_[element];
+  const double reach = settings.margin + (stays ? kHysteresis : 0.0);
+  if (distance <= reach && (stays || rank < settings.most_elements)) wanted_[element] = 1;
 }
 
 bool PatchSelection::finish() {

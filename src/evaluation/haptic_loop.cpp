@@ -67,9 +67,10 @@ void HapticLoop::choosePatch(const Fingertips& fingertips) {
     const contact::SearchVolume volume =
         contact::searchVolume(*fingertip, settings_.large_scale_step, settings_.haptics);
     hierarchy_.query(proximity::Cursor::capsule(volume.begin, volume.end, volume.radius),
-                     {volume.distance}, near_);
-    for (const proximity::NearElement& element : near_) {
-      selection_.add(element.triangle, element.distance, settings_.haptics);
+                     {volume.distance, volume.count}, near_);
+    for (std::size_t rank = 0; rank < near_.size(); ++rank) {
+      selection_.add(near_[rank].triangle, near_[rank].distance, static_cast<int>(rank),
+                     settings_.haptics);
     }
   }
   if (!selection_.finish()) return;

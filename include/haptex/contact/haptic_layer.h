@@ -110,7 +110,7 @@ class HapticLayer {
   void startAgain();
   void fillContact(int fingertip, const std::vector<TouchedParticle>& touched,
                    const Particles& particles);
-  void addLoads(int fingertip, const Eigen::Matrix3d& stiffness);
+  Eigen::Vector3d aheadOf(const FingertipContact& contact, const Eigen::Matrix3d& stiffness) const;
 
   HapticSettings settings_;
   cloth::ClothMesh mesh_;

@@ -21,6 +21,7 @@ class LargeScaleMotion {
   void advance(double seconds);
 
   bool hasState() const { return has_state_; }
+  double period() const { return period_; }  ///< s, of the newest state
   std::size_t particleCount() const { return target_.size(); }
   Eigen::Vector3d position(int particle) const {  ///< m
     return start_[particle] + progress_ * (target_[particle] - start_[particle]);
