@@ -2,9 +2,10 @@
 // (commander, driver, line, firmware, emulated device on a person's fingers) answers in simulated
 // time: step response, closed-loop bandwidth, and how long forces outlive the death of the
 // commander and of the driver. The processor's time is that of a tick of the driver and of a step
-// of the emulator. How late the driver's loop wakes up and how long a command takes to the sensor
-// is measured with real threads and a real pseudo-terminal. bench_exoskeleton CSV writes the curves
-// of the first two and ends; scripts/plot_exoskeleton draws them.
+// of the emulator. How stiff a virtual wall may be is found by touching ever other ones. How late
+// the driver's loop wakes up and how long a command takes to the sensor is measured with real
+// threads and a real pseudo-terminal. bench_exoskeleton CSV writes the curves of the first two and
+// ends; scripts/plot_exoskeleton draws them.
 //
 // The fingers are as far apart as for taking a sample and are pushed apart. "person" has the finger
 // of the emulator (400 N/m), "stiff" one of 1500 N/m: the softer the finger, the more the device
@@ -26,6 +27,7 @@
 #include "haptex/exoskeleton/hand_path.h"
 #include "real_exoskeleton.h"
 #include "tab_lines.h"
+#include "wall_stiffness.h"
 
 namespace {
 
@@ -262,6 +264,24 @@ void death(bool of_the_driver) {
   bench::printLine("exoskeleton/contact_force_20ms_after_" + who + "s_death_of_3N", contact, "N");
 }
 
+/// Walls sent with their linearisation and as samples of their force, without damping and delay,
+/// with more and more delay, and with more and more damping.
+void wallStiffness() {
+  const PerFinger<Vector3d> open = loadHandPath(kConfig + "/paths/pinch.yaml").at(1.5).fingertips;
+  for (const Person& person : persons()) {
+    for (const bool linearised : {true, false}) {
+      for (const int delay : {0, 1, 2, 3}) {
+        const evaluation::VirtualWall wall{0.0, 0.0, linearised, delay};
+        bench::printWallStiffness(urdf(), person.name, person.mechanics, open, wall);
+      }
+      for (const double damping : {1.0, 2.0, 4.0}) {
+        const evaluation::VirtualWall wall{0.0, damping, linearised, 0};
+        bench::printWallStiffness(urdf(), person.name, person.mechanics, open, wall);
+      }
+    }
+  }
+}
+
 void controllerTick(benchmark::State& run) {
   Bench bench;
   bench.command([](double) { return 3.0; });
@@ -315,6 +335,7 @@ int main(int argc, char** argv) {
     }
     death(false);
     death(true);
+    if (!has_path) wallStiffness();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_exoskeleton: %s\n", error.what());
     return 1;

@@ -73,8 +73,10 @@ void BlockCholesky::load(const SymmetricBlockMatrix& matrix) {
       }
     }
   };
-  for (int i = 0; i < matrix.size(); ++i) put(diagonal_entries_[i], matrix.diagonal(i));
-  for (int s = 0; s < matrix.lowerCount(); ++s) put(lower_entries_[s], matrix.lower(s));
+  const int size = static_cast<int>(diagonal_entries_.size());
+  const int lower_count = static_cast<int>(lower_entries_.size());
+  for (int i = 0; i < size; ++i) put(diagonal_entries_[i], matrix.diagonal(i));
+  for (int s = 0; s < lower_count; ++s) put(lower_entries_[s], matrix.lower(s));
 }
 
 void BlockCholesky::applyDescendant(int descendant, int target) {

@@ -149,7 +149,7 @@ StepSettings readSolver(const YamlValue& value) {
 Scene loadScene(const std::string& path) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"fabric", "attach", "model", "time_step"},
-                   {"sheet", "mesh", "gravity", "solver", "obstacles"});
+                   {"sheet", "mesh", "gravity", "solver", "obstacles", "haptics"});
   Scene scene;
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.mesh = readMesh(file);

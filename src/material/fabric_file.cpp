@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/material/compression.h"
 #include "haptex/material/strain_measures.h"
 #include "haptex/material/yaml_reader.h"
 
@@ -181,6 +182,51 @@ double readArealDensity(const YamlValue& value) {
   return density;
 }
 
+double readRigidity(const YamlValue& value) {
+  const double rigidity = value.number();
+  if (rigidity < 0.0) value.refuse("must be a finite number >= 0");
+  return rigidity;
+}
+
+BendingRigidity readBending(const YamlValue& value) {
+  value.requireKeys({"unit", "provenance", "source", "weft", "warp"});
+  value.at("unit").oneOf({"N.m"});
+  return {readRigidity(value.at("weft")), readRigidity(value.at("warp"))};
+}
+
+std::vector<ThicknessPoint> readThicknessPoints(const YamlValue& value) {
+  std::vector<ThicknessPoint> points;
+  for (const YamlValue& item : value.items()) {
+    const std::vector<YamlValue> pair = item.items(2);
+    points.push_back({pair[0].number(), pair[1].number()});
+  }
+  return points;
+}
+
+Compression readCompression(const YamlValue& value) {
+  value.requireKeys({"unit", "provenance", "source"}, {"points", "kes"});
+  if (value.has("points") == value.has("kes")) {
+    value.refuseBecause("must have exactly one of points, kes");
+  }
+  if (value.has("points")) {
+    value.at("unit").oneOf({"Pa and m"});
+    const std::vector<ThicknessPoint> points = readThicknessPoints(value.at("points"));
+    return namingKey(value, [&] { return compressionFromPoints(points); });
+  }
+  value.at("unit").oneOf({"m and J/m2"});
+  const YamlValue kes = value.at("kes");
+  kes.requireKeys({"T0", "Tm", "WC"});
+  const KesCompression numbers{kes.at("T0").number(), kes.at("Tm").number(), kes.at("WC").number()};
+  return namingKey(kes, [&] { return compressionFromKes(numbers); });
+}
+
+double readFriction(const YamlValue& value) {
+  value.requireKeys({"value", "provenance", "source"});
+  const double friction = value.at("value").number();
+  if (friction <= 0.0) value.at("value").refuse("must be a finite number > 0");
+  return friction;
+}
+
 // Reads the curves of the direction `key` and their provenance into the fabric.
 MembraneCurves readDirection(const YamlValue& fabric_value, const std::string& key,
                              NegativeBranch negative_branch, Fabric& fabric) {
@@ -202,7 +248,8 @@ MembraneCurves readDirection(const YamlValue& fabric_value, const std::string& k
 
 Fabric loadFabric(const std::string& path) {
   const YamlValue file = YamlValue::load(path);
-  file.requireKeys({"name", "areal_density", "weft", "warp", "shear"}, {"description"});
+  file.requireKeys({"name", "areal_density", "weft", "warp", "shear"},
+                   {"description", "bending", "compression", "friction"});
   Fabric fabric;
   fabric.name = file.at("name").text();
   if (file.has("description")) fabric.description = file.at("description").text();
@@ -211,6 +258,12 @@ Fabric loadFabric(const std::string& path) {
   fabric.weft = readDirection(file, "weft", NegativeBranch::kLinear, fabric);
   fabric.warp = readDirection(file, "warp", NegativeBranch::kLinear, fabric);
   fabric.shear = readDirection(file, "shear", NegativeBranch::kOdd, fabric);
+  if (file.has("bending")) fabric.bending = readBending(file.at("bending"));
+  if (file.has("compression")) fabric.compression = readCompression(file.at("compression"));
+  if (file.has("friction")) fabric.friction = readFriction(file.at("friction"));
+  for (const std::string key : {"bending", "compression", "friction"}) {
+    if (file.has(key)) fabric.provenance[key] = readProvenance(file.at(key));
+  }
   return fabric;
 }
 

@@ -17,16 +17,6 @@ using exoskeleton::Time;
 constexpr double kDiagnosticsPeriod = 1.0;  // s
 constexpr Time kRecent = std::chrono::seconds(1);
 
-double microseconds(Time time) { return 1e-3 * static_cast<double>(time.count()); }
-
-void addJitter(diagnostic_updater::DiagnosticStatusWrapper& status, const std::string& when,
-               const DurationHistogram::Counts& lateness) {
-  status.add("wake-up jitter p50 " + when + " (us)", microseconds(lateness.quantile(0.5)));
-  status.add("wake-up jitter p99 " + when + " (us)", microseconds(lateness.quantile(0.99)));
-  status.add("wake-up jitter p99.9 " + when + " (us)", microseconds(lateness.quantile(0.999)));
-  status.add("wake-up jitter max " + when + " (us)", microseconds(lateness.largest));
-}
-
 /// Frames that were lost or spoilt, no unit.
 std::uint64_t spoilt(const LinkStatistics& statistics) {
   return statistics.lost_states + statistics.received.corrupt_frames;
@@ -89,26 +79,8 @@ void DriverNode::diagnoseLink(Status& status) {
 }
 
 void DriverNode::diagnoseLoop(Status& status) {
-  const DurationHistogram::Counts lateness = loop_thread_.lateness().counts();
-  const std::uint64_t missed = loop_thread_.missed();
-  const std::uint64_t newly_missed = missed - diagnosed_missed_;
-  const std::string& refused = loop_thread_.refusedScheduler();
-  if (newly_missed > 0) {
-    status.summaryf(DiagnosticStatus::WARN, "missed %lu periods lately",
-                    static_cast<unsigned long>(newly_missed));
-  } else if (!refused.empty()) {
-    status.summary(DiagnosticStatus::WARN, "in time, but without SCHED_FIFO: " + refused);
-  } else {
-    status.summary(DiagnosticStatus::OK, "in time");
-  }
-  status.add("SCHED_FIFO", refused.empty() ? "granted" : "not granted: " + refused);
-  status.add("periods", loop_thread_.periods());
-  status.add("periods missed", missed);
-  addJitter(status, "of the last second", lateness.since(diagnosed_lateness_));
-  addJitter(status, "since the start", lateness);
+  loop_diagnostics_.diagnose(loop_thread_, status);
   status.add("measurements that nobody took in time", loop_.lostSnapshots());
-  diagnosed_lateness_ = lateness;
-  diagnosed_missed_ = missed;
 }
 
 std::string DriverNode::whyNoForce(Finger finger, const DriverSnapshot& snapshot) {

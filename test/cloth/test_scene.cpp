@@ -183,6 +183,10 @@ TEST_F(SceneFile, RefusesAMeshOfTooManyTriangles) {
             path() + ": mesh: 200001 triangles, at most 200000 are allowed");
 }
 
+TEST_F(SceneFile, LeavesTheKeyOfTheForceRendererToIt) {
+  EXPECT_EQ(load(kValid + "haptics: {layer: patch}\n").time_step, 0.0125);
+}
+
 TEST_F(SceneFile, AcceptsValuesAtTheirLimits) {
   EXPECT_EQ(load(replaced(kValid, "[3, 2]", "[1000, 100]")).mesh.triangles.size(), 200000u);
   EXPECT_NO_THROW(load(replaced(kValid, "[0.3, 0.2]", "[100, 100]")));
@@ -222,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"UnknownKey", "fabric: silk", "fabric: silk\nwind: 3",
                 "wind: unknown key, allowed here: fabric, attach, model, time_step, sheet, mesh, "
-                "gravity, solver, obstacles"},
+                "gravity, solver, obstacles, haptics"},
         Refusal{"MissingModel", "model: [gravity, viscosity]\n", "",
                 "the key 'model' is missing, required here: fabric, attach, model, time_step"},
         Refusal{"MissingAttach", "attach: [top]\n", "",

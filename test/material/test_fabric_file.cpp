@@ -53,6 +53,16 @@ const std::string kShear = R"(shear:
     points: [[0.1, 4], [0.2, 10]]
 )";
 const std::string kValid = kHead + kWeft + kWarp + kShear;
+const std::string kContact =
+    R"(bending: {unit: N.m, provenance: measured, source: KES-FB2, weft: 6e-6, warp: 9e-6}
+compression:
+  unit: m and J/m2
+  provenance: measured
+  source: KES-FB3
+  kes: {T0: 7e-4, Tm: 4.5e-4, WC: 0.2}
+friction: {provenance: representative, source: a guess, value: 0.25}
+)";
+const std::string kFull = kValid + kContact;
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
@@ -87,6 +97,38 @@ TEST(FabricFile, KeepsTheProvenanceOfEveryProperty) {
   EXPECT_EQ(provenance.at("warp.elastic").source, "tester");
   EXPECT_EQ(provenance.at("warp.viscous").kind, Provenance::Kind::kRepresentative);
   EXPECT_EQ(provenance.at("shear.elastic").source, "a similar fabric");
+}
+
+TEST(FabricFile, LeavesOutWhatASceneWithoutContactDoesNotNeed) {
+  const TemporaryFile file(kValid);
+  const Fabric fabric = loadFabric(file.path());
+  EXPECT_FALSE(fabric.bending || fabric.compression || fabric.friction);
+}
+
+TEST(FabricFile, ReadsBendingCompressionAndFrictionWithTheirProvenance) {
+  const TemporaryFile file(kFull);
+  const Fabric fabric = loadFabric(file.path());
+  ASSERT_TRUE(fabric.bending && fabric.compression && fabric.friction);
+  EXPECT_EQ(fabric.bending->weft, 6e-6);
+  EXPECT_EQ(fabric.bending->warp, 9e-6);
+  EXPECT_EQ(*fabric.friction, 0.25);
+  // 50 gf/cm2 at Tm.
+  const double strain = 1.0 - 4.5e-4 / fabric.compression->thickness;
+  EXPECT_NEAR(fabric.compression->pressure.evaluate(strain).stress, 4903.325, 1e-8);
+  ASSERT_EQ(fabric.provenance.size(), 8u);
+  EXPECT_EQ(fabric.provenance.at("bending").source, "KES-FB2");
+  EXPECT_EQ(fabric.provenance.at("compression").kind, Provenance::Kind::kMeasured);
+  EXPECT_EQ(fabric.provenance.at("friction").kind, Provenance::Kind::kRepresentative);
+}
+
+TEST(FabricFile, ReadsCompressionPoints) {
+  std::string text = replaced(kFull, "m and J/m2", "Pa and m");
+  text = replaced(text, "kes: {T0: 7e-4, Tm: 4.5e-4, WC: 0.2}", "points: [[0, 1e-3], [800, 6e-4]]");
+  const TemporaryFile file(text);
+  const Fabric fabric = loadFabric(file.path());
+  ASSERT_TRUE(fabric.compression);
+  EXPECT_EQ(fabric.compression->thickness, 1e-3);
+  EXPECT_NEAR(fabric.compression->pressure.evaluate(0.4).stress, 800.0, 1e-9);
 }
 
 TEST(FabricFile, ConvertsTesterPointsExactly) {
@@ -138,7 +180,7 @@ class FabricFileRefuses : public testing::TestWithParam<Refusal> {};
 
 TEST_P(FabricFileRefuses, NamingFileKeyValueAndWhatIsAllowed) {
   const Refusal& refusal = GetParam();
-  const TemporaryFile file(replaced(kValid, refusal.from, refusal.to));
+  const TemporaryFile file(replaced(kFull, refusal.from, refusal.to));
   Fabric fabric;
   fabric.name = "before";
   fabric.areal_density = 0.7;
@@ -165,7 +207,8 @@ INSTANTIATE_TEST_SUITE_P(
     Keys, FabricFileRefuses,
     testing::Values(
         Refusal{"UnknownProperty", "name:", "colour: red\nname:", "colour",
-                "unknown key, allowed here: name, areal_density, weft, warp, shear, description"},
+                "unknown key, allowed here: name, areal_density, weft, warp, shear, description, "
+                "bending, compression, friction"},
         Refusal{"UnknownDirectionKey", "viscous:", "plastic:", "warp.plastic",
                 "unknown key, allowed here: elastic, viscous"},
         Refusal{"UnknownCurveKey", "modulus: 100", "moduls: 100", "weft.elastic.moduls",
@@ -197,12 +240,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "must have exactly one of modulus, points, polynomials"},
         Refusal{"DirectionNotAMap", kWeft, "weft: 100\n", "weft",
                 "'100' must be a map with the keys elastic, viscous"},
-        Refusal{"FileNotAMap", kValid, "- name\n", "",
+        Refusal{"FileNotAMap", kFull, "- name\n", "",
                 "a list of 1 must be a map with the keys name, areal_density, weft, warp, shear, "
-                "description"},
-        Refusal{"EmptyFile", kValid, "---\n", "",
+                "description, bending, compression, friction"},
+        Refusal{"EmptyFile", kFull, "---\n", "",
                 "nothing must be a map with the keys name, areal_density, weft, warp, shear, "
-                "description"}),
+                "description, bending, compression, friction"}),
     [](const auto& info) { return info.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
@@ -322,6 +365,68 @@ INSTANTIATE_TEST_SUITE_P(
                 "polynomials: {knots: [0, 1, 2], coefficients: [[0, 1, 0, 0], [2, 1, 0, 0]]}",
                 "weft.elastic.polynomials.knots[1]",
                 "the stress jumps by 1 at strain 1, it must be continuous"}),
+    [](const auto& info) { return info.param.name; });
+
+const std::string kKes = "kes: {T0: 7e-4, Tm: 4.5e-4, WC: 0.2}";
+const std::string kMetres =
+    "unit: m and J/m2\n  provenance: measured\n  source: KES-FB3\n  " + kKes;
+
+// The compression with points instead of KES values.
+std::string withPoints(const std::string& points) {
+  return "unit: Pa and m\n  provenance: measured\n  source: KES-FB3\n  points: " + points;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Contact, FabricFileRefuses,
+    testing::Values(
+        Refusal{"WrongBendingUnit", "unit: N.m,", "unit: gf.cm2/cm,", "bending.unit",
+                "'gf.cm2/cm' must be N.m"},
+        Refusal{"BendingInOneDirection", ", warp: 9e-6", "", "bending",
+                "the key 'warp' is missing, required here: unit, provenance, source, weft, warp"},
+        Refusal{"UnknownBendingKey", "weft: 6e-6", "weft: 6e-6, hysteresis: 1",
+                "bending.hysteresis",
+                "unknown key, allowed here: unit, provenance, source, weft, warp"},
+        Refusal{"NegativeRigidity", "weft: 6e-6", "weft: -6e-6", "bending.weft",
+                "'-6e-6' must be a finite number >= 0"},
+        Refusal{"NanRigidity", "warp: 9e-6", "warp: .nan", "bending.warp",
+                "'.nan' must be a finite number"},
+        Refusal{"BendingWithoutSource", ", source: KES-FB2", "", "bending",
+                "the key 'source' is missing, required here: unit, provenance, source, weft, warp"},
+        Refusal{"CompressionOfNothing", "\n  " + kKes, "", "compression",
+                "must have exactly one of points, kes"},
+        Refusal{"CompressionTwice", kKes, kKes + "\n  points: []", "compression",
+                "must have exactly one of points, kes"},
+        Refusal{"UnknownCompressionKey", kKes, kKes + "\n  RC: 50", "compression.RC",
+                "unknown key, allowed here: unit, provenance, source, points, kes"},
+        Refusal{"KesUnit", "unit: m and J/m2", "unit: mm and gf.cm/cm2", "compression.unit",
+                "'mm and gf.cm/cm2' must be m and J/m2"},
+        Refusal{"PointsWithTheUnitOfKes", kKes, "points: [[0, 1e-3], [800, 6e-4]]",
+                "compression.unit", "'m and J/m2' must be Pa and m"},
+        Refusal{"MissingWork", ", WC: 0.2", "", "compression.kes",
+                "the key 'WC' is missing, required here: T0, Tm, WC"},
+        Refusal{"LinearityForWork", "WC: 0.2", "LC: 0.3", "compression.kes.LC",
+                "unknown key, allowed here: T0, Tm, WC"},
+        Refusal{"ThickerUnderPressure", "Tm: 4.5e-4", "Tm: 8e-4", "compression.kes.Tm",
+                "0.0008 must be > 0 and less than T0, 0.0007"},
+        Refusal{"WorkInTheWrongUnit", "WC: 0.2", "WC: 200", "compression.kes.WC",
+                "200 must be > 0.0122583 and <= 0.445892 J/m2 for these T0 and Tm: more leaves no "
+                "thickness to an incompressible core"},
+        Refusal{"CompressionPointNotAPair", kMetres, withPoints("[[0, 1e-3], [5]]"),
+                "compression.points[1]", "a list of 1 must be a list of 2"},
+        Refusal{"NoThicknessWithoutPressure", kMetres, withPoints("[[5, 1e-3], [9, 8e-4]]"),
+                "compression.points[0]", "pressure 5 must be 0: the thickness without pressure"},
+        Refusal{"ThicknessThatGrows", kMetres, withPoints("[[0, 1e-3], [9, 2e-3]]"),
+                "compression.points[1]", "thickness 0.002 must be less than the one before, 0.001"},
+        Refusal{"NoFriction", "value: 0.25", "value: 0", "friction.value",
+                "'0' must be a finite number > 0"},
+        Refusal{"InfiniteFriction", "value: 0.25", "value: .inf", "friction.value",
+                "'.inf' must be a finite number"},
+        Refusal{"FrictionWithAUnit", "value: 0.25", "value: 0.25, unit: N/N", "friction.unit",
+                "unknown key, allowed here: value, provenance, source"},
+        Refusal{"FrictionNotAMap",
+                "friction: {provenance: representative, source: a guess, value: 0.25}",
+                "friction: 0.25", "friction",
+                "'0.25' must be a map with the keys value, provenance, source"}),
     [](const auto& info) { return info.param.name; });
 
 std::string runtimeErrorOf(const std::string& path) {

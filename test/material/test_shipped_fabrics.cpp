@@ -72,6 +72,29 @@ TEST(ShippedFabrics, CallMeasuredOnlyWhatWasMeasured) {
   EXPECT_EQ(measured("linear"), Keys{});
 }
 
+TEST(ShippedFabrics, HaveAllThatContactNeeds) {
+  for (const std::string name : {"wool", "acrylic_knit", "cotton_knit", "linear"}) {
+    const Fabric fabric = shipped(name);
+    ASSERT_TRUE(fabric.bending && fabric.compression && fabric.friction) << name;
+    EXPECT_GT(fabric.compression->pressure.minimumSlope(), 0.0) << name;
+  }
+  // B = 0.067 gf.cm2/cm in the published table, 1 gf.cm2/cm = 9.80665e-5 N.m; stated to two digits.
+  EXPECT_NEAR(shipped("wool").bending->weft, 0.067 * 9.80665e-5, 0.05e-6);
+}
+
+TEST(ShippedFabrics, HaveTheLinearityThatTheirSourcesState) {
+  // LC = WC / (half of the pressure at Tm times the way), KES-FB3.
+  const auto linearity = [](const std::string& name) {
+    const YAML::Node kes =
+        YAML::LoadFile((kFabrics / (name + ".yaml")).string())["compression"]["kes"];
+    return kes["WC"].as<double>() /
+           (0.5 * 4903.325 * (kes["T0"].as<double>() - kes["Tm"].as<double>()));
+  };
+  EXPECT_NEAR(linearity("wool"), 0.3, 0.005);
+  EXPECT_NEAR(linearity("acrylic_knit"), 0.35, 0.005);
+  EXPECT_NEAR(linearity("cotton_knit"), 0.35, 0.005);
+}
+
 TEST(ShippedFabrics, WoolPassesThroughEveryMeasuredPoint) {
   for (const auto& [direction, curve, points] : woolCurves()) {
     ASSERT_EQ(points.size(), 29u) << direction;

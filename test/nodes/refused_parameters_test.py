@@ -110,6 +110,16 @@ class RefusedParameters(unittest.TestCase):
         self.refused_emulator('_link:=/tmp/haptex_refused', '_markers:=many',
                               says=['~markers', 'true or false'])
 
+    def test_renderer_scenes(self):
+        self.refused(node='force_renderer', says=['~scene', 'is not set'])
+        self.refused('_scene:=velvet', node='force_renderer', says=["there is no 'velvet'"])
+
+    def test_renderer_radii_that_no_fingertip_has(self):
+        for name in ('index_radius', 'thumb_radius'):
+            for value in ('0', '-1', 'thick', '0.2'):
+                self.refused('_scene:=wool_sample', f'_{name}:={value}', node='force_renderer',
+                             says=[f'~{name}'])
+
 
 if __name__ == '__main__':
     rostest.rosrun('haptex', 'refused_parameters', RefusedParameters)

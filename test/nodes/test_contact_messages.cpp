@@ -3,99 +3,263 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
-#include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/contact_messages.h"
-#include "small_scene.h"
 
 namespace haptex::nodes {
 namespace {
 
-constexpr std::size_t kTriangles = 32;  // of smallSimulation()
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const ros::Time kStamp(1234, 5678);
 
-haptex::ContactForces twoForces() {
-  haptex::ContactForces message;
+/// Two triangles.
+haptex::ClothMesh someMesh() {
+  haptex::ClothMesh message;
   message.header.frame_id = "world";
-  message.triangles = {3, 31};
-  message.barycentric = {0.2, 0.3, 0.5, 1.0, 0.0, 0.0};
-  message.positions.resize(2);
-  message.positions[1].y = 0.25;
-  message.forces.resize(2);
-  message.forces[0].x = 0.01;
-  message.forces[1].z = -0.02;
-  message.stiffness = {1, 2, 0, 2, 5, 0, 0, 0, 3,  //
-                       0, 0, 0, 0, 0, 0, 0, 0, 0};
+  message.fabric = "wool";
+  message.rest_weft_coordinates = {0.0, 0.1, 0.1, 0.0};
+  message.rest_warp_coordinates = {0.0, 0.0, 0.1, 0.1};
+  message.triangles = {0, 1, 2, 0, 2, 3};
+  message.masses = {0.1, 0.1, 0.1, 0.1};
   return message;
 }
 
-TEST(ContactMessages, KeepEveryNumberInItsPlace) {
-  const std::vector<cloth::PointLoad> loads = pointLoads(twoForces(), kTriangles);
-  ASSERT_EQ(loads.size(), 2u);
-  EXPECT_EQ(loads[0].triangle, 3);
-  EXPECT_EQ(loads[0].weights, Eigen::Vector3d(0.2, 0.3, 0.5));
-  EXPECT_EQ(loads[0].force, Eigen::Vector3d(0.01, 0.0, 0.0));
-  Eigen::Matrix3d stiffness;
-  stiffness << 1, 2, 0, 2, 5, 0, 0, 0, 3;
-  EXPECT_EQ(loads[0].stiffness, stiffness);
-  EXPECT_EQ(loads[1].triangle, 31);
-  EXPECT_EQ(loads[1].position, Eigen::Vector3d(0.0, 0.25, 0.0));
-  EXPECT_EQ(loads[1].force, Eigen::Vector3d(0.0, 0.0, -0.02));
-  haptex::ContactForces nothing;
-  nothing.header.frame_id = "world";
-  EXPECT_TRUE(pointLoads(nothing, kTriangles).empty());
+haptex::ClothState someState() {
+  haptex::ClothState message;
+  message.header.frame_id = "world";
+  message.simulated_time = 2.5;
+  message.positions.resize(4);
+  message.velocities.resize(4);
+  message.positions[2].y = 0.25;
+  message.velocities[3].z = -0.5;
+  message.attached = {1, 3};
+  return message;
 }
 
-TEST(ContactMessages, AreRefusedForWhatIsWrongWithThem) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  using Message = haptex::ContactForces;
-  const auto expectRefused = [](const std::function<void(Message&)>& spoil,
-                                const std::string& expected) {
-    Message message = twoForces();
+contact::FingertipContact someContact() {
+  contact::FingertipContact contact;
+  contact.touching = contact.slipping = true;
+  contact.force = {1.0, 2.0, 3.0};
+  contact.position = {0.1, 0.2, 0.3};
+  contact.velocity = {0.01, 0.02, 0.03};
+  contact.stiffness << 4.0, 1.0, 0.5, 1.0, 5.0, 0.25, 0.5, 0.25, 6.0;
+  contact.damping = 0.01 * contact.stiffness;
+  contact.area = 1e-4;
+  contact.normal_force = 3.5;
+  contact.penetration = 1e-3;
+  contact.centre = {0.11, 0.21, 0.31};
+  contact.normal = Eigen::Vector3d::UnitX();
+  contact.sliding_velocity = {0.0, 0.05, 0.0};
+  contact.fabric_position = {0.03, 0.04};
+  contact.fabric_velocity = {0.05, 0.06};
+  return contact;
+}
+
+FrameMotion movingHand() {
+  FrameMotion hand;
+  hand.pose = Eigen::Translation3d(0.5, -0.4, 0.3) *
+              Eigen::AngleAxisd(0.8, Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0);
+  hand.velocity = {0.1, 0.2, -0.1};
+  hand.angular_velocity = {0.5, -0.3, 0.2};
+  return hand;
+}
+
+Eigen::Vector3d vector(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
+Eigen::Vector3d vector(const geometry_msgs::Point& v) { return {v.x, v.y, v.z}; }
+template <typename Nine>
+Eigen::Matrix3d matrix(const Nine& nine) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&nine[0]);
+}
+
+TEST(ContactMessages, MeshOfAMessage) {
+  const cloth::ClothMesh mesh = clothMesh(someMesh());
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_EQ(mesh.rest_coordinates[2], Eigen::Vector2d(0.1, 0.1));
+  EXPECT_EQ(mesh.initial_positions.size(), 4u);
+}
+
+TEST(ContactMessages, RefusesAMeshWithDefects) {
+  haptex::ClothMesh message = someMesh();
+  message.triangles = {0, 1, 1};
+  EXPECT_THROW(clothMesh(message), std::invalid_argument);
+  message.triangles = {0, 1, 9};
+  EXPECT_THROW(clothMesh(message), std::invalid_argument);
+}
+
+TEST(ContactMessages, StateOfAMessage) {
+  LargeScaleState state;
+  readState(someState(), state);
+  EXPECT_EQ(state.simulated_time, 2.5);
+  ASSERT_EQ(state.positions.size(), 4u);
+  EXPECT_EQ(state.positions[2], Eigen::Vector3d(0.0, 0.25, 0.0));
+  EXPECT_EQ(state.velocities[3], Eigen::Vector3d(0.0, 0.0, -0.5));
+  EXPECT_EQ(state.attached, (std::vector<char>{0, 1, 0, 1}));
+}
+
+TEST(ContactMessages, RefusesABadStateAndSaysWhy) {
+  using Message = haptex::ClothState;
+  const std::vector<std::pair<std::string, std::function<void(Message&)>>> flaws = {
+      {"frame_id", [](Message& m) { m.header.frame_id = "map"; }},
+      {"positions[1]", [](Message& m) { m.positions[1].x = kNaN; }},
+      {"positions[0]", [](Message& m) { m.positions[0].x = 1e300; }},
+      {"velocities[2]", [](Message& m) { m.velocities[2].y = kNaN; }},
+      {"velocities[2]", [](Message& m) { m.velocities[2].y = 1e300; }},
+      {"velocities has 3", [](Message& m) { m.velocities.resize(3); }},
+      {"velocities has 4", [](Message& m) { m.positions.resize(5); }},
+      {"attached has 4", [](Message& m) { m.attached.push_back(4); }},
+      {"simulated_time", [](Message& m) { m.simulated_time = kNaN; }},
+  };
+  LargeScaleState state;
+  for (const auto& [why, spoil] : flaws) {
+    Message message = someState();
     spoil(message);
     try {
-      pointLoads(message, kTriangles);
-      FAIL() << "accepted, instead of: " << expected;
+      readState(message, state);
+      ADD_FAILURE() << "not refused: " << why;
     } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
     }
-  };
-  expectRefused([](Message& m) { m.header.frame_id = "map"; }, "header.frame_id = 'map'");
-  expectRefused([](Message& m) { m.barycentric.pop_back(); }, "barycentric has 5 elements");
-  expectRefused([](Message& m) { m.positions.clear(); }, "positions has 0 elements");
-  expectRefused([](Message& m) { m.forces.resize(3); }, "forces has 3 elements");
-  expectRefused([](Message& m) { m.stiffness.resize(9); }, "stiffness has 9 elements");
-  expectRefused([](Message& m) { m.triangles.pop_back(); }, "barycentric has 6 elements");
-  expectRefused([](Message& m) { m.triangles.resize(4097); }, "4097 elements: allowed are 4096");
-  expectRefused([](Message& m) { m.triangles[1] = 32; }, "triangles[1] = 32 does not exist");
-  expectRefused([](Message& m) { m.triangles[1] = 4294967295u; }, "4294967295 does not exist");
-  expectRefused([=](Message& m) { m.forces[1].y = nan; }, "point load 1");
-  expectRefused([=](Message& m) { m.positions[0].y = nan; }, "point load 0");
-  expectRefused([=](Message& m) { m.stiffness[17] = nan; }, "not finite");
-  expectRefused([=](Message& m) { m.barycentric[0] = nan; }, "not finite");
-  expectRefused([](Message& m) { m.barycentric[0] = 0.3; }, "the weights sum to 1.1");
-  expectRefused([](Message& m) { m.stiffness[1] = 2.5; }, "differs from its transpose");
-  expectRefused([](Message& m) { m.stiffness[0] = -1.0; }, "positive semidefinite");
+  }
 }
 
-TEST(ContactMessages, WhatIsAcceptedTheClothAccepts) {
-  SimulatedCloth simulation = smallSimulation();
-  SimulatedCloth untouched = smallSimulation();
-  simulation.setPointLoads(pointLoads(twoForces(), simulation.cloth().mesh().triangles.size()));
-  ASSERT_TRUE(simulation.step());
-  ASSERT_TRUE(untouched.step());
-  EXPECT_NE(simulation.state().positions, untouched.state().positions);
-  simulation.reset();
-  EXPECT_TRUE(simulation.cloth().pointLoads().empty());
+// The promise of a command: evaluated in the hand's frame for a fingertip that is elsewhere and
+// moves differently, it gives the force of the contact there in the world frame.
+TEST(ContactMessages, CommandIsTheSameForceInTheFrameOfAMovingHand) {
+  const contact::FingertipContact contact = someContact();
+  const FrameMotion hand = movingHand();
+  haptex::ServoForce message;
+  fillServoForce(contact, 1.0, hand, kStamp, message);
+  EXPECT_EQ(message.header.frame_id, "hand_base");
+  EXPECT_EQ(message.header.stamp, kStamp);
+
+  const Eigen::Vector3d moved(1e-3, -2e-3, 3e-3);    // in the world frame
+  const Eigen::Vector3d faster(0.02, 0.01, -0.03);   // likewise
+  const Eigen::Vector3d in_world =
+      contact.force - contact.stiffness * moved - contact.damping * faster;
+  const Eigen::Matrix3d to_hand = hand.pose.linear().transpose();
+  const Eigen::Vector3d place = hand.pose.inverse() * (contact.position + moved);
+  // The velocity that a finger's joints have; the hand's, at the place of linearisation, is not
+  // among them.
+  const Eigen::Vector3d velocity =
+      to_hand * (contact.velocity + faster - hand.velocity -
+                 hand.angular_velocity.cross(contact.position - hand.pose.translation()));
+  const Eigen::Vector3d in_hand = vector(message.force) -
+                                  matrix(message.stiffness) * (place - vector(message.position)) -
+                                  matrix(message.damping) * (velocity - vector(message.velocity));
+  EXPECT_LT((hand.pose.linear() * in_hand - in_world).norm(), 1e-12);
 }
 
-TEST(StateMessage, NamesTheAttachedParticles) {
-  SimulatedCloth simulation = smallSimulation();
-  simulation.release({kSmallTop + 1});
-  simulation.attach({2});
-  std::vector<Eigen::Vector3d> forces;
-  haptex::ClothState message;
-  for (int i = 0; i < 2; ++i) fillStateMessage(simulation, ros::Time(1.0), forces, message);
-  EXPECT_EQ(message.attached, (std::vector<std::uint32_t>{2, 20, 22, 23, 24}));
+TEST(ContactMessages, GainScalesForceStiffnessAndDampingTogether) {
+  haptex::ServoForce whole, part;
+  fillServoForce(someContact(), 1.0, movingHand(), kStamp, whole);
+  fillServoForce(someContact(), 0.25, movingHand(), kStamp, part);
+  EXPECT_LT((vector(part.force) - 0.25 * vector(whole.force)).norm(), 1e-15);
+  EXPECT_LT((matrix(part.stiffness) - 0.25 * matrix(whole.stiffness)).norm(), 1e-14);
+  EXPECT_LT((matrix(part.damping) - 0.25 * matrix(whole.damping)).norm(), 1e-15);
+  EXPECT_EQ(vector(part.position), vector(whole.position));
+}
+
+TEST(ContactMessages, ContactForTheTactileRenderer) {
+  const contact::FingertipContact contact = someContact();
+  std::array<double, contact::kContactors> contactors{};
+  contactors[7] = 0.5;
+  haptex::Contact message;
+  fillContact(contact, contactors, 0.5, kStamp, message);
+  EXPECT_EQ(message.header.frame_id, "world");
+  EXPECT_EQ(message.header.stamp, kStamp);
+  EXPECT_TRUE(message.touching);
+  EXPECT_TRUE(message.slipping);
+  EXPECT_EQ(vector(message.force), 0.5 * contact.force);
+  EXPECT_EQ(vector(message.centre), contact.centre);
+  EXPECT_EQ(vector(message.normal), contact.normal);
+  EXPECT_EQ(message.normal_force, 0.5 * 3.5);
+  EXPECT_EQ(message.area, 1e-4);
+  EXPECT_EQ(message.penetration, 1e-3);
+  EXPECT_EQ(vector(message.sliding_velocity), contact.sliding_velocity);
+  EXPECT_EQ(message.fabric_position[1], 0.04);
+  EXPECT_EQ(message.fabric_velocity[0], 0.05);
+  EXPECT_EQ(message.contactor_forces[7], 0.25);
+}
+
+TEST(ContactMessages, NoContactWithoutAGain) {
+  std::array<double, contact::kContactors> contactors{};
+  contactors[7] = 0.5;
+  haptex::Contact message;
+  fillContact(someContact(), contactors, 0.5, kStamp, message);
+  fillContact(someContact(), contactors, 0.0, kStamp, message);
+  haptex::Contact none;
+  none.header = message.header;
+  EXPECT_TRUE(message.touching == none.touching && message.slipping == none.slipping);
+  EXPECT_EQ(vector(message.force).norm() + vector(message.centre).norm() +
+                vector(message.sliding_velocity).norm() + message.area + message.penetration +
+                message.normal_force,
+            0.0);
+  EXPECT_EQ(message.contactor_forces[7], 0.0);
+}
+
+TEST(ContactMessages, ForcesOnTheCloth) {
+  cloth::PointLoad load;
+  load.triangle = 5;
+  load.weights = {0.2, 0.3, 0.5};
+  load.position = {1.0, 2.0, 3.0};
+  load.force = {4.0, 5.0, 6.0};
+  load.stiffness = someContact().stiffness;
+  haptex::ContactForces message;
+  fillContactForces({load, load}, 0.5, kStamp, message);
+  EXPECT_EQ(message.header.frame_id, "world");
+  ASSERT_EQ(message.triangles.size(), 2u);
+  ASSERT_EQ(message.barycentric.size(), 6u);
+  ASSERT_EQ(message.stiffness.size(), 18u);
+  EXPECT_EQ(message.triangles[1], 5u);
+  EXPECT_EQ(message.barycentric[4], 0.3);
+  EXPECT_EQ(vector(message.positions[1]), load.position);
+  EXPECT_EQ(vector(message.forces[1]), 0.5 * load.force);
+  EXPECT_EQ(message.stiffness[9 + 1], 0.5 * 1.0);
+  EXPECT_EQ(message.stiffness[9 + 8], 0.5 * 6.0);
+  fillContactForces({load}, 0.0, kStamp, message);
+  EXPECT_TRUE(message.triangles.empty() && message.stiffness.empty());
+}
+
+TEST(ContactMessages, AsksForTheNearestInAVolume) {
+  contact::SearchVolume volume;
+  volume.begin = {0.1, 0.2, 0.3};
+  volume.end = {0.4, 0.5, 0.6};
+  volume.radius = 0.0075;
+  volume.distance = 0.012;
+  volume.count = 50;
+  const haptex::QueryProximity::Request request = volumeQuery(volume);
+  EXPECT_EQ(request.header.frame_id, "world");
+  EXPECT_EQ(request.shape, haptex::QueryProximity::Request::CAPSULE);
+  ASSERT_EQ(request.points.size(), 2u);
+  EXPECT_EQ(vector(request.points[1]), volume.end);
+  EXPECT_EQ(request.radii, (std::vector<double>{0.0075}));
+  EXPECT_EQ(request.distance, 0.012);
+  EXPECT_EQ(request.nearest, 50u);
+}
+
+TEST(ContactMessages, SelectsWhatAnAnswerFoundAndRefusesTrianglesThatDoNotExist) {
+  haptex::QueryProximity::Response response;
+  response.elements.resize(3);
+  response.elements[0].triangle = 5;
+  response.elements[1].triangle = 2;
+  response.elements[2].triangle = 7;
+  response.elements[2].distance = 1.0;
+  contact::HapticSettings settings;
+  contact::PatchSelection selection(8);
+  selection.begin();
+  addFound(response, 8, settings, selection);
+  EXPECT_TRUE(selection.finish());
+  EXPECT_EQ(selection.elements(), (std::vector<int>{2, 5}));
+
+  selection.begin();
+  EXPECT_THROW(addFound(response, 7, settings, selection), std::invalid_argument);
+  settings.most_elements = 1;
+  contact::PatchSelection nearest(8);
+  nearest.begin();
+  addFound(response, 8, settings, nearest);
+  EXPECT_TRUE(nearest.finish());
+  EXPECT_EQ(nearest.elements(), (std::vector<int>{5}));
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ class BlockCholesky {
  public:
   explicit BlockCholesky(const SymmetricBlockMatrix& pattern);
 
-  /// Factorises a matrix with the constructor's pattern.
+  /// Factorises a matrix with the constructor's pattern, or the leading part of a larger one that
+  /// has the constructor's pattern there.
   /// @returns false if the matrix is not positive definite to rounding or has a number that is not
   ///   finite; the factor is then unusable
   bool factorise(const SymmetricBlockMatrix& matrix);

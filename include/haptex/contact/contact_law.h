@@ -11,8 +11,9 @@ struct PulpSettings {
   /// Pa/m: pressure by depth of the pulp. The force on a fingertip of radius R at depth d in a flat
   /// fabric is pi R stiffness d^2.
   double stiffness = 1.3e7;
-  /// s: the pressure's viscous part is this times the stiffness times the speed of approach.
-  double damping_time = 2e-3;
+  /// s/m: the pressure of a fingertip that approaches with v is 1 + damping v times the elastic one
+  /// (Hunt and Crossley 1975).
+  double damping = 2.0;
 };
 
 /// Normal pressure against depth, and Coulomb friction.
@@ -32,7 +33,7 @@ class ContactLaw {
   material::CurveValue pressure(double depth) const;
   double halfThickness() const { return half_thickness_; }  ///< m, uncompressed
   double friction() const { return friction_; }             ///< coefficient, MIU
-  double dampingTime() const { return damping_time_; }      ///< s
+  double damping() const { return damping_; }               ///< s/m, of Hunt and Crossley
   /// Pa/m: shear traction by tangential displacement while the fabric sticks.
   double tangentialStiffness() const { return tangential_stiffness_; }
 
@@ -40,7 +41,7 @@ class ContactLaw {
   material::StrainStressCurve pressure_;
   double half_thickness_;
   double friction_;
-  double damping_time_;
+  double damping_;
   double tangential_stiffness_;
 };
 

@@ -7,10 +7,14 @@
 #include <vector>
 
 #include "haptex/cloth/cloth.h"
+#include "haptex/contact/condensed_stiffness.h"
 #include "haptex/contact/contact_law.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/haptic_settings.h"
+#include "haptex/contact/large_scale_motion.h"
 #include "haptex/contact/patch.h"
+#include "haptex/contact/patch_selection.h"
+#include "haptex/contact/whole_cloth_contact.h"
 
 namespace haptex::contact {
 
@@ -101,24 +105,28 @@ class HapticLayer {
   const std::vector<cloth::PointLoad>& loads() const { return loads_; }
 
  private:
+  void stepPatch();
+  void stepWholeCloth();
+  void startAgain();
+  void fillContact(int fingertip, const std::vector<TouchedParticle>& touched,
+                   const Particles& particles);
+  Eigen::Vector3d aheadOf(const FingertipContact& contact, const Eigen::Matrix3d& stiffness) const;
+
   HapticSettings settings_;
+  cloth::ClothMesh mesh_;
+  material::Fabric fabric_;
+  cloth::ModelledEffects effects_;
   ContactLaw law_;
+  MeshTopology topology_;
+  LargeScaleMotion motion_;
   std::unique_ptr<Patch> patch_;
+  CondensedStiffness stiffness_;
+  std::unique_ptr<WholeClothContact> whole_cloth_;  // null with patches
+  PerFingertip<std::optional<Fingertip>> fingertips_;
+  PerFingertip<const Fingertip*> present_{};  // into fingertips_
   PerFingertip<FingertipContact> contacts_;
   std::vector<cloth::PointLoad> loads_;
   bool last_step_accepted_ = true;
 };
-
-/// Where to look for the elements of a patch: everything within `distance` of the capsule from
-/// `begin` to `end` with `radius` (m, world frame).
-struct SearchVolume {
-  Eigen::Vector3d begin;
-  Eigen::Vector3d end;
-  double radius;
-  double distance;
-};
-/// Around the fingertip now and, if settings.predict, `seconds` later.
-SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
-                          const HapticSettings& settings);
 
 }  // namespace haptex::contact

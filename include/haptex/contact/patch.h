@@ -1,26 +1,98 @@
-// A piece of the large-scale mesh, refined: topology, matrices and state of the small-scale layer.
+// A piece of the large-scale cloth, refined and simulated at a high rate.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <vector>
 
-#include "haptex/cloth/mesh.h"
+#include "haptex/cloth/bending.h"
+#include "haptex/cloth/block_cholesky.h"
+#include "haptex/cloth/block_matrix.h"
+#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/membrane.h"
+#include "haptex/contact/fingertip.h"
+#include "haptex/contact/large_scale_motion.h"
+#include "haptex/contact/refined_cut.h"
+#include "haptex/contact/sphere_contact.h"
 
 namespace haptex::contact {
 
+/// Membrane with the fabric's curves, bending, gravity and contact on the triangles of a refined
+/// cut. The rim follows the large-scale cloth; the rest is stepped by linearised backward Euler,
+/// factorised anew in every step, because contacts come and go.
+///
+/// The constructor does all that needs memory; the other functions allocate nothing.
 class Patch {
  public:
-  std::size_t particleCount() const { return positions_.size(); }
-  const std::vector<Eigen::Vector3d>& positions() const { return positions_; }  ///< m, world frame
-  const std::vector<std::array<int, 3>>& triangles() const { return mesh_.triangles; }
+  /// @param coarse  the mesh that was cut
+  /// @param fabric  with bending
+  Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
+        const cloth::ModelledEffects& effects, const ContactLaw& law);
+
+  std::size_t particleCount() const { return state_.positions.size(); }
+  int freeCount() const { return cut_.free_count; }
+  const std::vector<Eigen::Vector3d>& positions() const { return state_.positions; }  ///< m, world
+  const std::vector<std::array<int, 3>>& triangles() const { return cut_.mesh.triangles; }
   /// Magnitude of the contact force on every particle (N).
   const std::vector<double>& contactForces() const { return contact_forces_; }
+  const RefinedCut& cut() const { return cut_; }
+
+  /// Puts every particle to its place on the large-scale cloth, at rest, without contact.
+  void start(const LargeScaleMotion& motion);
+  /// Starts, but goes on with the state of all particles that another patch has too. If that one
+  /// is in contact, what becomes free or rim lets go of where it was gradually, so that forces do
+  /// not jump.
+  void goOnFrom(const Patch& other, const LargeScaleMotion& motion);
+
+  /// One step.
+  /// @param motion     already at the end of the step
+  /// @param fingertips at the end of the step; null: absent
+  /// @param h          s
+  /// @returns false if the system could not be solved or the result is not finite; start() again
+  bool advance(const LargeScaleMotion& motion, const PerFingertip<const Fingertip*>& fingertips,
+               double h);
+
+  /// Forces and anchors at the end of the last step.
+  const SphereContact& contact(int fingertip) const { return contacts_[fingertip]; }
+  /// What the last step was linearised with.
+  const std::vector<TouchedParticle>& linearised(int fingertip) const {
+    return linearised_[fingertip];
+  }
+  /// The place of a particle on the large-scale cloth (m).
+  Eigen::Vector3d placeOnCloth(int particle, const LargeScaleMotion& motion) const;
+  const Eigen::Vector2d& restCoordinates(int particle) const {
+    return cut_.mesh.rest_coordinates[particle];
+  }
+  const std::vector<Eigen::Vector3d>& velocities() const { return state_.velocities; }
+  const std::vector<double>& areas() const { return areas_; }
+
+  /// Solves A x = b with the matrix of the last step, A = M - h D - h^2 K of the free particles.
+  /// @param x 3 x freeCount(), b on entry
+  void solve(cloth::BlockVector& x) { cholesky_.solve(x); }
 
  private:
-  cloth::ClothMesh mesh_;
-  std::vector<Eigen::Vector3d> positions_;
+  void assemble(const LargeScaleMotion& motion, double h);
+  void addContact(const PerFingertip<const Fingertip*>& fingertips, double h);
+
+  RefinedCut cut_;
+  std::vector<std::array<int, 3>> corners_;  // per particle: those of its owner
+  cloth::ModelledEffects effects_;
+  cloth::Membrane membrane_;
+  cloth::Bending bending_;
+  cloth::SymmetricBlockMatrix matrix_;
+  cloth::BlockCholesky cholesky_;
+  std::vector<double> areas_;   // m^2, per particle
+  std::vector<double> masses_;  // kg
+
+  cloth::ClothState state_;
+  std::vector<Eigen::Vector3d> predicted_;  // m
+  std::vector<Eigen::Vector3d> detours_;    // m, from the place on the cloth; fade
+  std::vector<double> tethers_;             // N/m, to that place; fade
+  PerFingertip<SphereContact> contacts_;
+  PerFingertip<std::vector<TouchedParticle>> linearised_;
   std::vector<double> contact_forces_;
+  cloth::BlockVector rhs_;
+  cloth::BlockVector solution_;
 };
 
 }  // namespace haptex::contact

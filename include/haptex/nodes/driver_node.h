@@ -8,7 +8,6 @@
 #include <std_srvs/Trigger.h>
 
 #include <atomic>
-#include <cstdint>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -16,6 +15,7 @@
 
 #include "haptex/exoskeleton/finger_kinematics.h"
 #include "haptex/nodes/driver_loop.h"
+#include "haptex/nodes/loop_diagnostics.h"
 #include "haptex/nodes/periodic_thread.h"
 #include "haptex/nodes/servo_force_filter.h"
 
@@ -116,8 +116,7 @@ class DriverNode {
   diagnostic_updater::Updater diagnostics_;  // used by its timer only, and so are the next
   DriverSnapshot diagnosed_;
   Time diagnosed_time_{0};
-  DurationHistogram::Counts diagnosed_lateness_;
-  std::uint64_t diagnosed_missed_ = 0;
+  LoopDiagnostics loop_diagnostics_;
   ros::SteadyTimer diagnostics_timer_;
 
   std::atomic<bool> stopping_{false};

@@ -1,0 +1,54 @@
+// Which elements of the large-scale mesh make up the patch.
+#pragma once
+
+#include <vector>
+
+#include "haptex/contact/fingertip.h"
+#include "haptex/contact/haptic_settings.h"
+
+namespace haptex::contact {
+
+/// Where to look for the elements of a patch: the nearest `count` within `distance` of the capsule
+/// from `begin` to `end` with `radius` (m, world frame).
+struct SearchVolume {
+  Eigen::Vector3d begin;
+  Eigen::Vector3d end;
+  double radius;
+  double distance;
+  std::size_t count;
+};
+
+/// Around the fingertip now and, if settings.predict, `seconds` later.
+SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
+                          const HapticSettings& settings);
+
+/// An element comes in when it is within the margin of a fingertip and one of the most_elements
+/// nearest. It goes out when it is farther from both fingertips than the margin and kHysteresis, or
+/// there are a quarter more elements that are nearer: a fingertip at rest does not make the patch
+/// change to and fro.
+class PatchSelection {
+ public:
+  static constexpr double kHysteresis = 4e-3;  ///< m
+
+  /// @param elements of the large-scale mesh
+  explicit PatchSelection(std::size_t elements) : chosen_(elements, 0), wanted_(elements, 0) {}
+
+  // One round: begin(), add() for everything that a query of searchVolume() found, finish().
+  void begin();
+  /// @param element  in [0, elements)
+  /// @param distance m, from the search volume
+  /// @param rank     how many are nearer to this fingertip
+  void add(int element, double distance, int rank, const HapticSettings& settings);
+  /// @returns whether the selection has changed since the last round
+  bool finish();
+
+  /// Ascending.
+  const std::vector<int>& elements() const { return elements_; }
+
+ private:
+  std::vector<char> chosen_;
+  std::vector<char> wanted_;
+  std::vector<int> elements_;
+};
+
+}  // namespace haptex::contact

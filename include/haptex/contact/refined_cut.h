@@ -1,0 +1,62 @@
+// Cutting elements out of a mesh and refining them.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "haptex/cloth/mesh.h"
+
+namespace haptex::contact {
+
+/// Which triangles of a mesh share its edges and particles.
+class MeshTopology {
+ public:
+  explicit MeshTopology(const cloth::ClothMesh& mesh);
+
+  /// The triangle beyond the edge opposite to a corner (0 to 2), -1 on the border of the mesh.
+  int neighbour(int triangle, int corner) const { return neighbours_[triangle][corner]; }
+  const std::vector<int>& trianglesOf(int particle) const { return triangles_of_[particle]; }
+
+ private:
+  std::vector<std::array<int, 3>> neighbours_;
+  std::vector<std::vector<int>> triangles_of_;
+};
+
+/// Where a particle of a refined mesh lies on the mesh that it was cut from: on one of its
+/// triangles, with weights that are whole multiples of 1 / 2^refinement. Two cuts with the same
+/// refinement have the same support for the same place of the fabric.
+struct Support {
+  std::array<int, 3> particles;        ///< ascending; those with zero weight are -1 and first
+  std::array<std::int32_t, 3> shares;  ///< of each, their sum is 2^refinement
+
+  bool operator<(const Support& other) const {
+    return particles != other.particles ? particles < other.particles : shares < other.shares;
+  }
+  bool operator==(const Support& other) const {
+    return particles == other.particles && shares == other.shares;
+  }
+};
+
+/// Some triangles of a mesh, each split into 4^refinement. The particles that are free to move come
+/// first, then those of the rim, which follow the mesh: they lie on an edge or corner that the cut
+/// shares with triangles outside of it, or are attached.
+struct RefinedCut {
+  cloth::ClothMesh mesh;  ///< initial positions are zero
+  int free_count = 0;     ///< particles before the rim
+  int refinement = 0;
+  std::vector<Support> supports;         ///< per particle
+  std::vector<int> owners;               ///< per particle, a triangle of the original mesh
+  std::vector<Eigen::Vector3d> weights;  ///< per particle, of its owner's corners, sum 1
+  std::vector<int> order;                ///< particles sorted by support
+};
+
+/// @param triangles of the mesh, at least one, each once
+/// @param attached  per particle of the mesh, nonzero where it is held
+/// @param refinement 0 to 4
+RefinedCut cutAndRefine(const cloth::ClothMesh& mesh, const MeshTopology& topology,
+                        const std::vector<int>& triangles, const std::vector<char>& attached,
+                        int refinement);
+
+}  // namespace haptex::contact

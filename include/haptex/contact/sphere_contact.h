@@ -1,0 +1,77 @@
+// Contact of one fingertip with the particles of a cloth.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "haptex/contact/contact_law.h"
+#include "haptex/contact/fingertip.h"
+
+namespace haptex::contact {
+
+/// The particles that may be touched. World frame; `areas` at rest (m^2), a third of every adjacent
+/// triangle.
+struct Particles {
+  const std::vector<Eigen::Vector3d>& positions;   ///< m
+  const std::vector<Eigen::Vector3d>& velocities;  ///< m/s
+  const std::vector<double>& areas;                ///< m^2
+  int count;                                       ///< only the first so many
+};
+
+/// A particle in contact.
+struct TouchedParticle {
+  int particle;
+  Eigen::Vector3d normal;    ///< unit, from the fingertip's centre
+  double depth;              ///< m, > 0
+  double normal_force;       ///< N, >= 0
+  Eigen::Vector3d friction;  ///< N, on the particle
+  bool slips;
+  /// -d force / d position (N/m) and -d force / d velocity (N.s/m), symmetric, positive
+  /// semidefinite. `stiffness` is that of a step, in which a particle that slips is held by the
+  /// secant of its friction; in `tangent` its friction is constant along the slip.
+  Eigen::Matrix3d stiffness;
+  Eigen::Matrix3d tangent;
+  Eigen::Matrix3d damping;
+
+  Eigen::Vector3d force() const { return normal_force * normal + friction; }  ///< N
+};
+
+/// Every particle deeper than zero is pushed out along the line from the fingertip's centre with
+/// the pressure of the contact law times its area, and held by friction: a spring to an anchor on
+/// the turning fingertip, that is dragged along when it pulls with more than the coefficient of
+/// friction times the normal force (Coulomb friction by return mapping: Simo and Hughes 1998,
+/// chapter 1). Nothing allocates after the constructor.
+class SphereContact {
+ public:
+  /// @param most_particles that will ever be asked about
+  SphereContact(const ContactLaw& law, std::size_t most_particles);
+
+  /// Touched particles and their forces, with the anchors as they are.
+  const std::vector<TouchedParticle>& evaluate(const Particles& particles,
+                                               const Fingertip& fingertip);
+  /// The same, then moves the anchors: of new contacts here, of those that slip along, of those
+  /// that have ended away.
+  const std::vector<TouchedParticle>& commit(const Particles& particles,
+                                             const Fingertip& fingertip);
+  /// Forgets all contacts.
+  void clear();
+  /// Of the last evaluate(), commit() or clear().
+  const std::vector<TouchedParticle>& touched() const { return touched_; }
+
+  /// Takes over the anchor of a particle of another contact.
+  void adoptAnchor(int particle, const SphereContact& other, int other_particle);
+
+ private:
+  struct Anchor {
+    Eigen::Vector3d place;  // m, in the fingertip's frame
+    bool holds = false;
+  };
+  bool touch(int particle, const Particles& particles, const Fingertip& fingertip,
+             TouchedParticle& result) const;
+
+  const ContactLaw& law_;
+  std::vector<Anchor> anchors_;
+  std::vector<TouchedParticle> touched_;
+};
+
+}  // namespace haptex::contact

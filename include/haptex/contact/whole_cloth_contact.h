@@ -1,0 +1,46 @@
+// Contact with the particles of the large-scale cloth itself, where that is stepped at a high rate.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "haptex/cloth/cloth.h"
+#include "haptex/contact/fingertip.h"
+#include "haptex/contact/sphere_contact.h"
+
+namespace haptex::contact {
+
+/// The particles of a large-scale state, moved on by their velocities until now.
+class WholeClothContact {
+ public:
+  WholeClothContact(const cloth::ClothMesh& mesh, const material::Fabric& fabric,
+                    const ContactLaw& law);
+
+  /// Sizes are those of the mesh.
+  /// @param period s, from the state's time to that of the step that it is used in
+  void receive(const std::vector<Eigen::Vector3d>& positions,
+               const std::vector<Eigen::Vector3d>& velocities, double period);
+  void step(const PerFingertip<const Fingertip*>& fingertips);
+
+  const SphereContact& contact(int fingertip) const { return contacts_[fingertip]; }
+  Particles particles() const;
+  /// -d force / d position of the fingertip within a step of h (N/m): contact springs in series
+  /// with the inertia of their particles.
+  Eigen::Matrix3d stiffness(int fingertip, double h) const;
+  const Eigen::Vector2d& restCoordinates(int particle) const { return rest_coordinates_[particle]; }
+  /// A triangle with the particle as its corner.
+  int triangleOf(int particle) const { return triangle_of_[particle]; }
+  int cornerOf(int particle) const { return corner_of_[particle]; }
+
+ private:
+  std::vector<Eigen::Vector2d> rest_coordinates_;
+  std::vector<double> areas_;  // m^2
+  double areal_density_;       // kg/m^2
+  std::vector<int> triangle_of_;
+  std::vector<int> corner_of_;
+  std::vector<Eigen::Vector3d> positions_;
+  std::vector<Eigen::Vector3d> velocities_;
+  PerFingertip<SphereContact> contacts_;
+};
+
+}  // namespace haptex::contact

@@ -1,0 +1,70 @@
+// Contacts, the local patch and the rates of the loops as rviz markers.
+#pragma once
+
+#include <ros/time.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "haptex/exoskeleton/clock.h"
+#include "haptex/nodes/force_loop.h"
+
+namespace haptex::nodes {
+
+/// Events per second of a count, over the last second or so.
+class RateMeter {
+ public:
+  /// @returns Hz; NaN within the first second
+  double update(std::uint64_t count, exoskeleton::Time now);
+
+ private:
+  std::optional<exoskeleton::Time> begin_;
+  std::uint64_t count_ = 0;
+  double rate_ = 0.0;
+  bool known_ = false;
+};
+
+/// Hz, NaN where it is not known yet.
+struct LoopRates {
+  double force = 0.0;
+  double cloth = 0.0;
+  double proximity = 0.0;
+  double exoskeleton = 0.0;
+};
+
+/// Length (m) of the arrow of a force (N): logarithmic, so that 0.01 N (9 mm) and 5 N (81 mm) are
+/// seen on the same picture. Below kLeastShownForce there is none.
+double arrowLength(double force);
+constexpr double kLeastShownForce = 0.001;  // N
+
+/// Where on the colour map the contact force on a particle lies: logarithmic over three decades up
+/// to 0.1 N.
+double contactForceFraction(double force);
+
+/// One line per loop, and per finger the force that is rendered.
+std::string rateText(const LoopRates& rates, const exoskeleton::PerFinger<double>& forces);
+
+/// Markers in the frame kFixedFrame, in namespaces that rviz can switch off singly:
+/// "contact_points": where the fingertips touch, coloured by contact force.
+/// "contact_force": per finger an arrow of the rendered force, from the skin of the fingertip.
+/// "patch": the small-scale cloth, coloured by contact force, a little off the cloth on both sides.
+/// "rates": text above the origin, where samples hang.
+class ContactMarkers {
+ public:
+  ContactMarkers();
+
+  /// What there is nothing of is deleted. Valid until the next call.
+  const visualization_msgs::MarkerArray& update(const ContactPicture& picture,
+                                                const LoopRates& rates, const ros::Time& stamp);
+
+ private:
+  void updatePoints(const ContactPicture& picture);
+  void updateForce(exoskeleton::Finger finger, const ContactPicture& picture);
+  void updatePatch(const ContactPicture& picture);
+
+  visualization_msgs::MarkerArray markers_;
+};
+
+}  // namespace haptex::nodes

@@ -1,0 +1,88 @@
+#include "haptex/contact/condensed_stiffness.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace haptex::contact {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// The nearest symmetric positive semidefinite matrix (Frobenius norm).
+Matrix3d positivePart(const Matrix3d& matrix) {
+  Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
+  solver.computeDirect(0.5 * (matrix + matrix.transpose()));
+  const Vector3d values = solver.eigenvalues().cwiseMax(0.0);
+  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+CondensedStiffness::CondensedStiffness(std::size_t most_particles) : column_(3, most_particles) {
+  clear();
+}
+
+void CondensedStiffness::clear() {
+  for (int f = 0; f < kFingertips; ++f) {
+    for (Matrix3d& block : blocks_[f]) block.setZero();
+    known_direct_[f].setZero();
+    direct_[f].setZero();
+  }
+}
+
+void CondensedStiffness::update(Patch& patch, double h) {
+  for (int f = 0; f < kFingertips; ++f) {
+    direct_[f].setZero();
+    for (const TouchedParticle& touched : patch.linearised(f)) direct_[f] += touched.tangent;
+    if (!patch.linearised(f).empty()) continue;
+    for (int g = 0; g < kFingertips; ++g) {
+      blocks_[f][g].setZero();
+      blocks_[g][f].setZero();
+    }
+    known_direct_[f].setZero();
+  }
+  // The next direction of a fingertip that touches.
+  for (int tried = 0; tried < 3 * kFingertips; ++tried) {
+    next_ = (next_ + 1) % (3 * kFingertips);
+    if (!patch.linearised(next_ / 3).empty()) {
+      computeColumn(patch, h);
+      return;
+    }
+  }
+}
+
+void CondensedStiffness::computeColumn(Patch& patch, double h) {
+  const int g = next_ / 3;
+  const int direction = next_ % 3;
+  column_.leftCols(patch.freeCount()).setZero();
+  for (const TouchedParticle& touched : patch.linearised(g)) {
+    column_.col(touched.particle) += touched.tangent.col(direction);
+  }
+  patch.solve(column_);
+  for (int f = 0; f < kFingertips; ++f) {
+    Vector3d change = f == g ? Vector3d(direct_[f].col(direction)) : Vector3d(Vector3d::Zero());
+    for (const TouchedParticle& touched : patch.linearised(f)) {
+      change -= h * h * touched.tangent * column_.col(touched.particle);
+    }
+    blocks_[f][g].col(direction) = change;
+  }
+  known_direct_[g][direction] = direct_[g].col(direction).norm();
+}
+
+Matrix3d CondensedStiffness::own(int f) const {
+  double scale = 1.0;
+  for (int direction = 0; direction < 3; ++direction) {
+    const double now = direct_[f].col(direction).norm();
+    if (now < known_direct_[f][direction]) {
+      scale = std::min(scale, now / known_direct_[f][direction]);
+    }
+  }
+  return scale * positivePart(blocks_[f][f]);
+}
+
+Matrix3d CondensedStiffness::common(int f) const {
+  return positivePart(blocks_[f][0] + blocks_[f][1]);
+}
+
+}  // namespace haptex::contact

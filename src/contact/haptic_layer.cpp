@@ -1,0 +1,271 @@
+#include "haptex/contact/haptic_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace haptex::contact {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+const material::Fabric& requireBending(const material::Fabric& fabric,
+                                       const HapticSettings& settings) {
+  if (settings.layer == HapticSettings::Layer::kPatch && !fabric.bending) {
+    throw std::invalid_argument("fabric '" + fabric.name +
+                                "' has no bending; a patch needs it: add the key bending");
+  }
+  return fabric;
+}
+
+bool allFinite(const std::vector<Vector3d>& vectors) {
+  return std::all_of(vectors.begin(), vectors.end(),
+                     [](const Vector3d& vector) { return vector.allFinite(); });
+}
+
+/// Sliding velocity in the fabric's own directions: dx = U du + V dv has the least-squares solution
+/// (du, dv) for the deformed directions U, V of the element.
+Eigen::Vector2d inFabric(const Vector3d& velocity, const Vector3d& weft, const Vector3d& warp) {
+  Eigen::Matrix2d metric;
+  metric << weft.dot(weft), weft.dot(warp), weft.dot(warp), warp.dot(warp);
+  const double determinant = metric.determinant();
+  if (!(std::abs(determinant) > 1e-12)) return Eigen::Vector2d::Zero();
+  return metric.inverse() * Eigen::Vector2d(weft.dot(velocity), warp.dot(velocity));
+}
+
+/// Images of the unit vectors along weft and warp of a triangle.
+std::pair<Vector3d, Vector3d> fabricDirections(const cloth::ClothMesh& mesh, int triangle,
+                                               const LargeScaleMotion& motion) {
+  const std::array<int, 3>& corners = mesh.triangles[triangle];
+  Eigen::Matrix2d rest;
+  rest << mesh.rest_coordinates[corners[1]] - mesh.rest_coordinates[corners[0]],
+      mesh.rest_coordinates[corners[2]] - mesh.rest_coordinates[corners[0]];
+  Eigen::Matrix<double, 3, 2> deformed;
+  deformed << motion.position(corners[1]) - motion.position(corners[0]),
+      motion.position(corners[2]) - motion.position(corners[0]);
+  const Eigen::Matrix<double, 3, 2> directions = deformed * rest.inverse();
+  return {directions.col(0), directions.col(1)};
+}
+
+}  // namespace
+
+HapticLayer::HapticLayer(cloth::ClothMesh mesh, material::Fabric fabric,
+                         const cloth::ModelledEffects& effects, const HapticSettings& settings)
+    : settings_(settings),
+      mesh_(std::move(mesh)),
+      fabric_(std::move(fabric)),
+      effects_(effects),
+      law_(requireBending(fabric_, settings)),
+      topology_(mesh_),
+      motion_(mesh_.rest_coordinates.size()),
+      stiffness_(mesh_.triangles.size() << (2 * settings.refinement)) {
+  cloth::requireSound(mesh_);
+  if (settings.layer == HapticSettings::Layer::kWholeCloth) {
+    whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabric_, law_);
+  }
+  loads_.reserve(cloth::Cloth::kMostPointLoads);
+  for (FingertipContact& contact : contacts_) contact.points.reserve(kMostContactPoints);
+}
+
+std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangles,
+                                                 const std::vector<char>& attached) const {
+  if (attached.size() != mesh_.rest_coordinates.size()) {
+    std::ostringstream message;
+    message << "attached has " << attached.size() << " entries; the cloth has "
+            << mesh_.rest_coordinates.size() << " particles";
+    throw std::invalid_argument(message.str());
+  }
+  std::vector<int> cut = triangles;
+  std::sort(cut.begin(), cut.end());
+  cut.erase(std::unique(cut.begin(), cut.end()), cut.end());
+  if (cut.empty()) return nullptr;
+  const int count = static_cast<int>(mesh_.triangles.size());
+  if (cut.front() < 0 || cut.back() >= count) {
+    std::ostringstream message;
+    message << "triangle " << (cut.front() < 0 ? cut.front() : cut.back())
+            << " does not exist; the cloth has triangles 0 to " << count - 1;
+    throw std::invalid_argument(message.str());
+  }
+  RefinedCut refined = cutAndRefine(mesh_, topology_, cut, attached, settings_.refinement);
+  if (refined.free_count == 0) return nullptr;
+  return std::make_unique<Patch>(mesh_, std::move(refined), fabric_, effects_, law_);
+}
+
+void HapticLayer::receive(const std::vector<Vector3d>& positions,
+                          const std::vector<Vector3d>& velocities, double period) {
+  if (positions.size() != motion_.particleCount() || velocities.size() != positions.size()) {
+    std::ostringstream message;
+    message << "the state has " << positions.size() << " positions and " << velocities.size()
+            << " velocities; the cloth has " << motion_.particleCount() << " particles";
+    throw std::invalid_argument(message.str());
+  }
+  if (!std::isfinite(period) || period <= 0.0) {
+    std::ostringstream message;
+    message << "the period of the state is " << period << " s; it must be finite and > 0";
+    throw std::invalid_argument(message.str());
+  }
+  if (!allFinite(positions) || !allFinite(velocities)) {
+    throw std::invalid_argument("the state has a number that is not finite");
+  }
+  const bool first = !motion_.hasState();
+  motion_.receive(positions, period);
+  if (whole_cloth_) whole_cloth_->receive(positions, velocities, period);
+  if (first && patch_) patch_->start(motion_);
+}
+
+std::unique_ptr<Patch> HapticLayer::exchange(std::unique_ptr<Patch> next) {
+  if (next && patch_) {
+    next->goOnFrom(*patch_, motion_);
+  } else if (next) {
+    next->start(motion_);
+  }
+  std::swap(patch_, next);
+  if (!patch_) startAgain();
+  return next;
+}
+
+void HapticLayer::startAgain() {
+  if (patch_) patch_->start(motion_);
+  stiffness_.clear();
+  loads_.clear();
+  for (FingertipContact& contact : contacts_) {
+    std::vector<ContactPoint> points = std::move(contact.points);
+    points.clear();
+    contact = FingertipContact();
+    contact.points = std::move(points);
+  }
+}
+
+void HapticLayer::step(const PerFingertip<std::optional<Fingertip>>& fingertips) {
+  fingertips_ = fingertips;
+  for (int f = 0; f < kFingertips; ++f) {
+    present_[f] = fingertips_[f] ? &*fingertips_[f] : nullptr;
+  }
+  loads_.clear();
+  last_step_accepted_ = true;
+  if (!motion_.hasState()) return;
+  motion_.advance(settings_.time_step);
+  if (whole_cloth_) {
+    stepWholeCloth();
+  } else if (patch_) {
+    stepPatch();
+  }
+}
+
+void HapticLayer::stepPatch() {
+  if (!patch_->advance(motion_, present_, settings_.time_step)) {
+    startAgain();
+    last_step_accepted_ = false;
+    return;
+  }
+  stiffness_.update(*patch_, settings_.time_step);
+  const Particles particles{patch_->positions(), patch_->velocities(), patch_->areas(),
+                            patch_->freeCount()};
+  for (int f = 0; f < kFingertips; ++f) {
+    const std::vector<TouchedParticle>& touched = patch_->contact(f).touched();
+    fillContact(f, touched, particles);
+    FingertipContact& contact = contacts_[f];
+    if (!contact.touching) continue;
+    contact.stiffness = stiffness_.own(f);
+    const Matrix3d stiffness = stiffness_.common(f);
+    const Vector3d ahead = aheadOf(contact, stiffness);
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();
+    Vector3d weft = Vector3d::Zero();
+    Vector3d warp = Vector3d::Zero();
+    for (const TouchedParticle& point : touched) {
+      const double share = contact.normal_force > 0.0 ? point.normal_force / contact.normal_force
+                                                      : 1.0 / touched.size();
+      place += share * patch_->restCoordinates(point.particle);
+      const auto directions =
+          fabricDirections(mesh_, patch_->cut().owners[point.particle], motion_);
+      weft += share * directions.first;
+      warp += share * directions.second;
+      if (loads_.size() == loads_.capacity()) continue;
+      loads_.push_back({patch_->cut().owners[point.particle], patch_->cut().weights[point.particle],
+                        patch_->placeOnCloth(point.particle, motion_) + ahead, point.force(),
+                        share * stiffness});
+    }
+    contact.fabric_position = place;
+    contact.fabric_velocity = inFabric(contact.sliding_velocity, weft, warp);
+  }
+}
+
+/// How far the fingertip will have taken its contact along when the large-scale layer has made its
+/// next step. A fingertip that withdraws takes no more than its force away.
+Vector3d HapticLayer::aheadOf(const FingertipContact& contact, const Matrix3d& stiffness) const {
+  if (!settings_.predict) return Vector3d::Zero();
+  const Vector3d ahead = motion_.period() * contact.velocity;
+  const double now = -contact.normal.dot(contact.force);
+  const double change = contact.normal.dot(stiffness * ahead);
+  return change < -now ? Vector3d(now / -change * ahead) : ahead;
+}
+
+void HapticLayer::stepWholeCloth() {
+  whole_cloth_->step(present_);
+  for (int f = 0; f < kFingertips; ++f) {
+    const std::vector<TouchedParticle>& touched = whole_cloth_->contact(f).touched();
+    fillContact(f, touched, whole_cloth_->particles());
+    FingertipContact& contact = contacts_[f];
+    if (!contact.touching) continue;
+    contact.stiffness = whole_cloth_->stiffness(f, settings_.time_step);
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();
+    Vector3d weft = Vector3d::Zero();
+    Vector3d warp = Vector3d::Zero();
+    for (const TouchedParticle& point : touched) {
+      const double share = contact.normal_force > 0.0 ? point.normal_force / contact.normal_force
+                                                      : 1.0 / touched.size();
+      const int triangle = whole_cloth_->triangleOf(point.particle);
+      place += share * whole_cloth_->restCoordinates(point.particle);
+      const auto directions = fabricDirections(mesh_, triangle, motion_);
+      weft += share * directions.first;
+      warp += share * directions.second;
+      if (loads_.size() == loads_.capacity()) continue;
+      loads_.push_back({triangle, Vector3d::Unit(whole_cloth_->cornerOf(point.particle)),
+                        whole_cloth_->particles().positions[point.particle], point.force(),
+                        point.stiffness});
+    }
+    contact.fabric_position = place;
+    contact.fabric_velocity = inFabric(contact.sliding_velocity, weft, warp);
+  }
+}
+
+void HapticLayer::fillContact(int f, const std::vector<TouchedParticle>& touched,
+                              const Particles& particles) {
+  FingertipContact& contact = contacts_[f];
+  std::vector<ContactPoint> points = std::move(contact.points);
+  points.clear();
+  contact = FingertipContact();
+  contact.points = std::move(points);
+  contact.touching = !touched.empty();
+  if (!contact.touching) return;
+  const Fingertip& fingertip = *present_[f];
+  contact.position = fingertip.position;
+  contact.velocity = fingertip.velocity;
+  double slipping = 0.0;
+  for (const TouchedParticle& point : touched) contact.normal_force += point.normal_force;
+  for (const TouchedParticle& point : touched) {
+    const double share = contact.normal_force > 0.0 ? point.normal_force / contact.normal_force
+                                                    : 1.0 / touched.size();
+    const Vector3d& place = particles.positions[point.particle];
+    contact.force -= point.force();
+    contact.damping += point.damping;
+    contact.area += particles.areas[point.particle];
+    contact.penetration = std::max(contact.penetration, point.depth);
+    contact.centre += share * place;
+    contact.normal += share * point.normal;
+    contact.sliding_velocity +=
+        share * (fingertip.velocity + fingertip.angular_velocity.cross(place - fingertip.position) -
+                 particles.velocities[point.particle]);
+    if (point.slips) slipping += share;
+    if (contact.points.size() < kMostContactPoints) {
+      contact.points.push_back({place, point.normal, point.normal_force, point.friction});
+    }
+  }
+  contact.slipping = slipping >= 0.5;
+  contact.normal.normalize();
+  contact.sliding_velocity -= contact.normal * contact.normal.dot(contact.sliding_velocity);
+}
+
+}  // namespace haptex::contact

@@ -1,0 +1,46 @@
+#include "haptex/contact/haptic_settings.h"
+
+#include "haptex/material/yaml_reader.h"
+
+namespace haptex::contact {
+namespace {
+
+using material::YamlValue;
+
+constexpr int kMostRefinement = 4;
+constexpr double kLargestMargin = 0.1;  // m
+
+HapticSettings readSettings(const YamlValue& value) {
+  value.requireKeys({}, {"layer", "refinement", "margin", "predict"});
+  HapticSettings settings;
+  if (value.has("layer")) {
+    const bool patch = value.at("layer").oneOf({"patch", "whole_cloth"}) == "patch";
+    settings.layer = patch ? HapticSettings::Layer::kPatch : HapticSettings::Layer::kWholeCloth;
+  }
+  if (value.has("refinement")) {
+    settings.refinement = value.at("refinement").integer();
+    if (settings.refinement < 0 || settings.refinement > kMostRefinement) {
+      value.at("refinement").refuse("must be an integer from 0 to 4");
+    }
+  }
+  if (value.has("margin")) {
+    settings.margin = value.at("margin").number();
+    if (settings.margin <= 0.0 || settings.margin > kLargestMargin) {
+      value.at("margin").refuse("must be > 0 and <= 0.1 m");
+    }
+  }
+  if (value.has("predict")) {
+    settings.predict = value.at("predict").oneOf({"true", "false"}) == "true";
+  }
+  return settings;
+}
+
+}  // namespace
+
+HapticSettings loadHapticSettings(const std::string& scene_path) {
+  const YamlValue scene = YamlValue::load(scene_path);
+  if (!scene.isMap()) scene.refuse("must be a map");
+  return scene.has("haptics") ? readSettings(scene.at("haptics")) : HapticSettings();
+}
+
+}  // namespace haptex::contact

@@ -1,0 +1,184 @@
+#include "haptex/contact/patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptex::contact {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// How the difference between two patches fades. What becomes rim had a place of its own, off the
+// large-scale cloth; what becomes free had been held by it. A hold that weakens by a constant
+// factor per step lets go at an even pace whatever the fabric's stiffness is.
+constexpr double kDetourTime = 0.05;   // s, to 1/e
+constexpr double kTetherTime = 0.005;  // s, to 1/e
+constexpr double kFirstTether = 1e4;   // N/m
+constexpr double kLastTether = 1e-3;   // N/m, then none
+
+std::vector<double> tributaryAreas(const cloth::Membrane& membrane, std::size_t particles) {
+  std::vector<double> areas(particles, 0.0);
+  for (const cloth::MembraneElement& element : membrane.elements()) {
+    for (int particle : element.particles) areas[particle] += element.area / 3.0;
+  }
+  return areas;
+}
+
+cloth::SymmetricBlockMatrix leadingPattern(const cloth::SymmetricBlockMatrix& matrix, int size) {
+  std::vector<std::array<int, 2>> pairs;
+  for (int i = 0; i < size; ++i) {
+    for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) {
+      pairs.push_back({matrix.column(s), i});
+    }
+  }
+  return {size, {}, pairs};
+}
+
+}  // namespace
+
+Patch::Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
+             const cloth::ModelledEffects& effects, const ContactLaw& law)
+    : cut_(std::move(cut)),
+      effects_(effects),
+      membrane_(cut_.mesh, fabric, effects.viscosity),
+      bending_(cut_.mesh, *fabric.bending),
+      matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, bending_.pairs()),
+      cholesky_(leadingPattern(matrix_, cut_.free_count)),
+      areas_(tributaryAreas(membrane_, cut_.supports.size())),
+      contacts_{SphereContact(law, cut_.free_count), SphereContact(law, cut_.free_count)},
+      rhs_(3, cut_.supports.size()),
+      solution_(3, cut_.free_count) {
+  membrane_.bind(matrix_);
+  bending_.bind(matrix_);
+  const std::size_t count = cut_.supports.size();
+  for (int owner : cut_.owners) corners_.push_back(coarse.triangles[owner]);
+  for (double area : areas_) masses_.push_back(fabric.areal_density * area);
+  state_.positions.assign(count, Vector3d::Zero());
+  state_.velocities.assign(count, Vector3d::Zero());
+  predicted_ = state_.positions;
+  detours_ = state_.positions;
+  tethers_.assign(count, 0.0);
+  contact_forces_.assign(count, 0.0);
+  for (auto& touched : linearised_) touched.reserve(cut_.free_count);
+}
+
+Vector3d Patch::placeOnCloth(int particle, const LargeScaleMotion& motion) const {
+  const std::array<int, 3>& corners = corners_[particle];
+  const Vector3d& weights = cut_.weights[particle];
+  return weights[0] * motion.position(corners[0]) + weights[1] * motion.position(corners[1]) +
+         weights[2] * motion.position(corners[2]);
+}
+
+void Patch::start(const LargeScaleMotion& motion) {
+  for (std::size_t i = 0; i < particleCount(); ++i) {
+    state_.positions[i] = placeOnCloth(static_cast<int>(i), motion);
+    state_.velocities[i].setZero();
+    detours_[i].setZero();
+    tethers_[i] = 0.0;
+    contact_forces_[i] = 0.0;
+  }
+  for (int f = 0; f < kFingertips; ++f) {
+    contacts_[f].clear();
+    linearised_[f].clear();
+  }
+}
+
+void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
+  start(motion);
+  const bool touches =
+      !other.contacts_[0].touched().empty() || !other.contacts_[1].touched().empty();
+  auto theirs = other.cut_.order.begin();
+  for (int i : cut_.order) {
+    const Support& support = cut_.supports[i];
+    while (theirs != other.cut_.order.end() && other.cut_.supports[*theirs] < support) ++theirs;
+    const bool shared = theirs != other.cut_.order.end() && other.cut_.supports[*theirs] == support;
+    const bool is_free = i < cut_.free_count;
+    if (!shared) {
+      if (touches && is_free) tethers_[i] = kFirstTether;
+      continue;
+    }
+    const int k = *theirs;
+    const bool was_free = k < other.cut_.free_count;
+    state_.positions[i] = other.state_.positions[k];
+    state_.velocities[i] = other.state_.velocities[k];
+    detours_[i] = other.detours_[k];
+    if (!is_free) {
+      detours_[i] = state_.positions[i] - placeOnCloth(i, motion);
+    } else if (was_free) {
+      tethers_[i] = other.tethers_[k];
+      for (int f = 0; f < kFingertips; ++f) contacts_[f].adoptAnchor(i, other.contacts_[f], k);
+    } else if (touches) {
+      tethers_[i] = kFirstTether;
+    }
+  }
+}
+
+void Patch::assemble(const LargeScaleMotion& motion, double h) {
+  const int count = static_cast<int>(particleCount());
+  const double detour_left = std::exp(-h / kDetourTime);
+  const double tether_left = std::exp(-h / kTetherTime);
+  matrix_.setZero();
+  for (int i = 0; i < cut_.free_count; ++i) {
+    matrix_.diagonal(i).diagonal().setConstant(masses_[i]);
+    rhs_.col(i) = h * masses_[i] * effects_.gravity;
+    if (tethers_[i] == 0.0) continue;
+    detours_[i] *= detour_left;
+    const Vector3d end = state_.positions[i] + h * state_.velocities[i];
+    rhs_.col(i) -= h * tethers_[i] * (end - placeOnCloth(i, motion) - detours_[i]);
+    matrix_.diagonal(i).diagonal().array() += h * h * tethers_[i];
+    tethers_[i] = tethers_[i] > kLastTether ? tether_left * tethers_[i] : 0.0;
+  }
+  for (int i = cut_.free_count; i < count; ++i) {
+    detours_[i] *= detour_left;
+    const Vector3d end = placeOnCloth(i, motion) + detours_[i];
+    state_.velocities[i] = (end - state_.positions[i]) / h;
+  }
+  membrane_.addStep(state_.positions, state_.velocities, h, matrix_, rhs_);
+  bending_.addStep(state_.positions, state_.velocities, h, matrix_, rhs_);
+}
+
+void Patch::addContact(const PerFingertip<const Fingertip*>& fingertips, double h) {
+  for (int i = 0; i < cut_.free_count; ++i) {
+    predicted_[i] = state_.positions[i] + h * state_.velocities[i];
+  }
+  const Particles particles{predicted_, state_.velocities, areas_, cut_.free_count};
+  for (int f = 0; f < kFingertips; ++f) {
+    linearised_[f].clear();
+    if (!fingertips[f]) continue;
+    for (const TouchedParticle& touched : contacts_[f].evaluate(particles, *fingertips[f])) {
+      linearised_[f].push_back(touched);
+      rhs_.col(touched.particle) += h * touched.force();
+      matrix_.diagonal(touched.particle) += h * h * touched.stiffness + h * touched.damping;
+    }
+  }
+}
+
+bool Patch::advance(const LargeScaleMotion& motion,
+                    const PerFingertip<const Fingertip*>& fingertips, double h) {
+  assemble(motion, h);
+  addContact(fingertips, h);
+  solution_ = rhs_.leftCols(cut_.free_count);
+  if (!cholesky_.factorise(matrix_)) return false;
+  cholesky_.solve(solution_);
+  if (!solution_.allFinite()) return false;
+  for (int i = 0; i < cut_.free_count; ++i) state_.velocities[i] += solution_.col(i);
+  for (std::size_t i = 0; i < particleCount(); ++i) {
+    state_.positions[i] += h * state_.velocities[i];
+    contact_forces_[i] = 0.0;
+  }
+  state_.time += h;
+  const Particles particles{state_.positions, state_.velocities, areas_, cut_.free_count};
+  for (int f = 0; f < kFingertips; ++f) {
+    if (!fingertips[f]) {
+      contacts_[f].clear();
+      continue;
+    }
+    for (const TouchedParticle& touched : contacts_[f].commit(particles, *fingertips[f])) {
+      contact_forces_[touched.particle] += touched.force().norm();
+    }
+  }
+  return true;
+}
+
+}  // namespace haptex::contact

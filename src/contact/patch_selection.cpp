@@ -1,0 +1,33 @@
+#include "haptex/contact/patch_selection.h"
+
+#include <algorithm>
+
+namespace haptex::contact {
+
+SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
+                          const HapticSettings& settings) {
+  const Eigen::Vector3d end =
+      settings.predict ? predict(fingertip, seconds).position : fingertip.position;
+  return {fingertip.position, end, fingertip.radius, settings.margin + PatchSelection::kHysteresis,
+          static_cast<std::size_t>(settings.most_elements + settings.most_elements / 4)};
+}
+
+void PatchSelection::begin() { std::fill(wanted_.begin(), wanted_.end(), 0); }
+
+void PatchSelection::add(int element, double distance, int rank, const HapticSettings& settings) {
+  const bool stays = chosen_[element];
+  const double reach = settings.margin + (stays ? kHysteresis : 0.0);
+  if (distance <= reach && (stays || rank < settings.most_elements)) wanted_[element] = 1;
+}
+
+bool PatchSelection::finish() {
+  if (wanted_ == chosen_) return false;
+  std::swap(wanted_, chosen_);
+  elements_.clear();
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    if (chosen_[i]) elements_.push_back(static_cast<int>(i));
+  }
+  return true;
+}
+
+}  // namespace haptex::contact

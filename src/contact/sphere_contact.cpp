@@ -1,0 +1,107 @@
+#include "haptex/contact/sphere_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptex::contact {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kNoDirection = 1e-9;  // m from the centre: no normal can be told
+
+}  // namespace
+
+SphereContact::SphereContact(const ContactLaw& law, std::size_t most_particles)
+    : law_(law), anchors_(most_particles) {
+  touched_.reserve(most_particles);
+}
+
+void SphereContact::clear() {
+  for (Anchor& anchor : anchors_) anchor.holds = false;
+  touched_.clear();
+}
+
+void SphereContact::adoptAnchor(int particle, const SphereContact& other, int other_particle) {
+  anchors_[particle] = other.anchors_[other_particle];
+}
+
+bool SphereContact::touch(int i, const Particles& particles, const Fingertip& fingertip,
+                          TouchedParticle& result) const {
+  const double reach = fingertip.radius + law_.halfThickness();
+  const Vector3d offset = particles.positions[i] - fingertip.position;
+  const double squared_distance = offset.squaredNorm();
+  if (!(squared_distance < reach * reach)) return false;
+  const double distance = std::sqrt(squared_distance);
+  if (distance < kNoDirection) return false;
+  const Vector3d normal = offset / distance;
+  const double area = particles.areas[i];
+  const material::CurveValue pressure = law_.pressure(reach - distance);
+  const Vector3d sliding =
+      particles.velocities[i] - fingertip.velocity - fingertip.angular_velocity.cross(offset);
+  // Hunt and Crossley 1975: damping in proportion to the elastic force, so it starts from zero.
+  const double damping = area * pressure.stress * law_.damping();
+  const double approach = -normal.dot(sliding);
+  result.particle = i;
+  result.normal = normal;
+  result.depth = reach - distance;
+  result.normal_force = std::max(0.0, area * pressure.stress + damping * approach);
+  const Matrix3d along = normal * normal.transpose();
+  const Matrix3d across = Matrix3d::Identity() - along;
+  const bool pushes = result.normal_force > 0.0;
+  result.stiffness = (pushes ? area * pressure.slope : 0.0) * along;
+  result.damping = (pushes ? damping : 0.0) * along;
+
+  const double sticking = law_.tangentialStiffness() * area;
+  const double limit = law_.friction() * result.normal_force;
+  const Anchor& anchor = anchors_[i];
+  const Vector3d anchored = anchor.holds
+                                ? Vector3d(across * (offset - fingertip.orientation * anchor.place))
+                                : Vector3d(Vector3d::Zero());
+  const double pull = sticking * anchored.norm();
+  result.slips = pull > limit;
+  const double held = result.slips ? sticking * limit / pull : sticking;
+  result.friction = -held * anchored;
+  result.tangent = result.stiffness + held * across;
+  result.stiffness = result.tangent;
+  if (result.slips) {
+    const Vector3d direction = anchored.normalized();
+    result.tangent -= held * direction * direction.transpose();
+  }
+  return true;
+}
+
+const std::vector<TouchedParticle>& SphereContact::evaluate(const Particles& particles,
+                                                            const Fingertip& fingertip) {
+  touched_.clear();
+  TouchedParticle touched;
+  for (int i = 0; i < particles.count; ++i) {
+    if (touch(i, particles, fingertip, touched)) touched_.push_back(touched);
+  }
+  return touched_;
+}
+
+const std::vector<TouchedParticle>& SphereContact::commit(const Particles& particles,
+                                                          const Fingertip& fingertip) {
+  evaluate(particles, fingertip);
+  auto next = touched_.begin();
+  for (int i = 0; i < particles.count; ++i) {
+    Anchor& anchor = anchors_[i];
+    if (next == touched_.end() || next->particle != i) {
+      anchor.holds = false;
+      continue;
+    }
+    if (!anchor.holds || next->slips) {
+      // The spring that is left after the slip pulls with exactly the friction.
+      const double sticking = law_.tangentialStiffness() * particles.areas[i];
+      const Vector3d place = particles.positions[i] + next->friction / sticking;
+      anchor.place = fingertip.orientation.conjugate() * (place - fingertip.position);
+      anchor.holds = true;
+    }
+    ++next;
+  }
+  return touched_;
+}
+
+}  // namespace haptex::contact

@@ -1,0 +1,226 @@
+#include "haptex/nodes/force_renderer_node.h"
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "haptex/nodes/cloth_messages.h"
+#include "haptex/nodes/driver_messages.h"
+#include "haptex/nodes/node_parameters.h"
+#include "haptex/nodes/steady_clock.h"
+#include "haptex/nodes/transforms.h"
+
+namespace haptex::nodes {
+namespace {
+
+using exoskeleton::Finger;
+using exoskeleton::kFingers;
+using exoskeleton::Time;
+
+// Spheres at the ends of the fingers in urdf/hand_exoskeleton.urdf.
+constexpr double kIndexRadius = 0.0075;       // m
+constexpr double kThumbRadius = 0.009;        // m
+constexpr double kLargestRadius = 0.1;        // m
+constexpr double kTransformPeriod = 0.002;    // s, between two looks at tf
+constexpr double kMarkerPeriod = 1.0 / 30.0;  // s
+constexpr std::uint32_t kContactQueue = 10;   // messages, for a subscriber that is slow for 10 ms
+/// Of a transform whose stamp is to be believed.
+constexpr Time kOldestTransform = std::chrono::milliseconds(20);
+
+double readRadius(const ros::NodeHandle& private_node, const std::string& name, double fallback) {
+  const double radius = readPositive(private_node, name, fallback);
+  if (radius <= kLargestRadius) return radius;
+  std::ostringstream message;
+  message << "parameter " << private_node.resolveName(name) << " = " << radius
+          << ": allowed are numbers > 0 and up to " << kLargestRadius << " m";
+  throw std::invalid_argument(message.str());
+}
+
+std::string topic(Finger finger, const char* of_finger) {
+  return std::string(exoskeleton::name(finger)) + "/" + of_finger;
+}
+
+/// How long ago a stamp was, as far as it is believed.
+Time ageOf(const ros::Time& stamp) {
+  const auto now = static_cast<std::int64_t>(ros::Time::now().toNSec());
+  return std::clamp(Time(now - static_cast<std::int64_t>(stamp.toNSec())), Time{0},
+                    kOldestTransform);
+}
+
+}  // namespace
+
+ForceRendererParameters ForceRendererParameters::read(const ros::NodeHandle& private_node) {
+  return {readScenePath(private_node),
+          {{readRadius(private_node, "index_radius", kIndexRadius),
+            readRadius(private_node, "thumb_radius", kThumbRadius)}}};
+}
+
+ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
+                                     const ros::NodeHandle& private_node)
+    : ForceRendererNode(node, private_node, ForceRendererParameters::read(private_node)) {}
+
+ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
+                                     const ros::NodeHandle& private_node,
+                                     const ForceRendererParameters& parameters)
+    : node_(node),
+      input_node_(node),
+      input_spinner_(1, &input_queue_),
+      transform_listener_(transforms_),
+      loop_(parameters.radii),
+      fingers_{{{FingerTopics(node, Finger::kIndex), FingerTopics(node, Finger::kThumb)}}},
+      diagnostics_(node, private_node),
+      supplier_(node, LayerBuilder(parameters.scene_path), loop_),
+      loop_thread_(ForceLoop::kPeriod, [this](Time now) { work(now); }) {
+  if (!loop_thread_.refusedScheduler().empty()) {
+    ROS_WARN("The loop runs without SCHED_FIFO, on a busy machine it will be late: %s",
+             loop_thread_.refusedScheduler().c_str());
+  }
+  subscribe();
+  marker_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("contact/markers", 2);
+  marker_timer_ = node_.createSteadyTimer(
+      ros::WallDuration(kMarkerPeriod), [this](const ros::SteadyTimerEvent&) { publishMarkers(); });
+  addDiagnostics();
+  input_spinner_.start();
+}
+
+ForceRendererNode::~ForceRendererNode() {
+  input_spinner_.stop();
+  loop_thread_.stop();
+}
+
+ForceRendererNode::FingerTopics::FingerTopics(ros::NodeHandle node, Finger finger)
+    // Only the latest force counts.
+    : force(node.advertise<haptex::ServoForce>(topic(finger, "servo_cf"), 1)),
+      contact(node.advertise<haptex::Contact>(topic(finger, "contact"), kContactQueue)) {}
+
+void ForceRendererNode::subscribe() {
+  input_node_.setCallbackQueue(&input_queue_);
+  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+  for (const Finger finger : kFingers) subscribeToFinger(finger);
+  const boost::function<void(const haptex::ClothState&)> take_state =
+      [this](const haptex::ClothState& message) { takeState(message); };
+  state_subscriber_ = input_node_.subscribe<haptex::ClothState>("cloth/state", 1, take_state,
+                                                                ros::VoidConstPtr(), hints);
+  const boost::function<void(const std_msgs::Header&)> take_heartbeat =
+      [this](const std_msgs::Header&) { loop_.takeHeartbeat(steadyNow()); };
+  heartbeat_subscriber_ = input_node_.subscribe<std_msgs::Header>(
+      "cloth/heartbeat", 1, take_heartbeat, ros::VoidConstPtr(), hints);
+  const boost::function<void(const haptex::ClothMeshConstPtr&)> take_mesh =
+      [this](const haptex::ClothMeshConstPtr& message) { supplier_.setMesh(message); };
+  mesh_subscriber_ = node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh,
+                                                        ros::VoidConstPtr(), hints);
+  transform_timer_ =
+      input_node_.createSteadyTimer(ros::WallDuration(kTransformPeriod),
+                                    [this](const ros::SteadyTimerEvent&) { takeTransforms(); });
+}
+
+void ForceRendererNode::subscribeToFinger(Finger finger) {
+  FingerTopics& topics = fingers_[finger];
+  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+  const boost::function<void(const geometry_msgs::PoseStamped&)> take_pose =
+      [this, finger, &topics](const geometry_msgs::PoseStamped& message) {
+        const Time arrival = steadyNow();
+        const auto pose = topics.filter.take(message, ros::Time::now(), arrival);
+        if (!pose) return;
+        loop_.takePose(finger, *pose, arrival);
+        topics.poses.fetch_add(1, std::memory_order_relaxed);
+      };
+  const boost::function<void(const geometry_msgs::TwistStamped&)> take_twist =
+      [this, finger, &topics](const geometry_msgs::TwistStamped& message) {
+        const Time arrival = steadyNow();
+        const auto twist = topics.filter.take(message, ros::Time::now(), arrival);
+        if (twist) loop_.takeTwist(finger, *twist, arrival);
+      };
+  // Only the latest counts.
+  topics.pose = input_node_.subscribe<geometry_msgs::PoseStamped>(
+      topic(finger, "measured_cp"), 1, take_pose, ros::VoidConstPtr(), hints);
+  topics.twist = input_node_.subscribe<geometry_msgs::TwistStamped>(
+      topic(finger, "measured_cv"), 1, take_twist, ros::VoidConstPtr(), hints);
+}
+
+void ForceRendererNode::takeState(const haptex::ClothState& message) {
+  const Time arrival = steadyNow();
+  try {
+    readState(message, state_);
+  } catch (const std::invalid_argument& error) {
+    ROS_WARN_THROTTLE(1.0, "cloth/state dropped: %s", error.what());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++dropped_states_;
+    last_dropped_state_ = error.what();
+    return;
+  }
+  supplier_.setAttached(state_.attached);
+  loop_.takeState(state_, arrival);
+}
+
+void ForceRendererNode::takeTransforms() {
+  takeHandBase();
+  for (const Finger finger : kFingers) takeArray(finger);
+}
+
+void ForceRendererNode::takeHandBase() {
+  if (!transforms_.canTransform(kFixedFrame, kHandFrame, ros::Time(0))) return;
+  try {
+    const geometry_msgs::TransformStamped transform =
+        transforms_.lookupTransform(kFixedFrame, kHandFrame, ros::Time(0));
+    const Eigen::Isometry3d pose = fromMessage(transform.transform);
+    const Time now = steadyNow();
+    const bool fixed = transform.header.stamp.isZero();
+    const bool is_new = fixed ? !pose.isApprox(fixed_hand_base_, 0.0)
+                              : transform.header.stamp != hand_base_stamp_;
+    if (has_hand_base_ && !is_new) return;
+    has_hand_base_ = true;
+    hand_base_stamp_ = transform.header.stamp;
+    fixed_hand_base_ = pose;
+    loop_.takeHandBase(pose, fixed ? now : now - ageOf(transform.header.stamp), now, fixed);
+  } catch (const tf2::TransformException&) {
+    // Replaced between the two calls: the next look finds it.
+  }
+}
+
+/// Fixed to the fingertip: once is enough.
+void ForceRendererNode::takeArray(Finger finger) {
+  FingerTopics& topics = fingers_[finger];
+  if (topics.has_array) return;
+  const std::string tip = std::string(exoskeleton::name(finger)) + "_tip";
+  const std::string array = std::string(exoskeleton::name(finger)) + "_tactile";
+  if (!transforms_.canTransform(tip, array, ros::Time(0))) return;
+  try {
+    const auto transform = transforms_.lookupTransform(tip, array, ros::Time(0));
+    loop_.takeArray(finger, fromMessage(transform.transform));
+    topics.has_array = true;
+  } catch (const tf2::TransformException&) {
+    // As above.
+  }
+}
+
+void ForceRendererNode::work(Time now) {
+  loop_.tick(now);
+  const ros::Time stamp = ros::Time::now();
+  for (const Finger finger : kFingers) {
+    FingerTopics& topics = fingers_[finger];
+    const ForceLoop::Rendered& rendered = loop_.rendered(finger);
+    fillServoForce(rendered.contact, rendered.gain, loop_.hand(), stamp, topics.force_message);
+    topics.force.publish(topics.force_message);
+    if (topics.contact.getNumSubscribers() == 0) continue;
+    fillContact(rendered.contact, rendered.contactor_forces, rendered.gain, stamp,
+                topics.contact_message);
+    topics.contact.publish(topics.contact_message);
+  }
+  tick_durations_.add(steadyNow() - now);
+}
+
+void ForceRendererNode::publishMarkers() {
+  const Time now = steadyNow();
+  const LoopRates rates = {force_rate_.update(loop_thread_.periods(), now),
+                           cloth_rate_.update(loop_.status().states, now),
+                           proximity_rate_.update(supplier_.status().queries, now),
+                           exoskeleton_rate_.update(fingers_[Finger::kIndex].poses, now)};
+  if (marker_publisher_.getNumSubscribers() == 0) return;
+  marker_publisher_.publish(markers_.update(loop_.picture(), rates, ros::Time::now()));
+  loop_.askForPicture();
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,281 @@
+#!/usr/bin/python3
+"""The promises of force_renderer with the real nodes around it: an emulated hand pinches the lower
+edge of a wool sample."""
+import collections
+import math
+import os
+import signal
+import statistics
+import time
+import unittest
+import xmlrpc.client
+
+import rosgraph
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+from haptex.msg import ClothState, Contact, ContactForces, OperatingState, ServoForce
+from haptex.srv import SetFabric
+from std_srvs.srv import Trigger
+
+WAIT = 30.0  # s
+NAN = float('nan')
+FELT = 0.05  # N
+REPEATS = 3  # of a death
+DEADLINE = 20.0  # ms, from a death to zero force
+LOOP, SOURCES = 'force loop', 'force sources'  # names in the diagnostics
+FINGERS = ('index', 'thumb')
+NODES = ('cloth_simulation', 'proximity', 'exoskeleton_driver', 'exoskeleton_emulator',
+         'force_renderer')
+
+
+def norm(vector):
+    return math.sqrt(vector.x ** 2 + vector.y ** 2 + vector.z ** 2)
+
+
+def force_of(message):
+    return message.wrench.force if isinstance(message, WrenchStamped) else message.force
+
+
+class Forces:
+    """Stamps (s) and sizes (N) of the forces on a topic within the last seconds."""
+
+    def __init__(self, topic, kind):
+        self.last = None
+        self.series = collections.deque(maxlen=5000)
+        self.subscriber = rospy.Subscriber(topic, kind, self.take, tcp_nodelay=True)
+
+    def take(self, message):
+        self.last = message
+        self.series.append((message.header.stamp.to_sec(), norm(force_of(message))))
+
+    @property
+    def size(self):
+        return self.series[-1][1] if self.series else 0.0
+
+    def age(self):
+        return rospy.get_time() - self.series[-1][0] if self.series else math.inf
+
+    def after(self, time_of_death, zero):
+        """How long the force was felt after a death, without what the machine stood still
+        meanwhile, and how long that was; ms."""
+        series = [item for item in list(self.series) if item[0] > time_of_death - 0.002]
+        felt = [stamp for stamp, size in series if size > zero]
+        if not felt or felt[-1] < time_of_death:
+            return 0.0, 0.0
+        stamps = [stamp for stamp, _ in series if stamp <= felt[-1]]
+        still = sum(max(0.0, later - earlier - 0.002)
+                    for earlier, later in zip(stamps, stamps[1:]))
+        return 1e3 * (felt[-1] - time_of_death), 1e3 * still
+
+
+class ForceRenderer(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.ask = {}
+        for name in ('enable', 'home', 'clear_fault'):
+            rospy.wait_for_service(f'exoskeleton/{name}', WAIT)
+            cls.ask[name] = rospy.ServiceProxy(f'exoskeleton/{name}', Trigger)
+        cls.state = None
+        rospy.Subscriber('exoskeleton/operating_state', OperatingState, cls.take_state)
+        cls.diagnostics = {}
+        rospy.Subscriber('/diagnostics', DiagnosticArray, cls.take_diagnostics)
+        cls.commanded = {finger: Forces(f'{finger}/servo_cf', ServoForce) for finger in FINGERS}
+
+    @classmethod
+    def take_state(cls, state):
+        cls.state = state
+
+    @classmethod
+    def take_diagnostics(cls, array):
+        for status in array.status:
+            cls.diagnostics[status.name.split(': ', 1)[-1]] = status
+
+    def setUp(self):
+        self.recover()
+        self.await_contact()
+
+    def eventually(self, happens, what, wait=WAIT):
+        end = time.monotonic() + wait
+        while not happens():
+            self.assertLess(time.monotonic(), end, what() if callable(what) else what)
+            time.sleep(0.01)
+
+    def recover(self):
+        """Homed and enabled, whatever was before."""
+        def is_ready():
+            type(self).state = None
+            time.sleep(0.15)  # the next operating state
+            state = self.state
+            if not state:
+                return False
+            if state.state == 'ENABLED' and state.is_homed:
+                return True
+            request = ('clear_fault' if state.state == 'FAULT' else
+                       None if state.is_busy else 'enable' if state.is_homed else 'home')
+            if request:
+                try:
+                    self.ask[request]()
+                except rospy.ServiceException:
+                    pass  # the driver is not there yet
+            return False
+
+        self.eventually(is_ready, lambda: f'homed and enabled: {self.state}', 2 * WAIT)
+
+    def await_contact(self):
+        """Both fingertips feel the cloth between them, and no force rises any more."""
+        def felt():
+            if not self.state or self.state.state != 'ENABLED':
+                self.recover()
+            return (all(forces.size > FELT and forces.age() < 0.1
+                        for forces in self.commanded.values())
+                    and float(self.values('contact force of the index')
+                              ['share of the force that is rendered']) == 1.0)
+
+        self.eventually(felt, lambda: 'contact: ' + self.diagnostics[SOURCES].message, 2 * WAIT)
+
+    def values(self, status):
+        """Those of the next diagnostics."""
+        self.diagnostics.pop(status, None)
+        self.eventually(lambda: status in self.diagnostics, f'diagnostics of {status}')
+        return {item.key: item.value for item in self.diagnostics[status].values}
+
+    @staticmethod
+    def process(node):
+        """Its number, or None while it does not answer."""
+        try:
+            uri = rosgraph.Master('/test').lookupNode(rospy.resolve_name(node))
+            return xmlrpc.client.ServerProxy(uri).getPid('/test')[2]
+        except (OSError, rosgraph.MasterException):
+            return None
+
+    def one(self, topic, kind):
+        return rospy.wait_for_message(topic, kind, WAIT)
+
+    def test_pinched_cloth_is_felt_by_both_fingers_and_feels_them(self):
+        contacts = {finger: self.one(f'{finger}/contact', Contact) for finger in FINGERS}
+        normals = [contacts[finger].normal for finger in FINGERS]
+        dot = sum(getattr(normals[0], axis) * getattr(normals[1], axis) for axis in 'xyz')
+        self.assertLess(dot, -0.5, 'the fingertips touch it from opposite sides')
+        for finger, contact in contacts.items():
+            self.assertEqual(contact.header.frame_id, 'world')
+            self.assertTrue(contact.touching, finger)
+            self.assertGreater(contact.normal_force, FELT)
+            self.assertGreater(contact.area, 0.0)
+            self.assertLessEqual(sum(contact.contactor_forces), contact.normal_force + 1e-9)
+            command = self.commanded[finger].last
+            self.assertEqual(command.header.frame_id, 'hand_base')
+            self.assertGreater(sum(command.stiffness[i] for i in (0, 4, 8)), 0.0)
+        forces = self.one('cloth/contact_forces', ContactForces)
+        self.assertGreater(len(forces.triangles), 0)
+        self.assertEqual(len(forces.stiffness), 9 * len(forces.triangles))
+
+    def test_commands_come_a_thousand_times_a_second(self):
+        begin = len(self.commanded['index'].series)
+        self.commanded['index'].series.clear()
+        time.sleep(2.0)
+        stamps = [stamp for stamp, _ in list(self.commanded['index'].series)]
+        self.assertGreater(begin, 0)
+        rate = (len(stamps) - 1) / (stamps[-1] - stamps[0])
+        print(f'rate of commands {rate:.0f} Hz')
+        values = self.values(LOOP)
+        for key in ('computing time p99 since the start (us)',
+                    'wake-up jitter p99 since the start (us)', 'periods missed', 'SCHED_FIFO'):
+            print(f'{key}: {values[key]}')
+        self.assertGreater(rate, 500.0)  # a busy machine; it prints what it was
+
+    def test_bad_messages_do_not_matter(self):
+        processes = [self.process(node) for node in NODES]
+        poses = rospy.Publisher('index/measured_cp', PoseStamped, queue_size=10)
+        states = rospy.Publisher('cloth/state', ClothState, queue_size=10)
+        self.eventually(lambda: poses.get_num_connections() and states.get_num_connections(),
+                        'connections')
+        before = self.values('contact force of the index')
+        largest = max(size for _, size in list(self.commanded['index'].series)[-1000:])
+        self.commanded['index'].series.clear()
+        for i in range(200):
+            pose = PoseStamped()
+            pose.header.frame_id = 'hand_base' if i % 3 else 'world'
+            pose.header.stamp = rospy.Time.now() - rospy.Duration(0.5 if i % 3 == 1 else 0.0)
+            pose.pose.position.x = NAN if i % 3 == 2 else 5.0
+            pose.pose.orientation.w = 1.0
+            poses.publish(pose)
+            state = ClothState()
+            state.header.frame_id = 'world' if i % 2 else ''
+            state.simulated_time = NAN if i % 4 == 1 else 1.0
+            state.attached = [7]
+            states.publish(state)
+            time.sleep(0.005)
+        sizes = [size for _, size in list(self.commanded['index'].series)]
+        self.assertTrue(all(math.isfinite(size) for size in sizes))
+        self.assertLess(max(sizes), 2.0 * largest + 0.1)
+        after = self.values('contact force of the index')
+        self.assertGreater(int(after['poses and velocities dropped']),
+                           int(before['poses and velocities dropped']) + 100)
+        self.assertTrue(after['why the last one was dropped'])
+        self.assertGreater(int(self.values(SOURCES)['states dropped']), 100)
+        self.assertEqual([self.process(node) for node in NODES], processes)
+        self.await_contact()
+
+    def test_a_fabric_that_cannot_be_touched_is_named_and_another_one_is_felt(self):
+        set_fabric = rospy.ServiceProxy('cloth/set_fabric', SetFabric)
+        self.assertTrue(set_fabric('linear').success)
+        self.eventually(lambda: all(forces.size == 0.0 for forces in self.commanded.values()),
+                        'zero force')
+        self.eventually(lambda: 'linear' in self.values(SOURCES)['why there is no layer'],
+                        'diagnostics that name the fabric')
+        self.assertTrue(set_fabric('cotton_knit').success)
+        self.await_contact()
+        self.assertTrue(set_fabric('wool').success)
+        self.await_contact()
+
+    def die(self, node, listeners, zero):
+        """Kills a node under contact. @returns how long forces lasted (ms), the machine's standing
+        still subtracted"""
+        victim = self.process(node)
+        others = {other: self.process(other) for other in NODES if other != node}
+        self.assertTrue(all(listener.size > zero for listener in listeners))
+        death = rospy.get_time()
+        os.kill(victim, signal.SIGKILL)
+        time.sleep(0.3)
+        lasted = [listener.after(death, zero) for listener in listeners]
+        for listener in listeners:
+            if listener.age() < 0.1:
+                self.assertLessEqual(listener.size, zero)
+        total, still = max(lasted)
+        print(f'forces lasted {total:.1f} ms after {node} was killed, of which the machine stood '
+              f'still for {still:.1f} ms')
+        self.eventually(lambda: self.process(node) not in (None, victim), f'another {node}')
+        self.recover()
+        self.await_contact()
+        self.assertEqual({other: self.process(other) for other in others}, others)
+        return total - still
+
+    def no_force_after_the_death_of(self, node, listeners=None, zero=0.0):
+        listeners = listeners or list(self.commanded.values())
+        lasted = [self.die(node, listeners, zero) for _ in range(REPEATS)]
+        print(f'{node}: median {statistics.median(lasted):.1f} ms, largest {max(lasted):.1f} ms')
+        self.assertLessEqual(statistics.median(lasted), DEADLINE)
+
+    def test_no_force_after_the_cloth_was_killed(self):
+        self.no_force_after_the_death_of('cloth_simulation')
+
+    def test_no_force_after_proximity_was_killed(self):
+        self.no_force_after_the_death_of('proximity')
+
+    def test_no_force_after_the_driver_was_killed(self):
+        self.no_force_after_the_death_of('exoskeleton_driver')
+
+    def test_no_force_after_the_device_was_killed(self):
+        self.no_force_after_the_death_of('exoskeleton_emulator')
+
+    def test_no_force_after_the_renderer_was_killed(self):
+        motors = [Forces(f'emulator/{finger}/motor_force', WrenchStamped) for finger in FINGERS]
+        self.eventually(lambda: all(motor.size > FELT for motor in motors), 'motors that push')
+        self.no_force_after_the_death_of('force_renderer', motors, FELT)
+
+
+if __name__ == '__main__':
+    rospy.init_node('force_renderer_test')
+    rostest.rosrun('haptex', 'force_renderer', ForceRenderer)
