@@ -321,7 +321,7 @@ TEST(LinearSolver, AutomaticIteratesWhereItIsEasyAndFactorisesWhereItIsHard) {
 TEST(SymmetricBlockMatrix, HasTheBlocksOfFurtherPairsForBothSolvers) {
   const ClothMesh mesh = square(6);
   const int size = static_cast<int>(mesh.rest_coordinates.size());
-  const std::vector<std::array<int, 2>> pairs = {{0, 48}, {30, 2}, {2, 30}, {0, 1}, {5, 5}};
+  const std::vector<std::array<int, 2>> pairs = {{0, 48}, {30, 2}, {2, 30}, {0, 1}};
   const SymmetricBlockMatrix without(size, mesh.triangles);
   SymmetricBlockMatrix matrix(size, mesh.triangles, pairs);
   EXPECT_EQ(matrix.lowerCount(), without.lowerCount() + 2);  // {0, 1} is an edge
