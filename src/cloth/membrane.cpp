@@ -29,27 +29,36 @@ struct Membrane::Response {
 
 namespace {
 
-std::array<int, 3> slotsOf(const std::array<int, 3>& particles,
-                           const SymmetricBlockMatrix& pattern) {
-  return {pattern.slot(particles[1], particles[0]), pattern.slot(particles[2], particles[0]),
-          pattern.slot(particles[2], particles[1])};
-}
-
-MembraneElement restElement(const ClothMesh& mesh, const SymmetricBlockMatrix& pattern,
-                            std::array<int, 3> particles) {
+MembraneElement restElement(const ClothMesh& mesh, std::array<int, 3> particles) {
   std::sort(particles.begin(), particles.end());
   const Eigen::Vector2d& a = mesh.rest_coordinates[particles[0]];
   const Eigen::Vector2d& b = mesh.rest_coordinates[particles[1]];
   const Eigen::Vector2d& c = mesh.rest_coordinates[particles[2]];
   const double ua = a.x(), va = a.y(), ub = b.x(), vb = b.y(), uc = c.x(), vc = c.y();
   const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
-  MembraneElement element;
+  MembraneElement element{};
   element.particles = particles;
-  element.slots = slotsOf(particles, pattern);
   element.weft_weights = {(vb - vc) / d, (vc - va) / d, (va - vb) / d};
   element.warp_weights = {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d};
   element.area = 0.5 * std::abs(d);
   return element;
+}
+
+kernels::MembraneBatch batchOf(const MembraneElement* elements) {
+  kernels::MembraneBatch batch;
+  for (int lane = 0; lane < kernels::kBatch; ++lane) {
+    const MembraneElement& element = elements[lane];
+    batch.area[lane] = element.area;
+    for (int i = 0; i < 3; ++i) {
+      batch.particles[i][lane] = element.particles[i];
+      batch.slots[i][lane] = element.slots[i];
+    }
+    for (int i = 1; i < 3; ++i) {
+      batch.weft_weights[i - 1][lane] = element.weft_weights[i];
+      batch.warp_weights[i - 1][lane] = element.warp_weights[i];
+    }
+  }
+  return batch;
 }
 
 /// Adds factor * (tangent blocks of one element) to the matrix: the sum over the three strains of
@@ -115,17 +124,24 @@ Vector3d projectStress(const Vector3d& stress) {
 
 Membrane::Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool viscosity)
     : viscosity_(viscosity) {
-  const SymmetricBlockMatrix pattern(static_cast<int>(mesh.rest_coordinates.size()),
-                                     mesh.triangles);
   elements_.reserve(mesh.triangles.size());
   for (const std::array<int, 3>& triangle : mesh.triangles) {
-    elements_.push_back(restElement(mesh, pattern, triangle));
+    elements_.push_back(restElement(mesh, triangle));
   }
+  bind({static_cast<int>(mesh.rest_coordinates.size()), mesh.triangles});
   setFabric(fabric);
 }
 
 void Membrane::bind(const SymmetricBlockMatrix& matrix) {
-  for (MembraneElement& element : elements_) element.slots = slotsOf(element.particles, matrix);
+  for (MembraneElement& element : elements_) {
+    const auto& [a, b, c] = element.particles;
+    element.slots = {matrix.slot(b, a), matrix.slot(c, a), matrix.slot(c, b)};
+  }
+  batches_.clear();
+  if (!kernels::canAddBatches()) return;
+  for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
+    batches_.push_back(batchOf(&elements_[t]));
+  }
 }
 
 void Membrane::setFabric(const material::Fabric& fabric) {
@@ -177,42 +193,49 @@ double Membrane::elasticEnergy(const Positions& positions) const {
 
 void Membrane::addStep(const Positions& positions, const Velocities& velocities, double h,
                        SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
-  if (viscosity_) {
-    addStepOf<true>(positions, velocities, h, matrix, rhs);
-  } else {
-    addStepOf<false>(positions, velocities, h, matrix, rhs);
+  if (!batches_.empty()) {
+    kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
+                     {positions.data()->data(), velocities.data()->data(), h, &elastic_,
+                      viscosity_ ? &viscous_ : nullptr, matrix.diagonal(0).data(),
+                      matrix.lower(0).data(), rhs.data()});
+  }
+  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+    if (viscosity_) {
+      addStepOf<true>(elements_[t], positions, velocities, h, matrix, rhs);
+    } else {
+      addStepOf<false>(elements_[t], positions, velocities, h, matrix, rhs);
+    }
   }
 }
 
 template <bool kViscous>
-void Membrane::addStepOf(const Positions& positions, const Velocities& velocities, double h,
-                         SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
-  for (const MembraneElement& element : elements_) {
-    const Frame at = frame(element, positions);
-    const Frame derivative = frame(element, velocities);
-    const MembraneStrain rate = at.rate(derivative);
-    const Response elastic = respond(elastic_, at.strain());
-    Vector3d stress = elastic.stress;
-    Vector3d slope = clampedToNonNegative(elastic.slope);
-    const Vector3d stress_increment = h * slope.cwiseProduct(rate);
-    if constexpr (kViscous) {
-      const Response viscous = respond(viscous_, rate);
-      stress += viscous.stress;
-      slope += clampedToNonNegative(viscous.slope) / h;
-    }
-    const Vector3d geometric = projectStress(stress);
-    addTangent(element, at.weft, at.warp, slope, geometric, element.area * h * h, matrix);
-
-    const double factor = -element.area * h;
-    const Vector3d end = factor * (stress + stress_increment);
-    const Vector3d turning = factor * h * geometric;
-    addScattered(element,
-                 end[0] * at.weft + end[2] * at.warp + turning[0] * derivative.weft +
-                     turning[2] * derivative.warp,
-                 end[1] * at.warp + end[2] * at.weft + turning[1] * derivative.warp +
-                     turning[2] * derivative.weft,
-                 [&](int particle) { return rhs.col(particle); });
+void Membrane::addStepOf(const MembraneElement& element, const Positions& positions,
+                         const Velocities& velocities, double h, SymmetricBlockMatrix& matrix,
+                         BlockVector& rhs) const {
+  const Frame at = frame(element, positions);
+  const Frame derivative = frame(element, velocities);
+  const MembraneStrain rate = at.rate(derivative);
+  const Response elastic = respond(elastic_, at.strain());
+  Vector3d stress = elastic.stress;
+  Vector3d slope = clampedToNonNegative(elastic.slope);
+  const Vector3d stress_increment = h * slope.cwiseProduct(rate);
+  if constexpr (kViscous) {
+    const Response viscous = respond(viscous_, rate);
+    stress += viscous.stress;
+    slope += clampedToNonNegative(viscous.slope) / h;
   }
+  const Vector3d geometric = projectStress(stress);
+  addTangent(element, at.weft, at.warp, slope, geometric, element.area * h * h, matrix);
+
+  const double factor = -element.area * h;
+  const Vector3d end = factor * (stress + stress_increment);
+  const Vector3d turning = factor * h * geometric;
+  addScattered(element,
+               end[0] * at.weft + end[2] * at.warp + turning[0] * derivative.weft +
+                   turning[2] * derivative.warp,
+               end[1] * at.warp + end[2] * at.weft + turning[1] * derivative.warp +
+                   turning[2] * derivative.weft,
+               [&](int particle) { return rhs.col(particle); });
 }
 
 void Membrane::addNewton(const Positions& positions,

@@ -20,7 +20,8 @@ constexpr double kNarrowest = 1e-6;       // of the range of strain: no finer in
 
 // Mindlin 1949 (J. Appl. Mech. 16:259): where two elastic bodies stick over their area of contact,
 // the ratio of the tangential stiffness to the normal one is 2 (1 - nu) / (2 - nu); 2/3 for a pulp
-// that keeps its volume (nu = 0.5).
+// that keeps its volume (nu = 0.5). The fabric adds no yield of its own: KES does not measure shear
+// through the thickness.
 constexpr double kTangentialByNormal = 2.0 / 3.0;
 
 void requireContactProperties(const material::Fabric& fabric) {

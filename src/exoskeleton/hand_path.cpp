@@ -29,6 +29,7 @@ bool same(const HandPlace& a, const HandPlace& b) {
 
 HandPlace between(const HandPlace& from, const HandPlace& to, double share) {
   HandPlace place;
+  place.phase = from.phase;
   for (const Finger finger : kFingers) {
     place.fingertips[finger] =
         from.fingertips[finger] + share * (to.fingertips[finger] - from.fingertips[finger]);
@@ -65,7 +66,7 @@ Eigen::Matrix3d readRotation(const YamlValue& value) {
 }
 
 KeyFrame readKeyFrame(const YamlValue& value) {
-  value.requireKeys({"time", "index", "thumb", "position"}, {"rpy"});
+  value.requireKeys({"time", "index", "thumb", "position"}, {"rpy", "phase"});
   KeyFrame frame;
   frame.time = value.at("time").number();
   if (frame.time < 0.0 || frame.time > kLongestTime) {
@@ -76,6 +77,7 @@ KeyFrame readKeyFrame(const YamlValue& value) {
   }
   frame.place.hand_base.translation() = readVector(value.at("position"), kFarthestHand);
   if (value.has("rpy")) frame.place.hand_base.linear() = readRotation(value.at("rpy"));
+  if (value.has("phase")) frame.phase = value.at("phase").text();
   return frame;
 }
 
@@ -104,6 +106,10 @@ HandPath::HandPath(std::vector<KeyFrame> key_frames, bool repeats)
     }
     const std::string wrong = defect(key_frames_, i);
     if (!wrong.empty()) throw std::invalid_argument(name.str() + wrong);
+  }
+  for (KeyFrame& frame : key_frames_) {
+    if (!frame.phase.empty()) phases_.push_back(frame.phase);
+    frame.place.phase = static_cast<int>(phases_.size()) - 1;
   }
   if (!repeats_) return;
   if (key_frames_.size() < 2) {

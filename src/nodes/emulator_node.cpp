@@ -2,6 +2,7 @@
 
 #include <geometry_msgs/TransformStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
+#include <std_msgs/String.h>
 
 #include <exception>
 #include <sstream>
@@ -116,6 +117,7 @@ EmulatorNode::~EmulatorNode() {
 }
 
 void EmulatorNode::advertise() {
+  phase_topic_ = node_.advertise<std_msgs::String>("emulator/phase", 1, true);
   fault_service_ =
       node_.advertiseService("emulator/inject_fault", &EmulatorNode::injectFault, this);
   power_service_ = node_.advertiseService("emulator/power_cycle", &EmulatorNode::cyclePower, this);
@@ -163,6 +165,12 @@ void EmulatorNode::publishHand() {
   message.transform = transformMessage(place.hand_base);
   broadcaster_.sendTransform(message);
   if (hands_++ % kHandsPerShow == 0) targets_.show(place);
+  if (place.phase != phase_) {
+    phase_ = place.phase;
+    std_msgs::String phase;
+    phase.data = motion_.path().phases()[phase_];
+    phase_topic_.publish(phase);
+  }
 
   bool wanted = false;
   for (const TruthTopics& topics : truth_topics_.values) {

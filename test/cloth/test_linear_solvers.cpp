@@ -118,6 +118,72 @@ TEST(DenseKernels, SubtractTheProductForEverySizeOfRemainder) {
   }
 }
 
+TEST(DenseKernels, MultiplyByTheOwnTopBelowItsDiagonalBlocks) {
+  for (int columns : {3, 6, 9}) {
+    for (int rows = columns; rows <= columns + 29; ++rows) {
+      const int depth = 6, lda = rows + 2, ldc = rows + 3;
+      const Eigen::MatrixXd a = Eigen::MatrixXd::Random(lda, depth);
+      const Eigen::MatrixXd before = Eigen::MatrixXd::Random(ldc, columns);
+      Eigen::MatrixXd c = before;
+      multiplyByOwnTop(rows, columns, depth, a.data(), lda, c.data(), ldc);
+      Eigen::MatrixXd exact = before;
+      exact.topRows(rows) = a.topRows(rows) * a.topRows(columns).transpose();
+      for (int j = 0; j < columns; ++j)
+        exact.col(j).head(j / 3 * 3) = before.col(j).head(j / 3 * 3);
+      EXPECT_LT((c - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+    }
+  }
+}
+
+/// A panel of the factor as the kernels keep it, with its diagonal inverted.
+struct RandomPanel {
+  Eigen::MatrixXd exact;   // lower trapezoid
+  Eigen::MatrixXd stored;  // with a row more, which no kernel may change
+  RandomPanel(int rows, int columns) : exact(Eigen::MatrixXd::Random(rows, columns)) {
+    exact.triangularView<Eigen::StrictlyUpper>().setZero();
+    exact.diagonal().array() += 3.0;
+    stored = Eigen::MatrixXd::Constant(rows + 1, columns, 7.0);
+    stored.topRows(rows) = exact;
+    stored.diagonal() = exact.diagonal().cwiseInverse();
+  }
+};
+
+TEST(DenseKernels, FactoriseThreeColumnsOfEveryHeight) {
+  for (int rows = 3; rows <= 32; ++rows) {
+    const RandomPanel panel(rows, 3);
+    Eigen::MatrixXd a = panel.stored;
+    a.topRows(rows) = panel.exact * panel.exact.topRows(3).transpose();
+    ASSERT_TRUE(factoriseThreeColumns(rows, a.data(), rows + 1));
+    a.triangularView<Eigen::StrictlyUpper>().setZero();
+    Eigen::MatrixXd exact = panel.stored;
+    // Some ten operations on numbers of order 10.
+    EXPECT_LT((a - exact).cwiseAbs().maxCoeff(), 1e-13) << rows;
+  }
+}
+
+TEST(DenseKernels, SubstituteThroughPanelsOfEveryHeight) {
+  for (int columns : {3, 6, 9}) {
+    for (int rows = columns; rows <= columns + 20; ++rows) {
+      const RandomPanel panel(rows, columns);
+      const auto top = panel.exact.topRows(columns).triangularView<Eigen::Lower>();
+      const auto below = panel.exact.bottomRows(rows - columns);
+      const Eigen::VectorXd start = Eigen::VectorXd::Random(rows + 1);
+
+      Eigen::VectorXd x = start, exact = start;
+      substituteForward(rows, columns, panel.stored.data(), rows + 1, x.data());
+      exact.head(columns) = top.solve(start.head(columns));
+      exact.segment(columns, rows - columns) -= below * exact.head(columns);
+      EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+
+      x = exact = start;
+      substituteBackward(rows, columns, panel.stored.data(), rows + 1, x.data());
+      exact.head(columns) -= below.transpose() * start.segment(columns, rows - columns);
+      exact.head(columns) = top.transpose().solve(exact.head(columns)).eval();
+      EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+    }
+  }
+}
+
 TEST(Elimination, SupernodesPartitionTheColumnsAndHoldTheWholePattern) {
   const SymmetricBlockMatrix pattern = randomDefinite(square(9), 1.0);
   const Elimination elimination = analyse(pattern);
@@ -250,6 +316,31 @@ TEST(LinearSolver, AutomaticIteratesWhereItIsEasyAndFactorisesWhereItIsHard) {
     solver.solve(hard, rhs, 1e-6, x);
   }
   EXPECT_EQ(direct_solves_before_success(), 16);
+}
+
+TEST(SymmetricBlockMatrix, HasTheBlocksOfFurtherPairsForBothSolvers) {
+  const ClothMesh mesh = square(6);
+  const int size = static_cast<int>(mesh.rest_coordinates.size());
+  const std::vector<std::array<int, 2>> pairs = {{0, 48}, {30, 2}, {2, 30}, {0, 1}, {5, 5}};
+  const SymmetricBlockMatrix without(size, mesh.triangles);
+  SymmetricBlockMatrix matrix(size, mesh.triangles, pairs);
+  EXPECT_EQ(matrix.lowerCount(), without.lowerCount() + 2);  // {0, 1} is an edge
+  for (int i = 0; i < size; ++i) {
+    matrix.diagonal(i) = 20.0 * Eigen::Matrix3d::Identity();
+    for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) matrix.lower(s).setRandom();
+  }
+  matrix.lower(matrix.slot(48, 0)).setConstant(2.0);
+  matrix.lower(matrix.slot(30, 2)).setConstant(-3.0);
+  const BlockVector rhs = BlockVector::Random(3, size);
+  const Eigen::VectorXd exact = dense(matrix).llt().solve(stacked(rhs));
+  BlockVector x = rhs;
+  BlockCholesky cholesky(matrix);
+  ASSERT_TRUE(cholesky.factorise(matrix));
+  cholesky.solve(x);
+  EXPECT_LT((stacked(x) - exact).norm(), 1e-12 * exact.norm());
+  x.setZero();
+  EXPECT_TRUE(ConjugateGradient(size).solve(matrix, rhs, 1e-12, 1000, x).converged);
+  EXPECT_LT((stacked(x) - exact).norm(), 1e-10 * exact.norm());
 }
 
 }  // namespace

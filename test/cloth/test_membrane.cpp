@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <limits>
 #include <numeric>
 
 #include "fixtures.h"
@@ -199,6 +200,85 @@ TEST_P(StepRightHandSide, IsForceAndElasticStiffnessTimesVelocity) {
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     const Vector3d exact = h * forces[i] - stiffness_times_velocity.col(i);
     EXPECT_LT((system.rhs.col(i) - exact).norm(), 1e-12 * system.rhs.norm());
+  }
+}
+
+/// The steps of all triangles, each as a mesh of its own: too few to be added in batches.
+System stepOfEachAlone(const Cloth& cloth, const material::Fabric& fabric, const ClothState& state,
+                       double h) {
+  System sum(cloth);
+  for (const std::array<int, 3>& triangle : cloth.mesh().triangles) {
+    ClothMesh mesh = cloth.mesh();
+    mesh.triangles = {triangle};
+    const Membrane membrane(mesh, fabric, cloth.effects().viscosity);
+    SymmetricBlockMatrix matrix(sum.matrix.size(), mesh.triangles);
+    membrane.addStep(state.positions, state.velocities, h, matrix, sum.rhs);
+    for (int i = 0; i < matrix.size(); ++i) {
+      sum.matrix.diagonal(i) += matrix.diagonal(i);
+      for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) {
+        sum.matrix.lower(sum.matrix.slot(i, matrix.column(s))) += matrix.lower(s);
+      }
+    }
+  }
+  return sum;
+}
+
+class StepInBatches : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Viscosity, StepInBatches, testing::Bool());
+
+TEST_P(StepInBatches, IsTheSumOfTheStepsOfTheTrianglesAlone) {
+  ModelledEffects effects;
+  effects.viscosity = GetParam();
+  // 18, 32 and 50 triangles, so that two remain after the last whole batch of four, or none.
+  for (int cells : {3, 4, 5}) {
+    const Cloth cloth(square(cells), stiffeningFabric(), effects);
+    for (unsigned seed = 1; seed <= 9; ++seed) {
+      // Stretch, shear and compression on every branch of the curves and of projectStress().
+      ClothState state = randomState(cloth, seed % 3 == 0 ? 0.03 : 0.003, 3.0, seed);
+      if (seed % 2 == 0) {
+        for (Vector3d& position : state.positions) position *= 0.7;
+      }
+      const System exact = stepOfEachAlone(cloth, stiffeningFabric(), state, 0.002);
+      System system(cloth);
+      cloth.membrane().addStep(state.positions, state.velocities, 0.002, system.matrix, system.rhs);
+      // The sums have the same order; what differs is the rounding within an element.
+      EXPECT_LT((dense(system.matrix) - dense(exact.matrix)).norm(),
+                1e-13 * dense(exact.matrix).norm());
+      EXPECT_LT((system.rhs - exact.rhs).norm(), 1e-13 * exact.rhs.norm());
+    }
+  }
+}
+
+TEST_P(StepInBatches, IsExactlyTheSameEveryTime) {
+  ModelledEffects effects;
+  effects.viscosity = GetParam();
+  const Cloth cloth(square(5), stiffeningFabric(), effects);
+  const ClothState state = randomState(cloth, 0.01, 1.0);
+  System first(cloth), second(cloth);
+  cloth.membrane().addStep(state.positions, state.velocities, 0.001, first.matrix, first.rhs);
+  cloth.membrane().addStep(state.positions, state.velocities, 0.001, second.matrix, second.rhs);
+  EXPECT_EQ(dense(first.matrix), dense(second.matrix));
+  EXPECT_EQ(first.rhs, second.rhs);
+}
+
+TEST_P(StepInBatches, HidesNoNumberThatIsNotFinite) {
+  ModelledEffects effects;
+  effects.viscosity = GetParam();
+  const Cloth cloth(square(3), stiffeningFabric(), effects);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (double bad : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity}) {
+    for (std::size_t particle = 0; particle < cloth.particleCount(); ++particle) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (bool moving : {false, true}) {
+          ClothState state = randomState(cloth, 1e-3, 0.1);
+          (moving ? state.velocities : state.positions)[particle][axis] = bad;
+          System system(cloth);
+          cloth.membrane().addStep(state.positions, state.velocities, 0.001, system.matrix,
+                                   system.rhs);
+          EXPECT_FALSE(system.rhs.allFinite());
+        }
+      }
+    }
   }
 }
 

@@ -183,6 +183,10 @@ TEST_F(SceneFile, RefusesAMeshOfTooManyTriangles) {
             path() + ": mesh: 200001 triangles, at most 200000 are allowed");
 }
 
+TEST_F(SceneFile, LeavesTheKeyOfTheForceRendererToIt) {
+  EXPECT_EQ(load(kValid + "haptics: {layer: patch}\n").time_step, 0.0125);
+}
+
 TEST_F(SceneFile, AcceptsValuesAtTheirLimits) {
   EXPECT_EQ(load(replaced(kValid, "[3, 2]", "[1000, 100]")).mesh.triangles.size(), 200000u);
   EXPECT_NO_THROW(load(replaced(kValid, "[0.3, 0.2]", "[100, 100]")));

@@ -54,6 +54,24 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
+TEST_F(PathFile, TellsThePhaseThatBeganLast) {
+  EXPECT_EQ(load(kValid).phases(), std::vector<std::string>{""});
+  const std::string named = replaced(replaced(kValid, "{time: 2,", "{time: 2, phase: turn,"),
+                                     "{time: 3,", "{time: 3, phase: back,");
+  const HandPath path = load(named);
+  EXPECT_EQ(path.phases(), (std::vector<std::string>{"", "turn", "back"}));
+  EXPECT_EQ(path.at(0.0).phase, 0);
+  EXPECT_EQ(path.at(1.999).phase, 0);
+  EXPECT_EQ(path.at(2.0).phase, 1);
+  EXPECT_EQ(path.at(2.999).phase, 1);
+  EXPECT_EQ(path.at(3.0).phase, 0);  // it repeats: this is the start again
+  const HandPath once = load(replaced(named, "repeat: true", "repeat: false"));
+  EXPECT_EQ(once.at(3.0).phase, 2);
+  EXPECT_EQ(once.at(4.0).phase, 2);
+  EXPECT_NE(refusalOf(replaced(kValid, "{time: 2,", "{time: 2, phase: \"\",")).find("phase"),
+            std::string::npos);
+}
+
 TEST_F(PathFile, MeetsItsKeyFrames) {
   const HandPath path = load(kValid);
   EXPECT_EQ(path.duration(), 3.0);

@@ -101,9 +101,10 @@ TEST(CompressionFromKes, RefusesWorkThatNoCurveWithACoreDoes) {
 TEST(CompressionFromKes, RefusesAFabricThatIsMostlyAir) {
   // T0 = 1 mm, Tm = 0.5 mm and r = 0.1, a part of 0.13 / 2.66 of the work: x0 = 0.55 mm,
   // xm = 0.05 mm, a = 6.0724e-10, so 2.463 mm more than T0.
-  EXPECT_EQ(refusalOf({1e-3, 0.5e-3, 0.143136}),
-            "WC: 0.143136 is too small: without pressure the fabric would be 0.00346299 m thick, at "
-            "most 2 T0 is allowed");
+  EXPECT_EQ(
+      refusalOf({1e-3, 0.5e-3, 0.143136}),
+      "WC: 0.143136 is too small: without pressure the fabric would be 0.00346299 m thick, at "
+      "most 2 T0 is allowed");
 }
 
 TEST(CompressionFromPoints, PassesThroughEveryPointAndRises) {

@@ -31,30 +31,31 @@ class BlockCholesky {
   struct Panel {
     std::size_t offset;  // of its first double in panels_
     int leading;         // doubles from one column to the next
+    int first_entry;     // of those of the matrix that go here, in entries_
+    int end_entry;
   };
-  struct Entry {         // where a block of the matrix goes
-    std::size_t offset;  // in panels_
-    int leading;
+  struct Entry {  // where a block of the matrix goes
+    int slot;     // in lower(), or -1 - row in diagonal()
+    int offset;   // in the panel
     bool transposed;
   };
-
-  void load(const SymmetricBlockMatrix& matrix);
+  void load(const SymmetricBlockMatrix& matrix, int target);
   void applyDescendant(int descendant, int target);
   bool factorisePanel(int target);
-  Entry entryOf(int row, int column) const;
+  Entry entryOf(int row, int column, int slot, bool transposed) const;
 
   Elimination elimination_;
   double cost_;
   std::vector<Panel> panel_of_;
   std::vector<double> panels_;
-  std::vector<Entry> diagonal_entries_;
-  std::vector<Entry> lower_entries_;
+  std::vector<Entry> entries_;
   // Lists of the factored supernodes that still update a later one, and how far each has got.
   std::vector<int> first_descendant_;
   std::vector<int> next_descendant_;
   std::vector<int> next_row_;
   std::vector<int> panel_row_;  // by block row: its place in the current target panel
   std::vector<double> update_;
+  std::vector<double> front_;  // of the unknowns that a panel couples, in its order
   BlockVector permuted_;
 };
 

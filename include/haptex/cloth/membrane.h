@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "haptex/cloth/block_matrix.h"
+#include "haptex/cloth/membrane_kernel.h"
 #include "haptex/cloth/mesh.h"
 #include "haptex/material/fabric.h"
 
@@ -44,9 +45,8 @@ class Membrane {
   /// Takes the curves of another fabric.
   void setFabric(const material::Fabric& fabric);
 
-  /// For matrices with another pattern than that of the mesh's triangles alone: looks up where the
-  /// elements' blocks are.
-  /// @throws std::out_of_range if the pattern lacks one
+  /// Looks up the elements' slots in a matrix whose pattern has more than the mesh's edges.
+  /// @throws std::out_of_range if the pattern lacks one of them
   void bind(const SymmetricBlockMatrix& matrix);
 
   const std::vector<MembraneElement>& elements() const { return elements_; }
@@ -106,11 +106,13 @@ class Membrane {
   struct Response;  // stress and slope of all three curves
   static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
   template <bool kViscous>
-  void addStepOf(const Positions& positions, const Velocities& velocities, double h,
-                 SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
+  void addStepOf(const MembraneElement& element, const Positions& positions,
+                 const Velocities& velocities, double h, SymmetricBlockMatrix& matrix,
+                 BlockVector& rhs) const;
   static Response respond(const Curves& curves, const MembraneStrain& strain);
 
   std::vector<MembraneElement> elements_;
+  std::vector<kernels::MembraneBatch> batches_;  // empty where the processor cannot use them
   Curves elastic_;
   Curves viscous_;
   bool viscosity_;

@@ -14,11 +14,13 @@ struct HandPlace {
   PerFinger<Eigen::Vector3d> fingertips{
       {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}};      ///< m, in hand_base
   Eigen::Isometry3d hand_base = Eigen::Isometry3d::Identity();  ///< its pose in world (m)
+  int phase = 0;  ///< which of HandPath::phases() this belongs to
 };
 
 struct KeyFrame {
   double time;  ///< s since the start
   HandPlace place;
+  std::string phase = {};  ///< name of the phase that begins here; empty: none does
 };
 
 /// Goes from key frame to key frame and rests for a moment at each.
@@ -36,10 +38,13 @@ class HandPath {
 
   double duration() const { return key_frames_.back().time; }  ///< s
   bool repeats() const { return repeats_; }
+  /// Names in the order of their begin. The first, empty, is that of the time before any.
+  const std::vector<std::string>& phases() const { return phases_; }
 
  private:
   std::vector<KeyFrame> key_frames_;
   bool repeats_;
+  std::vector<std::string> phases_{""};
 };
 
 /// Reads a path file; docs/path_files.md describes the format.

@@ -11,8 +11,9 @@ namespace haptex::material {
 /// @throws std::runtime_error if the file cannot be read or is not YAML
 /// @throws std::invalid_argument naming file, key, value and what is allowed if a key is missing
 ///   or unknown, a unit is wrong, a number is not finite or out of range, samples are not in
-///   strictly increasing order of strain, or a curve pushes where it should pull back: a stress
-///   against its strain, or a falling end, with which the curve would continue
+///   strictly increasing order of strain, a curve pushes where it should pull back: a stress
+///   against its strain, or a falling end, with which the curve would continue; or what
+///   compressionFromPoints() and compressionFromKes() refuse
 Fabric loadFabric(const std::string& path);
 
 }  // namespace haptex::material

@@ -45,9 +45,10 @@ struct TruthTopics {
 
 /// Below the namespace of `node`: what TargetInput does; advertises emulator/<finger>/contact_force
 /// and emulator/<finger>/motor_force (geometry_msgs/WrenchStamped, what is true and no device can
-/// know, by the axes of hand_base), one message per period of the emulator, for subscribers only;
-/// services emulator/inject_fault (srv/InjectFault) and emulator/power_cycle (std_srvs/Trigger).
-/// Broadcasts world -> hand_base on tf, 100 times a second.
+/// know, by the axes of hand_base), one message per period of the emulator, for subscribers only,
+/// and emulator/phase (std_msgs/String, latched, which phase of its path the hand is in); services
+/// emulator/inject_fault (srv/InjectFault) and emulator/power_cycle (std_srvs/Trigger). Broadcasts
+/// world -> hand_base on tf, 100 times a second.
 ///
 /// The emulator runs on a thread of its own, which waits neither for topics nor for services.
 class EmulatorNode {
@@ -84,10 +85,12 @@ class EmulatorNode {
 
   Emulator emulator_;
 
+  ros::Publisher phase_topic_;
   ros::ServiceServer fault_service_;
   ros::ServiceServer power_service_;
   ros::SteadyTimer hand_timer_;
-  std::uint64_t hands_ = 0;                  // published, used by that timer only
+  std::uint64_t hands_ = 0;  // published, used by that timer only, and so is the next
+  int phase_ = 0;            // published
   diagnostic_updater::Updater diagnostics_;  // used by its timer only, and so are the next
   EmulatorStatus diagnosed_;
   std::uint64_t diagnosed_refusals_ = 0;

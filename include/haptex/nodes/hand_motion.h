@@ -22,6 +22,7 @@ class HandMotion {
   explicit HandMotion(exoskeleton::HandPath path);
 
   exoskeleton::HandPlace at(exoskeleton::Time now);
+  const exoskeleton::HandPath& path() const { return path_; }
 
   /// From now on the fingertip wants to be there (m, in hand_base), or the hand is there (pose of
   /// hand_base in world), whatever the path says.

@@ -1,0 +1,279 @@
+#include "haptex/cloth/membrane_kernel.h"
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+
+#include <cstddef>
+
+// Every function that touches a wide register carries the attribute and is inlined, so that no
+// wide value crosses a call: the rest of the library keeps the ABI of the baseline.
+#define HAPTEX_AVX2 [[gnu::target("avx2,fma")]]
+#define HAPTEX_AVX2_INLINE [[gnu::target("avx2,fma"), gnu::always_inline]] inline
+
+namespace haptex::cloth::kernels {
+namespace {
+
+struct Vector {  // four 3-vectors, one per lane
+  __m256d x, y, z;
+};
+
+struct Symmetric {
+  __m256d xx, xy, xz, yy, yz, zz;
+};
+
+struct Block {
+  __m256d columns[9];
+};
+
+struct Response {
+  __m256d stress[3];
+  __m256d slope[3];
+};
+
+HAPTEX_AVX2_INLINE Vector operator+(const Vector& a, const Vector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+HAPTEX_AVX2_INLINE Vector operator-(const Vector& a, const Vector& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+HAPTEX_AVX2_INLINE Vector combine(__m256d s, const Vector& a, __m256d t, const Vector& b) {
+  return {s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
+}
+
+HAPTEX_AVX2_INLINE __m256d dot(const Vector& a, const Vector& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// The points of four particles. Reads no number behind the last one.
+HAPTEX_AVX2_INLINE Vector gather(const double* points, const int* particles) {
+  const double* p0 = points + std::ptrdiff_t{3} * particles[0];
+  const double* p1 = points + std::ptrdiff_t{3} * particles[1];
+  const double* p2 = points + std::ptrdiff_t{3} * particles[2];
+  const double* p3 = points + std::ptrdiff_t{3} * particles[3];
+  const __m256d even = _mm256_loadu2_m128d(p2, p0);
+  const __m256d odd = _mm256_loadu2_m128d(p3, p1);
+  return {_mm256_unpacklo_pd(even, odd), _mm256_unpackhi_pd(even, odd),
+          _mm256_set_pd(p3[2], p2[2], p1[2], p0[2])};
+}
+
+/// Adds the vectors to the points of four particles, one particle after the other.
+HAPTEX_AVX2_INLINE void scatter(const Vector& v, const int* particles, double* points) {
+  const __m256d even = _mm256_unpacklo_pd(v.x, v.y);
+  const __m256d odd = _mm256_unpackhi_pd(v.x, v.y);
+  const __m128d xy[4] = {_mm256_castpd256_pd128(even), _mm256_castpd256_pd128(odd),
+                         _mm256_extractf128_pd(even, 1), _mm256_extractf128_pd(odd, 1)};
+  for (int lane = 0; lane < kBatch; ++lane) {
+    double* point = points + std::ptrdiff_t{3} * particles[lane];
+    _mm_storeu_pd(point, _mm_loadu_pd(point) + xy[lane]);
+    point[2] += v.z[lane];
+  }
+}
+
+/// Turns four registers, one lane per element, into one register per element.
+HAPTEX_AVX2_INLINE void transpose(const __m256d* rows, __m256d* columns) {
+  const __m256d low_01 = _mm256_unpacklo_pd(rows[0], rows[1]);
+  const __m256d high_01 = _mm256_unpackhi_pd(rows[0], rows[1]);
+  const __m256d low_23 = _mm256_unpacklo_pd(rows[2], rows[3]);
+  const __m256d high_23 = _mm256_unpackhi_pd(rows[2], rows[3]);
+  columns[0] = _mm256_permute2f128_pd(low_01, low_23, 0x20);
+  columns[1] = _mm256_permute2f128_pd(high_01, high_23, 0x20);
+  columns[2] = _mm256_permute2f128_pd(low_01, low_23, 0x31);
+  columns[3] = _mm256_permute2f128_pd(high_01, high_23, 0x31);
+}
+
+/// Adds one block per element to the blocks at `places`.
+HAPTEX_AVX2_INLINE void scatter(const Block& block, const int* places, double* blocks) {
+  __m256d first[4], second[4];
+  transpose(block.columns, first);
+  transpose(block.columns + 4, second);
+  for (int lane = 0; lane < kBatch; ++lane) {
+    double* target = blocks + std::ptrdiff_t{9} * places[lane];
+    _mm256_storeu_pd(target, _mm256_loadu_pd(target) + first[lane]);
+    _mm256_storeu_pd(target + 4, _mm256_loadu_pd(target + 4) + second[lane]);
+    target[8] += block.columns[8][lane];
+  }
+}
+
+HAPTEX_AVX2_INLINE Block full(const Symmetric& s) {
+  return {{s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz}};
+}
+
+HAPTEX_AVX2_INLINE Response respond(const std::array<material::StrainStressCurve, 3>& curves,
+                                    const __m256d* strain) {
+  Response result;
+  for (int m = 0; m < 3; ++m) {
+    for (int lane = 0; lane < kBatch; ++lane) {
+      const material::CurveValue value = curves[m].evaluate(strain[m][lane]);
+      result.stress[m][lane] = value.stress;
+      result.slope[m][lane] = value.slope;
+    }
+    // NaN is the second operand and therefore stays.
+    result.slope[m] = _mm256_max_pd(_mm256_setzero_pd(), result.slope[m]);
+  }
+  return result;
+}
+
+/// projectStress() of four elements.
+HAPTEX_AVX2_INLINE void project(const __m256d* stress, __m256d* result) {
+  const __m256d zero = _mm256_setzero_pd();
+  const __m256d mean = 0.5 * (stress[0] + stress[1]);
+  const __m256d difference = 0.5 * (stress[0] - stress[1]);
+  const __m256d radius = _mm256_sqrt_pd(difference * difference + stress[2] * stress[2]);
+  const __m256d half = 0.5 * (mean + radius);
+  const __m256d ratio = half / radius;
+  const __m256d clamped[3] = {half + ratio * difference, half - ratio * difference,
+                              ratio * stress[2]};
+  const __m256d keep = _mm256_cmp_pd(mean, radius, _CMP_GE_OQ);
+  const __m256d drop = _mm256_cmp_pd(mean, zero - radius, _CMP_LE_OQ);
+  for (int m = 0; m < 3; ++m) {
+    result[m] = _mm256_blendv_pd(_mm256_blendv_pd(clamped[m], zero, drop), stress[m], keep);
+  }
+}
+
+/// A tangent block with i = j: weft (p)^T + warp (q)^T is symmetric there.
+HAPTEX_AVX2_INLINE Symmetric diagonalBlock(const Vector& weft, const Vector& warp, __m256d ru,
+                                           __m256d rv, const __m256d* slope,
+                                           const __m256d* stress) {
+  const __m256d uu = ru * ru, vv = rv * rv, uv = ru * rv;
+  const __m256d across = slope[2] * uv;
+  const Vector p = combine(slope[0] * uu + slope[2] * vv, weft, across, warp);
+  const Vector q = combine(across, weft, slope[1] * vv + slope[2] * uu, warp);
+  const __m256d geometric = stress[0] * uu + stress[1] * vv + stress[2] * (uv + uv);
+  return {weft.x * p.x + (warp.x * q.x + geometric),
+          weft.x * p.y + warp.x * q.y,
+          weft.x * p.z + warp.x * q.z,
+          weft.y * p.y + (warp.y * q.y + geometric),
+          weft.y * p.z + warp.y * q.z,
+          weft.z * p.z + (warp.z * q.z + geometric)};
+}
+
+struct Lanes {  // an element's constants
+  __m256d weft_weights[2], warp_weights[2], area;
+};
+
+HAPTEX_AVX2_INLINE void addTangent(const MembraneBatch& batch, const Lanes& at, const Vector& weft,
+                                   const Vector& warp, const __m256d* slope, const __m256d* stress,
+                                   const MembraneStep& step) {
+  const Symmetric b11 =
+      diagonalBlock(weft, warp, at.weft_weights[0], at.warp_weights[0], slope, stress);
+  const Symmetric b22 =
+      diagonalBlock(weft, warp, at.weft_weights[1], at.warp_weights[1], slope, stress);
+  const __m256d uu = at.weft_weights[1] * at.weft_weights[0];
+  const __m256d vv = at.warp_weights[1] * at.warp_weights[0];
+  const __m256d uv = at.weft_weights[1] * at.warp_weights[0];
+  const __m256d vu = at.warp_weights[1] * at.weft_weights[0];
+  const Vector p = combine(slope[0] * uu + slope[2] * vv, weft, slope[2] * vu, warp);
+  const Vector q = combine(slope[2] * uv, weft, slope[1] * vv + slope[2] * uu, warp);
+  const __m256d geometric = stress[0] * uu + stress[1] * vv + stress[2] * (uv + vu);
+  const Block b21 = {{weft.x * p.x + (warp.x * q.x + geometric), weft.y * p.x + warp.y * q.x,
+                      weft.z * p.x + warp.z * q.x, weft.x * p.y + warp.x * q.y,
+                      weft.y * p.y + (warp.y * q.y + geometric), weft.z * p.y + warp.z * q.y,
+                      weft.x * p.z + warp.x * q.z, weft.y * p.z + warp.y * q.z,
+                      weft.z * p.z + (warp.z * q.z + geometric)}};
+  // Blocks with particle 0 follow from the others because the weights sum to zero.
+  const Block b11_full = full(b11), b22_full = full(b22);
+  Block b10, b20;
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) {
+      b10.columns[3 * c + r] = -b11_full.columns[3 * c + r] - b21.columns[3 * r + c];
+      b20.columns[3 * c + r] = -b21.columns[3 * c + r] - b22_full.columns[3 * c + r];
+    }
+  }
+  const Symmetric b00 = {-b10.columns[0] - b20.columns[0], -b10.columns[3] - b20.columns[3],
+                         -b10.columns[6] - b20.columns[6], -b10.columns[4] - b20.columns[4],
+                         -b10.columns[7] - b20.columns[7], -b10.columns[8] - b20.columns[8]};
+  scatter(b21, batch.slots[2], step.lower);
+  scatter(b11_full, batch.particles[1], step.diagonal);
+  scatter(b22_full, batch.particles[2], step.diagonal);
+  scatter(b10, batch.slots[0], step.lower);
+  scatter(b20, batch.slots[1], step.lower);
+  scatter(full(b00), batch.particles[0], step.diagonal);
+}
+
+HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep& step) {
+  Lanes at;
+  for (int i = 0; i < 2; ++i) {
+    at.weft_weights[i] = _mm256_load_pd(batch.weft_weights[i]);
+    at.warp_weights[i] = _mm256_load_pd(batch.warp_weights[i]);
+  }
+  at.area = _mm256_load_pd(batch.area);
+  const Vector origin = gather(step.positions, batch.particles[0]);
+  const Vector edge_1 = gather(step.positions, batch.particles[1]) - origin;
+  const Vector edge_2 = gather(step.positions, batch.particles[2]) - origin;
+  const Vector weft = combine(at.weft_weights[0], edge_1, at.weft_weights[1], edge_2);
+  const Vector warp = combine(at.warp_weights[0], edge_1, at.warp_weights[1], edge_2);
+  const Vector drift = gather(step.velocities, batch.particles[0]);
+  const Vector opening_1 = gather(step.velocities, batch.particles[1]) - drift;
+  const Vector opening_2 = gather(step.velocities, batch.particles[2]) - drift;
+  const Vector weft_rate = combine(at.weft_weights[0], opening_1, at.weft_weights[1], opening_2);
+  const Vector warp_rate = combine(at.warp_weights[0], opening_1, at.warp_weights[1], opening_2);
+
+  const __m256d strain[3] = {0.5 * (dot(weft, weft) - 1.0), 0.5 * (dot(warp, warp) - 1.0),
+                             dot(weft, warp)};
+  const __m256d rate[3] = {dot(weft, weft_rate), dot(warp, warp_rate),
+                           dot(weft_rate, warp) + dot(weft, warp_rate)};
+  const __m256d h = _mm256_set1_pd(step.time_step);
+  const __m256d load = -at.area * h;  // N.s/m per N/m of stress
+  const __m256d stiffness = -load * h;
+  Response response = respond(*step.elastic, strain);
+  __m256d end[3];
+  for (int m = 0; m < 3; ++m) end[m] = h * response.slope[m] * rate[m];
+  if (step.viscous) {
+    const Response viscous = respond(*step.viscous, rate);
+    const __m256d frequency = 1.0 / h;
+    for (int m = 0; m < 3; ++m) {
+      response.stress[m] += viscous.stress[m];
+      response.slope[m] += viscous.slope[m] * frequency;
+    }
+  }
+  __m256d geometric[3], turning[3];
+  project(response.stress, geometric);
+  for (int m = 0; m < 3; ++m) {
+    end[m] = load * (response.stress[m] + end[m]);
+    response.slope[m] *= stiffness;
+    geometric[m] *= stiffness;
+    turning[m] = -geometric[m];
+  }
+  const Vector weft_traction =
+      combine(end[0], weft, end[2], warp) + combine(turning[0], weft_rate, turning[2], warp_rate);
+  const Vector warp_traction =
+      combine(end[1], warp, end[2], weft) + combine(turning[1], warp_rate, turning[2], weft_rate);
+  const Vector at_1 = combine(at.weft_weights[0], weft_traction, at.warp_weights[0], warp_traction);
+  const Vector at_2 = combine(at.weft_weights[1], weft_traction, at.warp_weights[1], warp_traction);
+  const __m256d zero = _mm256_setzero_pd();
+  scatter(Vector{zero, zero, zero} - (at_1 + at_2), batch.particles[0], step.rhs);
+  scatter(at_1, batch.particles[1], step.rhs);
+  scatter(at_2, batch.particles[2], step.rhs);
+  addTangent(batch, at, weft, warp, response.slope, geometric, step);
+}
+
+HAPTEX_AVX2 void addStepAvx2(const MembraneBatch* batches, int count, const MembraneStep& step) {
+  for (int b = 0; b < count; ++b) addBatch(batches[b], step);
+}
+
+}  // namespace
+
+bool canAddBatches() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+
+void addStep(const MembraneBatch* batches, int count, const MembraneStep& step) {
+  addStepAvx2(batches, count, step);
+}
+
+}  // namespace haptex::cloth::kernels
+
+#undef HAPTEX_AVX2
+#undef HAPTEX_AVX2_INLINE
+
+#else
+
+namespace haptex::cloth::kernels {
+
+bool canAddBatches() { return false; }
+
+void addStep(const MembraneBatch*, int, const MembraneStep&) {}
+
+}  // namespace haptex::cloth::kernels
+
+#endif
