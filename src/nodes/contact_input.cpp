@@ -2,7 +2,7 @@
 
 #include <exception>
 
-#include "haptex/nodes/contact_messages.h"
+#include "haptex/nodes/point_load_messages.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {

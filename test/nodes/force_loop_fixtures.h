@@ -20,7 +20,7 @@ class TouchedSheet {
   static constexpr int kCells = 8;
   static constexpr double kSize = 0.1;  // m; the sheet hangs from z = 0 in the plane x = 0
 
-  TouchedSheet() : loop_({{kRadius, kRadius}}) {
+  TouchedSheet() : loop_(exoskeleton::PerFinger<double>{{kRadius, kRadius}}) {
     mesh_ = cloth::makeRectangle(kSize, kSize, kCells, kCells, cloth::Triangulation::kAlternating);
     state_.positions = mesh_.initial_positions;
     state_.velocities.assign(state_.positions.size(), Eigen::Vector3d::Zero());

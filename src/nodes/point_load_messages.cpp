@@ -1,4 +1,4 @@
-#include "haptex/nodes/contact_messages.h"
+#include "haptex/nodes/point_load_messages.h"
 
 #include <stdexcept>
 #include <string>

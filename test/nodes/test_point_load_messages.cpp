@@ -5,7 +5,7 @@
 #include <string>
 
 #include "haptex/nodes/cloth_messages.h"
-#include "haptex/nodes/contact_messages.h"
+#include "haptex/nodes/point_load_messages.h"
 #include "small_scene.h"
 
 namespace haptex::nodes {
@@ -28,7 +28,7 @@ haptex::ContactForces twoForces() {
   return message;
 }
 
-TEST(ContactMessages, KeepEveryNumberInItsPlace) {
+TEST(PointLoadMessages, KeepEveryNumberInItsPlace) {
   const std::vector<cloth::PointLoad> loads = pointLoads(twoForces(), kTriangles);
   ASSERT_EQ(loads.size(), 2u);
   EXPECT_EQ(loads[0].triangle, 3);
@@ -45,7 +45,7 @@ TEST(ContactMessages, KeepEveryNumberInItsPlace) {
   EXPECT_TRUE(pointLoads(nothing, kTriangles).empty());
 }
 
-TEST(ContactMessages, AreRefusedForWhatIsWrongWithThem) {
+TEST(PointLoadMessages, AreRefusedForWhatIsWrongWithThem) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   using Message = haptex::ContactForces;
   const auto expectRefused = [](const std::function<void(Message&)>& spoil,
@@ -77,7 +77,7 @@ TEST(ContactMessages, AreRefusedForWhatIsWrongWithThem) {
   expectRefused([](Message& m) { m.stiffness[0] = -1.0; }, "positive semidefinite");
 }
 
-TEST(ContactMessages, WhatIsAcceptedTheClothAccepts) {
+TEST(PointLoadMessages, WhatIsAcceptedTheClothAccepts) {
   SimulatedCloth simulation = smallSimulation();
   SimulatedCloth untouched = smallSimulation();
   simulation.setPointLoads(pointLoads(twoForces(), simulation.cloth().mesh().triangles.size()));
