@@ -159,11 +159,11 @@ TEST_F(PatchTest, AnExchangeUnderContactDoesNotLetTheForceJump) {
 TEST_F(PatchTest, SaysWhenAStepIsNotFiniteAndStartsAgain) {
   Patch patch = patchAround({0.02, 0.02}, 0.01);
   patch.start(motion_);
-  Fingertip fingertip = pressing(law_, kSmallSampleMiddle, 1e-3);
+  const Fingertip fingertip = pressing(law_, kSmallSampleMiddle, 1e-3);
   advance(patch, &fingertip, 1);
-  Fingertip bad = fingertip;
-  bad.velocity.x() = std::nan("");
-  EXPECT_FALSE(patch.advance(motion_, {&bad, nullptr}, kStep));
+  LargeScaleMotion bad(mesh_.rest_coordinates.size());
+  bad.receive(std::vector<Vector3d>(mesh_.rest_coordinates.size(), Vector3d(0.0, NAN, 0.0)), 0.02);
+  EXPECT_FALSE(patch.advance(bad, {&fingertip, nullptr}, kStep));
   patch.start(motion_);
   advance(patch, &fingertip, 10);
   EXPECT_TRUE(forceOn(patch).allFinite());

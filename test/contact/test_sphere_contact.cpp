@@ -86,13 +86,13 @@ TEST_F(SphereContactTest, HoldsAParticleByASpringToWhereItTouchedFirst) {
 
 TEST_F(SphereContactTest, SlipsAtTheCoefficientOfFrictionWhateverTheDistance) {
   commit();
-  for (double part : {1.1, 3.0, 2.0}) {  // on, on, and back
+  for (double part : {1.1, 3.0, 0.5}) {  // on, on, and back
     positions_[0].y() = part * slipDisplacement();
     const TouchedParticle& touched = commit();
     EXPECT_NEAR(touched.friction.norm(), law_.friction() * touched.normal_force,
                 1e-12 * touched.normal_force);
-    EXPECT_TRUE(part == 2.0 || touched.slips);
-    EXPECT_EQ(touched.friction.y() < 0.0, part != 2.0) << "friction acts with the motion";
+    EXPECT_TRUE(touched.slips);
+    EXPECT_EQ(touched.friction.y() < 0.0, part != 0.5) << "friction acts with the motion";
   }
 }
 
@@ -103,7 +103,8 @@ TEST_F(SphereContactTest, SticksAgainAfterAReversal) {
   positions_[0].y() = 2.5 * slipDisplacement();
   const TouchedParticle& touched = evaluate();
   EXPECT_FALSE(touched.slips);
-  EXPECT_NEAR(touched.friction.y(), 0.5 * slipping, 2e-3 * std::abs(slipping));
+  // The depth, and with it the limit, changes by 1 % on the way.
+  EXPECT_NEAR(touched.friction.y(), 0.5 * slipping, 1e-2 * std::abs(slipping));
 }
 
 TEST_F(SphereContactTest, ASlidingParticleFeelsOneFrictionInBothKindsOfEvaluation) {
@@ -189,7 +190,8 @@ TEST_F(SphereContactTest, FrictionOfASlippingParticleIsConstantAlongTheSlipInThe
   ASSERT_TRUE(touched.slips);
   const Vector3d along = touched.friction.normalized();
   EXPECT_NEAR(along.dot(touched.tangent * along), 0.0, 1e-9 * touched.stiffness.norm());
-  EXPECT_NEAR(along.dot(touched.stiffness * along), 0.5 * sticking(), 1e-3 * sticking());
+  // The secant to the anchor; the depth is a little less than in the middle.
+  EXPECT_NEAR(along.dot(touched.stiffness * along), 0.5 * sticking(), 1e-2 * sticking());
 }
 
 }  // namespace
