@@ -110,9 +110,11 @@ void validateTwoPlaces(const material::Fabric& fabric, const Sink& sink) {
 
 /// Force of a pinch against the integral of the contact law, and the fabric's thickness in the
 /// middle against its compression curve. In the middle of a cell of the large-scale mesh: all
-/// particles there stand for equal areas.
+/// particles there stand for equal areas. Nearly without friction, which resists the approach too
+/// where the spheres are steep.
 void validatePinch(const material::Fabric& fabric, const Sink& sink) {
-  HapticLoopSettings sample = tautSample(fabric, kStrain, kRate);
+  HapticLoopSettings sample = tautSample(fabric, 0.0, kRate);
+  sample.fabric.friction = 1e-6;
   sample.haptics.refinement = 3;
   HapticLoop loop(sample);
   const contact::ContactLaw& law = loop.layer().law();
