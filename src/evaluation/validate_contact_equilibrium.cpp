@@ -19,8 +19,10 @@ const Vector3d kStill = Vector3d::Zero();
 
 /// The bar lets go; the sample falls over, swings, and hangs from the fingertips when it rests.
 void validateWeight(const material::Fabric& fabric, double rate, const Sink& sink) {
-  constexpr double kShortest = 5.0, kLongest = 20.0, kMean = 0.5;  // s
-  constexpr double kStillRipple = 1e-3;                            // N, RMS
+  constexpr double kShortest = 5.0, kLongest = 30.0, kMean = 0.5;  // s
+  // At rest: neither ripple nor creep, without looking at the weight.
+  constexpr double kStillRipple = 1e-3;  // N, RMS
+  constexpr double kStillCreep = 1e-4;   // N, of the mean from one interval to the next
   const HapticLoopSettings sample = hangingSample(fabric, Direction::kWarp, rate);
   HapticLoop loop(sample);
   Hand hand;
@@ -30,8 +32,9 @@ void validateWeight(const material::Fabric& fabric, double rate, const Sink& sin
   move(hand, kStill, -2.0 * kOpen, 0.2, 1e-3, step);
   move(hand, kStill, 0.0, 0.3, 1e-3, step);
   loop.cloth().releaseAll();
-  double mean = 0.0, ripple = 1.0;
-  while (ripple > kStillRipple && loop.time() < kLongest) {
+  double mean = 0.0, ripple = 0.0;
+  bool rests = false;
+  while (!rests && loop.time() < kLongest) {
     double sum = 0.0, squares = 0.0;
     int count = 0;
     move(hand, kStill, 0.0, kMean, 1e-3, [&](const Fingertips& fingertips) {
@@ -41,9 +44,10 @@ void validateWeight(const material::Fabric& fabric, double rate, const Sink& sin
       squares += force * force;
       ++count;
     });
+    const double creep = std::abs(sum / count - mean);
     mean = sum / count;
     ripple = std::sqrt(std::max(0.0, squares / count - mean * mean));
-    if (loop.time() < kShortest) ripple = 1.0;  // still falling
+    rests = loop.time() > kShortest && ripple < kStillRipple && creep < kStillCreep;
   }
   const std::string name = std::to_string(std::lround(rate)) + "Hz";
   sink(
@@ -61,7 +65,10 @@ std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand,
   };
   const auto force = [&] { return cloth.force(0).z() + cloth.force(1).z(); };
   move(hand, kStill, 0.0, 1.0, 0.25, step(0.25));
-  move(hand, kStill, -closing, 0.4, 0.025, step(0.025));
+  // Friction remembers the way: up to the touch at once, from there on as finely as it may be.
+  const double free_way = hand.gap - 2.0 * contact::ContactLaw(sample.fabric).halfThickness();
+  move(hand, kStill, -free_way, 0.25, 0.25, step(0.25));
+  move(hand, kStill, free_way - closing, 0.4, 0.01, step(0.01));
   move(hand, kStill, 0.0, 0.5, 0.25, step(0.25));
   std::vector<double> forces;
   Quantity settled{"contact/stretch/" + name + "/reference_settled", 0.0, 0.0, 0.0,
@@ -70,7 +77,7 @@ std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand,
   for (double extension : extensions) {
     move(hand, {0.0, 0.0, reached - extension}, 0.0, 0.4, 0.08, step(0.08));
     reached = extension;
-    move(hand, kStill, 0.0, 1.0, 0.25, step(0.25));
+    move(hand, kStill, 0.0, 2.0, 0.25, step(0.25));
     const double before = force();
     move(hand, kStill, 0.0, 0.25, 0.25, step(0.25));
     forces.push_back(force());
