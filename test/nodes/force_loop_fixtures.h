@@ -1,4 +1,4 @@
-// A force loop with a wool sample that hangs still and a hand whose index can touch it.
+// A force loop with a wool sample in a frame and a hand whose index can touch it.
 #pragma once
 
 #include <chrono>
@@ -18,13 +18,17 @@ class TouchedSheet {
 
   static constexpr double kRadius = 0.0075;  // m
   static constexpr int kCells = 8;
-  static constexpr double kSize = 0.1;  // m; the sheet hangs from z = 0 in the plane x = 0
+  static constexpr double kSize = 0.1;  // m; in the plane x = 0, its top edge at z = 0
 
   TouchedSheet() : loop_(exoskeleton::PerFinger<double>{{kRadius, kRadius}}) {
     mesh_ = cloth::makeRectangle(kSize, kSize, kCells, kCells, cloth::Triangulation::kAlternating);
     state_.positions = mesh_.initial_positions;
     state_.velocities.assign(state_.positions.size(), Eigen::Vector3d::Zero());
     state_.attached.assign(state_.positions.size(), 0);
+    for (const cloth::Side side :
+         {cloth::Side::kBottom, cloth::Side::kTop, cloth::Side::kLeft, cloth::Side::kRight}) {
+      for (const int particle : cloth::sideParticles(mesh_, side)) state_.attached[particle] = 1;
+    }
     place(Finger::kIndex, 0.05);
     place(Finger::kThumb, 0.05);
     loop_.takeHandBase(hand_, now_, now_, true);

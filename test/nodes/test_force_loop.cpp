@@ -106,7 +106,7 @@ TEST(ForceLoop, WhatActsOnTheClothIsTheOppositeOfWhatTheFingertipFeels) {
   EXPECT_EQ(view.load_gain, 1.0);
   EXPECT_FALSE(view.loads.empty());
   EXPECT_TRUE(view.fingertips[Finger::kIndex] && view.fingertips[Finger::kThumb]);
-  EXPECT_DOUBLE_EQ(view.state_period, 0.012);
+  EXPECT_NEAR(view.state_period, 0.012, 1e-12);
 }
 
 TEST(ForceLoop, NothingActsOnTheClothFromAFingerThatIsGone) {
@@ -115,8 +115,8 @@ TEST(ForceLoop, NothingActsOnTheClothFromAFingerThatIsGone) {
   sheet->run(40);
   const LoopView& view = sheet->loop().view();
   EXPECT_EQ(view.load_gain, 0.0);
-  EXPECT_FALSE(view.fingertips[Finger::kIndex]);
-  EXPECT_TRUE(view.fingertips[Finger::kThumb]);
+  EXPECT_TRUE(view.loads.empty());
+  EXPECT_TRUE(view.fingertips[Finger::kIndex]) << "its patch stays for when it is back";
 }
 
 TEST(ForceLoop, TellsWhenAStateWasTaken) {
