@@ -16,7 +16,8 @@ class TouchedSheet {
   using Finger = exoskeleton::Finger;
   using Time = exoskeleton::Time;
 
-  static constexpr double kRadius = 0.0075;  // m
+  static constexpr double kRadius = 0.0075;         // m
+  static constexpr double kTouch = kRadius - 5e-3;  // m
   static constexpr int kCells = 8;
   static constexpr double kSize = 0.1;  // m; in the plane x = 0, its top edge at z = 0
 
@@ -64,8 +65,13 @@ class TouchedSheet {
   void place(Finger finger, double x) {
     poses_[finger] = hand_.inverse() * Eigen::Translation3d(x, 0.0, -0.5 * kSize);
   }
-  /// Presses the index into the sheet so that it feels it.
-  void touch() { place(Finger::kIndex, kRadius - 0.5e-3); }
+  /// Presses the index 5 mm deep into the sheet within 100 ms. Its centre stays before the sheet.
+  void touch() {
+    for (int i = 0; i <= 100; ++i) {
+      place(Finger::kIndex, kTouch + (1.0 - 0.01 * i) * 6e-3);
+      tick();
+    }
+  }
 
   void silence(RendererSource source, bool silent = true) {
     silent_[static_cast<std::size_t>(source)] = silent;

@@ -286,4 +286,4 @@ class ForceRenderer(unittest.TestCase):
 
 if __name__ == '__main__':
     rospy.init_node('force_renderer_test')
-    rostest.rosrun('haptex', 'force_renderer', ForceRenderer)
+    rostest.rosrun('haptex', 'forces_on_fingers', ForceRenderer)
