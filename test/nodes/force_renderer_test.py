@@ -4,13 +4,16 @@ edge of a wool sample."""
 import collections
 import math
 import os
+import pathlib
 import signal
 import statistics
+import tempfile
 import time
 import unittest
 import xmlrpc.client
 
 import rosgraph
+import roslib.packages
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
@@ -218,12 +221,17 @@ class ForceRenderer(unittest.TestCase):
         self.assertEqual([self.process(node) for node in NODES], processes)
         self.await_contact()
 
-    def test_a_fabric_that_cannot_be_touched_is_named_and_another_one_is_felt(self):
+    def test_a_fabric_that_cannot_be_found_is_named_and_another_one_is_felt(self):
         set_fabric = rospy.ServiceProxy('cloth/set_fabric', SetFabric)
-        self.assertTrue(set_fabric('linear').success)
+        wool = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'config', 'fabrics', 'wool.yaml')
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as unknown:
+            unknown.write(wool.read_text().replace('name: wool', 'name: felt', 1))
+            unknown.flush()
+            response = set_fabric(unknown.name)
+        self.assertTrue(response.success, response.message)
         self.eventually(lambda: all(forces.size == 0.0 for forces in self.commanded.values()),
                         'zero force')
-        self.eventually(lambda: 'linear' in self.values(SOURCES)['why there is no layer'],
+        self.eventually(lambda: "'felt'" in self.values(SOURCES)['why there is no layer'],
                         'diagnostics that name the fabric')
         self.assertTrue(set_fabric('cotton_knit').success)
         self.await_contact()
@@ -278,4 +286,4 @@ class ForceRenderer(unittest.TestCase):
 
 if __name__ == '__main__':
     rospy.init_node('force_renderer_test')
-    rostest.rosrun('haptex', 'force_renderer', ForceRenderer)
+    rostest.rosrun('haptex', 'forces_on_fingers', ForceRenderer)
