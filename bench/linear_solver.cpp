@@ -1,8 +1,12 @@
 // What does a factorisation cost in iterations of conjugate gradients? The ratio per operation is
 // the constant behind LinearSolver's automatic choice; how supernodes are merged (elimination.cpp)
 // was chosen by the factorisation times printed here. The systems are those of a swinging sheet
-// of the linear reference at 12.5 ms.
+// of the linear reference at 12.5 ms. The patch cases are the parts of a 1 ms step of a sheet as
+// small as the one that follows a fingertip, of wool with viscosity, with and without the matrix
+// blocks that bending needs.
 #include "haptex/cloth/linear_solver.h"
+
+#include <map>
 
 #include "haptex/cloth/cloth.h"
 #include "haptex/material/fabric_file.h"
@@ -14,6 +18,10 @@ using namespace haptex;
 
 constexpr int kRuns = 20;
 constexpr int kIterations = 50;
+constexpr int kPatchRuns = 100;
+constexpr int kPatchRepetitions = 20;
+constexpr int kPatchCells = 16;
+constexpr double kPatchStep = 0.001;  // s
 
 struct System {
   cloth::SymmetricBlockMatrix matrix;
@@ -63,6 +71,99 @@ void iterations(benchmark::State& run, int cells) {
   }
 }
 
+/// The corners opposite to each inner edge.
+std::vector<std::array<int, 2>> oppositeCorners(const cloth::ClothMesh& mesh) {
+  std::map<std::pair<int, int>, int> corner_of;
+  std::vector<std::array<int, 2>> pairs;
+  for (const std::array<int, 3>& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const auto edge = std::minmax(t[k], t[(k + 1) % 3]);
+      const int corner = t[(k + 2) % 3];
+      const auto [other, is_first] = corner_of.emplace(edge, corner);
+      if (!is_first) pairs.push_back({other->second, corner});
+    }
+  }
+  return pairs;
+}
+
+struct Patch {
+  cloth::Cloth cloth;
+  cloth::Membrane membrane;
+  cloth::ClothState state;
+  System system;
+
+  explicit Patch(bool bending) : Patch(makeCloth(), bending) {}
+
+  void assemble() {
+    system.matrix.setZero();
+    for (int i = 0; i < system.matrix.size(); ++i) {
+      system.matrix.diagonal(i).diagonal().setConstant(cloth.masses()[i]);
+    }
+    system.rhs.setZero();
+    membrane.addStep(state.positions, state.velocities, kPatchStep, system.matrix, system.rhs);
+  }
+
+ private:
+  static cloth::Cloth makeCloth() {
+    cloth::ModelledEffects effects;
+    effects.viscosity = true;
+    return {cloth::makeRectangle(0.025, 0.025, kPatchCells, kPatchCells,
+                                 cloth::Triangulation::kAlternating),
+            material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), effects};
+  }
+  Patch(cloth::Cloth made, bool bending)
+      : cloth(std::move(made)),
+        membrane(cloth.membrane()),
+        state(cloth.initialState()),
+        system{cloth::SymmetricBlockMatrix(
+                   static_cast<int>(cloth.particleCount()), cloth.mesh().triangles,
+                   bending ? oppositeCorners(cloth.mesh()) : std::vector<std::array<int, 2>>{}),
+               cloth::BlockVector::Zero(3, cloth.particleCount())} {
+    membrane.bind(system.matrix);
+    for (Eigen::Vector3d& position : state.positions) position *= 1.02;
+    assemble();
+  }
+};
+
+void patchAssembly(benchmark::State& run, bool bending) {
+  Patch patch(bending);
+  for (auto _ : run) patch.assemble();
+}
+
+void patchFactorisation(benchmark::State& run, bool bending) {
+  const Patch patch(bending);
+  cloth::BlockCholesky cholesky(patch.system.matrix);
+  for (auto _ : run) {
+    if (!cholesky.factorise(patch.system.matrix)) run.SkipWithError("not positive definite");
+  }
+}
+
+void patchSolve(benchmark::State& run, bool bending) {
+  const Patch patch(bending);
+  cloth::BlockCholesky cholesky(patch.system.matrix);
+  if (!cholesky.factorise(patch.system.matrix)) run.SkipWithError("not positive definite");
+  cloth::BlockVector x = patch.system.rhs;
+  for (auto _ : run) {
+    x = patch.system.rhs;
+    cholesky.solve(x);
+  }
+}
+
+void registerPatch() {
+  const std::string triangles = "/" + std::to_string(2 * kPatchCells * kPatchCells);
+  for (bool bending : {false, true}) {
+    const std::string end = (bending ? "_bending" : "") + triangles;
+    const auto add = [&](const std::string& name, void (*function)(benchmark::State&, bool)) {
+      benchmark::RegisterBenchmark(("linear_solver/patch_" + name + end).c_str(), function, bending)
+          ->Iterations(kPatchRuns)
+          ->Repetitions(kPatchRepetitions);
+    };
+    add("assembly", patchAssembly);
+    add("factorise", patchFactorisation);
+    add("solve", patchSolve);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -76,6 +177,7 @@ int main(int argc, char** argv) {
                                  count)
         ->Iterations(kRuns);
   }
+  registerPatch();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   bench::TabReporter reporter;

@@ -1,22 +1,28 @@
 #include "haptex/cloth/block_cholesky.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "haptex/cloth/dense_kernels.h"
 
 namespace haptex::cloth {
+namespace {
 
-BlockCholesky::BlockCholesky(const SymmetricBlockMatrix& pattern)
+constexpr int kTogether = 4;  // right-hand sides of the kernels for several
+
+}  // namespace
+
+BlockCholesky::BlockCholesky(const SymmetricBlockMatrix& pattern, bool several)
     : elimination_(analyse(pattern)),
       cost_(factorisationCost(elimination_)),
       permuted_(3, pattern.size()) {
   const std::size_t count = elimination_.supernodes.size();
   std::size_t size = 0;
   std::size_t largest_update = 0;
+  int largest_front = 0;
   for (const Supernode& supernode : elimination_.supernodes) {
     const int leading = 3 * (supernode.width() + static_cast<int>(supernode.rows.size()));
-    panel_of_.push_back({size, leading});
+    panel_of_.push_back({size, leading, 0, 0});
+    largest_front = std::max(largest_front, leading);
     size += static_cast<std::size_t>(leading) * 3 * supernode.width();
   }
   panels_.resize(size);
@@ -32,23 +38,38 @@ BlockCholesky::BlockCholesky(const SymmetricBlockMatrix& pattern)
     }
   }
   update_.resize(largest_update);
+  front_.resize(largest_front);
+  if (several) {
+    four_fronts_.resize(static_cast<std::size_t>(kTogether) * largest_front);
+    four_permuted_.resize(kTogether * permuted_.size());
+  }
   first_descendant_.resize(count);
   next_descendant_.resize(count);
   next_row_.resize(count);
   panel_row_.resize(pattern.size());
 
+  std::vector<std::vector<Entry>> entries_of(count);
+  const auto addEntry = [&](int row, int column, int slot) {
+    row = elimination_.position[row];
+    column = elimination_.position[column];
+    const Entry entry = entryOf(std::max(row, column), std::min(row, column), slot, row < column);
+    entries_of[elimination_.supernode_of[std::min(row, column)]].push_back(entry);
+  };
   for (int i = 0; i < pattern.size(); ++i) {
-    diagonal_entries_.push_back(entryOf(elimination_.position[i], elimination_.position[i]));
+    addEntry(i, i, -1 - i);
     for (int s = pattern.rowBegin(i); s < pattern.rowBegin(i + 1); ++s) {
-      lower_entries_.push_back(
-          entryOf(elimination_.position[i], elimination_.position[pattern.column(s)]));
+      addEntry(i, pattern.column(s), s);
     }
+  }
+  for (std::size_t s = 0; s < count; ++s) {
+    panel_of_[s].first_entry = static_cast<int>(entries_.size());
+    entries_.insert(entries_.end(), entries_of[s].begin(), entries_of[s].end());
+    panel_of_[s].end_entry = static_cast<int>(entries_.size());
   }
 }
 
-BlockCholesky::Entry BlockCholesky::entryOf(int row, int column) const {
-  const bool transposed = row < column;
-  if (transposed) std::swap(row, column);
+/// Place of the block (row, column), row >= column, in the order of elimination.
+BlockCholesky::Entry BlockCholesky::entryOf(int row, int column, int slot, bool transposed) const {
   const int s = elimination_.supernode_of[column];
   const Supernode& supernode = elimination_.supernodes[s];
   int local = row - supernode.first;
@@ -56,27 +77,23 @@ BlockCholesky::Entry BlockCholesky::entryOf(int row, int column) const {
     const auto found = std::lower_bound(supernode.rows.begin(), supernode.rows.end(), row);
     local = supernode.width() + static_cast<int>(found - supernode.rows.begin());
   }
-  const Panel& panel = panel_of_[s];
-  const std::size_t offset =
-      panel.offset + static_cast<std::size_t>(panel.leading) * 3 * (column - supernode.first) +
-      3 * local;
-  return {offset, panel.leading, transposed};
+  return {slot, panel_of_[s].leading * 3 * (column - supernode.first) + 3 * local, transposed};
 }
 
-void BlockCholesky::load(const SymmetricBlockMatrix& matrix) {
-  std::fill(panels_.begin(), panels_.end(), 0.0);
-  const auto put = [this](const Entry& entry, const Eigen::Matrix3d& block) {
-    double* target = panels_.data() + entry.offset;
-    for (int c = 0; c < 3; ++c) {
-      for (int r = 0; r < 3; ++r) {
-        target[c * entry.leading + r] = entry.transposed ? block(c, r) : block(r, c);
-      }
+void BlockCholesky::load(const SymmetricBlockMatrix& matrix, int target) {
+  const Panel& panel = panel_of_[target];
+  double* const base = panels_.data() + panel.offset;
+  const int columns = 3 * elimination_.supernodes[target].width();
+  std::fill_n(base, static_cast<std::size_t>(panel.leading) * columns, 0.0);
+  for (int e = panel.first_entry; e < panel.end_entry; ++e) {
+    const Entry& entry = entries_[e];
+    const Eigen::Matrix3d& block =
+        entry.slot < 0 ? matrix.diagonal(-1 - entry.slot) : matrix.lower(entry.slot);
+    double* place = base + entry.offset;
+    for (int c = 0; c < 3; ++c, place += panel.leading) {
+      for (int r = 0; r < 3; ++r) place[r] = entry.transposed ? block(c, r) : block(r, c);
     }
-  };
-  const int size = static_cast<int>(diagonal_entries_.size());
-  const int lower_count = static_cast<int>(lower_entries_.size());
-  for (int i = 0; i < size; ++i) put(diagonal_entries_[i], matrix.diagonal(i));
-  for (int s = 0; s < lower_count; ++s) put(lower_entries_[s], matrix.lower(s));
+  }
 }
 
 void BlockCholesky::applyDescendant(int descendant, int target) {
@@ -91,10 +108,8 @@ void BlockCholesky::applyDescendant(int descendant, int target) {
 
   const int height = 3 * (total - begin);
   const int width = 3 * (end - begin);
-  std::fill_n(update_.begin(), static_cast<std::size_t>(height) * width, 0.0);
   const double* rows = panels_.data() + from.offset + 3 * (source.width() + begin);
-  subtractProduct(height, width, 3 * source.width(), rows, from.leading, rows, from.leading,
-                  update_.data(), height);
+  multiplyByOwnTop(height, width, 3 * source.width(), rows, from.leading, update_.data(), height);
   for (int b = begin; b < end; ++b) {
     const double* column = update_.data() + static_cast<std::size_t>(height) * 3 * (b - begin);
     double* destination = panels_.data() + to.offset +
@@ -103,9 +118,9 @@ void BlockCholesky::applyDescendant(int descendant, int target) {
       for (int a = b; a < total; ++a) {
         const double* value = column + 3 * (a - begin);
         double* place = destination + 3 * panel_row_[source.rows[a]];
-        place[0] += value[0];
-        place[1] += value[1];
-        place[2] += value[2];
+        place[0] -= value[0];
+        place[1] -= value[1];
+        place[2] -= value[2];
       }
     }
   }
@@ -119,32 +134,19 @@ void BlockCholesky::applyDescendant(int descendant, int target) {
 }
 
 bool BlockCholesky::factorisePanel(int target) {
-  constexpr int kGroup = 12;  // columns that are finished before the next product
   const Panel& panel = panel_of_[target];
   const int columns = 3 * elimination_.supernodes[target].width();
   const int ld = panel.leading;
   double* const base = panels_.data() + panel.offset;
-  for (int group = 0; group < columns; group += kGroup) {
-    const int group_end = std::min(group + kGroup, columns);
-    subtractProduct(ld - group, group_end - group, group, base + group, ld, base + group, ld,
-                    base + static_cast<std::size_t>(ld) * group + group, ld);
-    for (int c = group; c < group_end; ++c) {
-      double* column = base + static_cast<std::size_t>(ld) * c;
-      for (int k = group; k < c; ++k) {
-        const double* left = base + static_cast<std::size_t>(ld) * k;
-        const double factor = left[c];
-        for (int r = c; r < ld; ++r) column[r] -= factor * left[r];
-      }
-      if (!(column[c] > 0.0) || !std::isfinite(column[c])) return false;
-      const double inverse = 1.0 / std::sqrt(column[c]);
-      for (int r = c; r < ld; ++r) column[r] *= inverse;
-    }
+  for (int c = 0; c < columns; c += 3) {
+    double* const top = base + static_cast<std::size_t>(ld) * c + c;
+    subtractProduct(ld - c, 3, c, base + c, ld, base + c, ld, top, ld);
+    if (!factoriseThreeColumns(ld - c, top, ld)) return false;
   }
   return true;
 }
 
 bool BlockCholesky::factorise(const SymmetricBlockMatrix& matrix) {
-  load(matrix);
   std::fill(first_descendant_.begin(), first_descendant_.end(), -1);
   for (int s = 0; s < static_cast<int>(elimination_.supernodes.size()); ++s) {
     const Supernode& supernode = elimination_.supernodes[s];
@@ -152,6 +154,7 @@ bool BlockCholesky::factorise(const SymmetricBlockMatrix& matrix) {
     for (std::size_t r = 0; r < supernode.rows.size(); ++r) {
       panel_row_[supernode.rows[r]] = supernode.width() + static_cast<int>(r);
     }
+    load(matrix, s);
     for (int d = first_descendant_[s]; d != -1;) {
       const int next = next_descendant_[d];
       applyDescendant(d, s);
@@ -172,47 +175,104 @@ void BlockCholesky::solve(BlockVector& x) {
   const int n = static_cast<int>(permuted_.cols());
   for (int k = 0; k < n; ++k) permuted_.col(k) = x.col(elimination_.order[k]);
   double* const values = permuted_.data();
+  double* const front = front_.data();  // the unknowns that a panel couples, in its order
 
   for (std::size_t s = 0; s < panel_of_.size(); ++s) {  // L y = b
     const Supernode& supernode = elimination_.supernodes[s];
-    const int ld = panel_of_[s].leading;
+    const Panel& panel = panel_of_[s];
     const int width = 3 * supernode.width();
     double* const own = values + 3 * supernode.first;
-    for (int c = 0; c < width; ++c) {
-      const double* column =
-          panels_.data() + panel_of_[s].offset + static_cast<std::size_t>(ld) * c;
-      own[c] /= column[c];
-      for (int r = c + 1; r < width; ++r) own[r] -= column[r] * own[c];
-      const double* below = column + width;
-      for (int row : supernode.rows) {
-        double* other = values + 3 * row;
-        other[0] -= below[0] * own[c];
-        other[1] -= below[1] * own[c];
-        other[2] -= below[2] * own[c];
-        below += 3;
-      }
+    std::copy_n(own, width, front);
+    std::fill(front + width, front + panel.leading, 0.0);
+    substituteForward(panel.leading, width, panels_.data() + panel.offset, panel.leading, front);
+    std::copy_n(front, width, own);
+    const double* change = front + width;
+    for (int row : supernode.rows) {
+      double* other = values + 3 * row;
+      other[0] += change[0];
+      other[1] += change[1];
+      other[2] += change[2];
+      change += 3;
     }
   }
   for (std::size_t s = panel_of_.size(); s-- > 0;) {  // L^T x = y
     const Supernode& supernode = elimination_.supernodes[s];
-    const int ld = panel_of_[s].leading;
+    const Panel& panel = panel_of_[s];
     const int width = 3 * supernode.width();
     double* const own = values + 3 * supernode.first;
-    for (int c = width - 1; c >= 0; --c) {
-      const double* column =
-          panels_.data() + panel_of_[s].offset + static_cast<std::size_t>(ld) * c;
-      double sum = own[c];
-      const double* below = column + width;
-      for (int row : supernode.rows) {
-        const double* other = values + 3 * row;
-        sum -= below[0] * other[0] + below[1] * other[1] + below[2] * other[2];
-        below += 3;
-      }
-      for (int r = c + 1; r < width; ++r) sum -= column[r] * own[r];
-      own[c] = sum / column[c];
+    std::copy_n(own, width, front);
+    double* below = front + width;
+    for (int row : supernode.rows) {
+      const double* other = values + 3 * row;
+      below[0] = other[0];
+      below[1] = other[1];
+      below[2] = other[2];
+      below += 3;
     }
+    substituteBackward(panel.leading, width, panels_.data() + panel.offset, panel.leading, front);
+    std::copy_n(front, width, own);
   }
   for (int k = 0; k < n; ++k) x.col(elimination_.order[k]) = permuted_.col(k);
+}
+
+void BlockCholesky::solve(BlockVector* x, int count) {
+  const int alone = four_permuted_.empty() ? count : count % kTogether == 1;
+  for (int k = 0; k < alone; ++k) solve(x[k]);
+  for (int k = alone; k < count; k += kTogether) solveFour(x + k, std::min(count - k, kTogether));
+}
+
+void BlockCholesky::solveFour(BlockVector* x, int count) {
+  constexpr int kBlock = 3 * kTogether;  // doubles per block row
+  const int n = static_cast<int>(permuted_.cols());
+  double* const values = four_permuted_.data();
+  double* const front = four_fronts_.data();
+  for (int k = 0; k < n; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      double* const row = values + kBlock * k + kTogether * axis;
+      for (int b = 0; b < kTogether; ++b) {
+        row[b] = b < count ? x[b](axis, elimination_.order[k]) : 0.0;
+      }
+    }
+  }
+  for (std::size_t s = 0; s < panel_of_.size(); ++s) {  // L y = b
+    const Supernode& supernode = elimination_.supernodes[s];
+    const Panel& panel = panel_of_[s];
+    const int width = supernode.width();
+    double* const own = values + kBlock * supernode.first;
+    std::copy_n(own, kBlock * width, front);
+    std::fill(front + kBlock * width, front + kTogether * panel.leading, 0.0);
+    substituteFourForward(panel.leading, 3 * width, panels_.data() + panel.offset, panel.leading,
+                          front);
+    std::copy_n(front, kBlock * width, own);
+    const double* change = front + kBlock * width;
+    for (int row : supernode.rows) {
+      double* const other = values + kBlock * row;
+      for (int k = 0; k < kBlock; ++k) other[k] += change[k];
+      change += kBlock;
+    }
+  }
+  for (std::size_t s = panel_of_.size(); s-- > 0;) {  // L^T x = y
+    const Supernode& supernode = elimination_.supernodes[s];
+    const Panel& panel = panel_of_[s];
+    const int width = supernode.width();
+    double* const own = values + kBlock * supernode.first;
+    std::copy_n(own, kBlock * width, front);
+    double* below = front + kBlock * width;
+    for (int row : supernode.rows) {
+      std::copy_n(values + kBlock * row, kBlock, below);
+      below += kBlock;
+    }
+    substituteFourBackward(panel.leading, 3 * width, panels_.data() + panel.offset, panel.leading,
+                           front);
+    std::copy_n(front, kBlock * width, own);
+  }
+  for (int k = 0; k < n; ++k) {
+    for (int b = 0; b < count; ++b) {
+      for (int axis = 0; axis < 3; ++axis) {
+        x[b](axis, elimination_.order[k]) = values[kBlock * k + kTogether * axis + b];
+      }
+    }
+  }
 }
 
 }  // namespace haptex::cloth

@@ -19,8 +19,8 @@ SymmetricBlockMatrix::SymmetricBlockMatrix(int size,
     }
   }
   for (const std::array<int, 2>& pair : pairs) {
-    const auto [smaller, larger] = std::minmax(pair[0], pair[1]);
-    columns_of_row[larger].push_back(smaller);
+    const auto [column, row] = std::minmax(pair[0], pair[1]);
+    if (column < row) columns_of_row[row].push_back(column);
   }
   row_begin_.reserve(size + 1);
   row_begin_.push_back(0);

@@ -7,7 +7,7 @@ namespace {
 
 // Time of one multiply-add of the factorisation (with its share of the two triangular solves) over
 // that of one 3x3 block of a conjugate gradient iteration; scripts/bench linear_solver prints it.
-constexpr double kFactorisationOverBlock = 0.06;
+constexpr double kFactorisationOverBlock = 0.04;
 constexpr int kFirstDirectSolves = 8;
 constexpr int kMostDirectSolves = 512;
 constexpr int kMostRefinements = 3;

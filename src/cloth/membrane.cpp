@@ -29,23 +29,15 @@ struct Membrane::Response {
 
 namespace {
 
-std::array<int, 3> slotsOf(const std::array<int, 3>& particles,
-                           const SymmetricBlockMatrix& pattern) {
-  return {pattern.slot(particles[1], particles[0]), pattern.slot(particles[2], particles[0]),
-          pattern.slot(particles[2], particles[1])};
-}
-
-MembraneElement restElement(const ClothMesh& mesh, const SymmetricBlockMatrix& pattern,
-                            std::array<int, 3> particles) {
+MembraneElement restElement(const ClothMesh& mesh, std::array<int, 3> particles) {
   std::sort(particles.begin(), particles.end());
   const Eigen::Vector2d& a = mesh.rest_coordinates[particles[0]];
   const Eigen::Vector2d& b = mesh.rest_coordinates[particles[1]];
   const Eigen::Vector2d& c = mesh.rest_coordinates[particles[2]];
   const double ua = a.x(), va = a.y(), ub = b.x(), vb = b.y(), uc = c.x(), vc = c.y();
   const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
-  MembraneElement element;
+  MembraneElement element{};
   element.particles = particles;
-  element.slots = slotsOf(particles, pattern);
   element.weft_weights = {(vb - vc) / d, (vc - va) / d, (va - vb) / d};
   element.warp_weights = {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d};
   element.area = 0.5 * std::abs(d);
@@ -132,27 +124,24 @@ Vector3d projectStress(const Vector3d& stress) {
 
 Membrane::Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool viscosity)
     : viscosity_(viscosity) {
-  const SymmetricBlockMatrix pattern(static_cast<int>(mesh.rest_coordinates.size()),
-                                     mesh.triangles);
   elements_.reserve(mesh.triangles.size());
   for (const std::array<int, 3>& triangle : mesh.triangles) {
-    elements_.push_back(restElement(mesh, pattern, triangle));
+    elements_.push_back(restElement(mesh, triangle));
   }
-  makeBatches();
+  bind({static_cast<int>(mesh.rest_coordinates.size()), mesh.triangles});
   setFabric(fabric);
 }
 
-void Membrane::makeBatches() {
+void Membrane::bind(const SymmetricBlockMatrix& matrix) {
+  for (MembraneElement& element : elements_) {
+    const auto& [a, b, c] = element.particles;
+    element.slots = {matrix.slot(b, a), matrix.slot(c, a), matrix.slot(c, b)};
+  }
   batches_.clear();
   if (!kernels::canAddBatches()) return;
   for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
     batches_.push_back(batchOf(&elements_[t]));
   }
-}
-
-void Membrane::bind(const SymmetricBlockMatrix& matrix) {
-  for (MembraneElement& element : elements_) element.slots = slotsOf(element.particles, matrix);
-  makeBatches();
 }
 
 void Membrane::setFabric(const material::Fabric& fabric) {

@@ -11,7 +11,7 @@ constexpr int kMostRefinement = 4;
 constexpr double kLargestMargin = 0.1;  // m
 
 HapticSettings readSettings(const YamlValue& value) {
-  value.requireKeys({}, {"layer", "refinement", "margin", "predict"});
+  value.requireKeys({}, {"layer", "refinement", "margin", "most_elements", "predict"});
   HapticSettings settings;
   if (value.has("layer")) {
     const bool patch = value.at("layer").oneOf({"patch", "whole_cloth"}) == "patch";
@@ -28,6 +28,10 @@ HapticSettings readSettings(const YamlValue& value) {
     if (settings.margin <= 0.0 || settings.margin > kLargestMargin) {
       value.at("margin").refuse("must be > 0 and <= 0.1 m");
     }
+  }
+  if (value.has("most_elements")) {
+    settings.most_elements = value.at("most_elements").integer();
+    if (settings.most_elements < 1) value.at("most_elements").refuse("must be an integer >= 1");
   }
   if (value.has("predict")) {
     settings.predict = value.at("predict").oneOf({"true", "false"}) == "true";

@@ -50,6 +50,11 @@ void fillStateMessage(const SimulatedCloth& simulation, const ros::Time& stamp,
   fillVectors(state.positions, message.positions);
   fillVectors(state.velocities, message.velocities);
   fillVectors(forces, message.forces);
+  message.attached.clear();
+  const auto& attachments = simulation.cloth().attachments();
+  for (std::size_t i = 0; i < attachments.size(); ++i) {
+    if (attachments[i]) message.attached.push_back(static_cast<std::uint32_t>(i));
+  }
 }
 
 void fillJacobianResponse(const std::vector<cloth::JacobianBlock>& blocks,

@@ -9,6 +9,7 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/node_parameters.h"
+#include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
 namespace {
@@ -53,10 +54,12 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       tolerance_(scene.step.tolerance),
       particle_count_(scene.mesh.initial_positions.size()),
       triangle_count_(scene.mesh.triangles.size()),
-      loop_(SimulatedCloth(std::move(scene), material::loadFabric(scene.fabric_path)),
-            [this](const SimulatedCloth& simulation, bool rests) {
-              publishStep(simulation, rests);
-            }) {
+      contact_input_(node, triangle_count_),
+      heartbeat_(node, "cloth/heartbeat"),
+      loop_(
+          SimulatedCloth(std::move(scene), material::loadFabric(scene.fabric_path)),
+          [this](const SimulatedCloth& simulation, bool rests) { publishStep(simulation, rests); },
+          [this](SimulatedCloth& simulation) { takeContactForces(simulation); }) {
   ROS_INFO("Scene %s: %zu particles, %zu triangles, steps of %g ms", parameters.scene_path.c_str(),
            particle_count_, triangle_count_, 1e3 * time_step_);
   advertiseTopics();
@@ -105,6 +108,11 @@ void ClothNode::publishStep(const SimulatedCloth& simulation, bool rests) {
   }
 }
 
+void ClothNode::takeContactForces(SimulatedCloth& simulation) {
+  // They have been checked when they came, so that this does not throw.
+  if (contact_input_.loads().take(loads_, steadyNow())) simulation.setPointLoads(loads_);
+}
+
 void ClothNode::republishIfResting() {
   const LoopStatus loop = loop_.status();
   if (!loop.paused && !loop.last_step_rejected) return;
@@ -145,6 +153,11 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) co
   status.add("tolerance", tolerance_);
   status.add("steps that missed the tolerance", loop.unsolved_steps);
   status.add("rejected steps", loop.rejected_steps);
+  const ContactInputStatus contact = contact_input_.status();
+  status.add("contact forces taken", contact.taken);
+  status.add("contact forces refused", contact.refused);
+  status.add("last contact forces refused for",
+             contact.refused_why.empty() ? "none" : contact.refused_why);
   status.add("particles", particle_count_);
   status.add("triangles", triangle_count_);
 }

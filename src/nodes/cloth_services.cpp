@@ -48,7 +48,10 @@ void ClothNode::advertiseServices() {
 bool ClothNode::reset(std_srvs::Trigger::Request& /*request*/,
                       std_srvs::Trigger::Response& response) {
   return answer("reset", response, [&] {
-    loop_.execute([](SimulatedCloth& simulation) { simulation.reset(); });
+    loop_.execute([this](SimulatedCloth& simulation) {
+      contact_input_.loads().clear();
+      simulation.reset();
+    });
     return std::string("positions, velocities, attachments and time are those of the start");
   });
 }

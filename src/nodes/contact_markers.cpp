@@ -16,14 +16,14 @@ using visualization_msgs::Marker;
 
 enum MarkerIndex { kPoints, kIndexForce, kThumbForce, kPatch, kRates };
 
-constexpr double kArrowScale = 0.03;       // m, of the length at nine times kArrowForce
-constexpr double kArrowForce = 0.01;       // N
-constexpr double kArrowShaft = 0.002;      // m, diameter
-constexpr double kArrowHead = 0.005;       // m, diameter
-constexpr double kSkin = 0.011;            // m, from the centre of a fingertip to outside of its cap
-constexpr double kPointSize = 0.0015;      // m
-constexpr double kFullForce = 0.1;         // N, on a particle, with the last colour
-constexpr int kForceDecades = 3;           // that the colours span
+constexpr double kArrowScale = 0.03;   // m, of the length at nine times kArrowForce
+constexpr double kArrowForce = 0.01;   // N
+constexpr double kArrowShaft = 0.002;  // m, diameter
+constexpr double kArrowHead = 0.005;   // m, diameter
+constexpr double kSkin = 0.011;        // m, from the centre of a fingertip to outside of its cap
+constexpr double kPointSize = 0.0015;  // m
+constexpr double kFullForce = 0.1;     // N, on a particle, with the last colour
+constexpr int kForceDecades = 3;       // that the colours span
 constexpr double kPatchDistance = 0.0005;  // m, from the cloth
 constexpr double kTextHeight = 0.011;      // m, of a line
 constexpr double kTextPlace = 0.07;        // m, above the origin

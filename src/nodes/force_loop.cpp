@@ -10,9 +10,9 @@ using exoskeleton::kFingers;
 using exoskeleton::seconds;
 using exoskeleton::Time;
 
-constexpr double kUsualPeriod = 0.0125;   // s, of simulated time, until two states have come
-constexpr double kLongestPeriod = 0.2;    // s, likewise; what comes later is another simulation
-constexpr int kTicksPerView = 3;          // between two views without a new state
+constexpr double kUsualPeriod = 0.0125;     // s, of simulated time, until two states have come
+constexpr double kLongestPeriod = 0.2;      // s, likewise; what comes later is another simulation
+constexpr int kTicksPerView = 3;            // between two views without a new state
 constexpr double kLeastNormalForce = 1e-9;  // N, weight of a contact without force
 
 std::optional<Time> timeOf(std::int64_t nanoseconds) {
@@ -127,7 +127,8 @@ bool ForceLoop::takeClothState() {
   } else {
     liveness_.restart();  // reset or started anew: the cloth jumps
   }
-  news_.cloth_period = std::chrono::duration_cast<Time>(std::chrono::duration<double>(state_period_));
+  news_.cloth_period =
+      std::chrono::duration_cast<Time>(std::chrono::duration<double>(state_period_));
   receiveState(state_period_);
   ++status_.states;
   return true;
@@ -168,7 +169,8 @@ void ForceLoop::takeFingers(Time now) {
   news_.question = timeOf(question_);
   news_.proximity_needed =
       layer_ && layer_->settings().layer == contact::HapticSettings::Layer::kPatch;
-  news_.layer_ready = layer_ready_ && layer_ && states_.value().state.positions.size() == layer_particles_;
+  news_.layer_ready =
+      layer_ready_ && layer_ && states_.value().state.positions.size() == layer_particles_;
 }
 
 /// In the world frame; nothing if it is not known where it is, or not any more.
@@ -184,8 +186,7 @@ std::optional<contact::Fingertip> ForceLoop::fingertip(Finger finger) const {
   contact::Fingertip fingertip;
   fingertip.position = hand_.pose.translation() + arm;
   fingertip.orientation = Eigen::Quaterniond(turn * pose.pose.linear()).normalized();
-  fingertip.velocity =
-      hand_.velocity + hand_.angular_velocity.cross(arm) + turn * twist.velocity;
+  fingertip.velocity = hand_.velocity + hand_.angular_velocity.cross(arm) + turn * twist.velocity;
   fingertip.angular_velocity = hand_.angular_velocity + turn * twist.angular_velocity;
   fingertip.radius = radii_[finger];
   return fingertip;

@@ -109,8 +109,8 @@ void ForceRendererNode::subscribe() {
       "cloth/heartbeat", 1, take_heartbeat, ros::VoidConstPtr(), hints);
   const boost::function<void(const haptex::ClothMeshConstPtr&)> take_mesh =
       [this](const haptex::ClothMeshConstPtr& message) { supplier_.setMesh(message); };
-  mesh_subscriber_ = node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh,
-                                                        ros::VoidConstPtr(), hints);
+  mesh_subscriber_ =
+      node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh, ros::VoidConstPtr(), hints);
   transform_timer_ =
       input_node_.createSteadyTimer(ros::WallDuration(kTransformPeriod),
                                     [this](const ros::SteadyTimerEvent&) { takeTransforms(); });
@@ -168,8 +168,8 @@ void ForceRendererNode::takeHandBase() {
     const Eigen::Isometry3d pose = fromMessage(transform.transform);
     const Time now = steadyNow();
     const bool fixed = transform.header.stamp.isZero();
-    const bool is_new = fixed ? !pose.isApprox(fixed_hand_base_, 0.0)
-                              : transform.header.stamp != hand_base_stamp_;
+    const bool is_new =
+        fixed ? !pose.isApprox(fixed_hand_base_, 0.0) : transform.header.stamp != hand_base_stamp_;
     if (has_hand_base_ && !is_new) return;
     has_hand_base_ = true;
     hand_base_stamp_ = transform.header.stamp;

@@ -5,7 +5,7 @@
 #include "haptex/cloth/scene.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/nodes/config_files.h"
-#include "haptex/nodes/contact_messages.h"
+#include "haptex/nodes/renderer_messages.h"
 
 namespace haptex::nodes {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "haptex/nodes/contact_messages.h"
+#include "haptex/nodes/renderer_messages.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
@@ -143,7 +143,8 @@ void PatchSupplier::ask(const LoopView& view) {
   for (const exoskeleton::Finger finger : kFingers) {
     const std::optional<contact::Fingertip>& fingertip = view.fingertips[finger];
     if (!fingertip) continue;
-    if (!askAbout(contact::searchVolume(*fingertip, view.state_period, builder_.settings()))) return;
+    if (!askAbout(contact::searchVolume(*fingertip, view.state_period, builder_.settings())))
+      return;
   }
   const Time end = steadyNow();
   if (selection_->finish()) patch_outdated_ = true;

@@ -22,8 +22,10 @@ double inSeconds(std::chrono::steady_clock::duration duration) {
 
 }  // namespace
 
-RealTimeLoop::RealTimeLoop(SimulatedCloth simulation, Observer observer)
-    : simulation_(std::move(simulation)), observer_(std::move(observer)) {
+RealTimeLoop::RealTimeLoop(SimulatedCloth simulation, Observer observer, Command prepare)
+    : simulation_(std::move(simulation)),
+      observer_(std::move(observer)),
+      prepare_(std::move(prepare)) {
   startWindow();
 }
 
@@ -172,6 +174,7 @@ double RealTimeLoop::step(std::unique_lock<std::mutex>& lock) {
   const bool rests = steps_wanted_ == 1;
   lock.unlock();
   const Clock::time_point begin = Clock::now();
+  if (prepare_) prepare_(simulation_);
   const bool accepted = simulation_.step();
   const double seconds = inSeconds(Clock::now() - begin);
   if (accepted) observer_(simulation_, rests);

@@ -47,7 +47,9 @@ Time patience(RendererSource source, const RendererNews& news) {
   return Time{0};
 }
 
-double share(Time part, Time whole) { return exoskeleton::seconds(part) / exoskeleton::seconds(whole); }
+double share(Time part, Time whole) {
+  return exoskeleton::seconds(part) / exoskeleton::seconds(whole);
+}
 
 }  // namespace
 

@@ -48,6 +48,7 @@ bool SimulatedCloth::step() {
 
 void SimulatedCloth::reset() {
   cloth_.releaseAll();
+  cloth_.setPointLoads({});
   attachInitially();
   state_ = cloth_.initialState();
   report_ = cloth::StepReport{};
@@ -56,6 +57,10 @@ void SimulatedCloth::reset() {
 }
 
 void SimulatedCloth::setFabric(material::Fabric fabric) { cloth_.setFabric(std::move(fabric)); }
+
+void SimulatedCloth::setPointLoads(const std::vector<cloth::PointLoad>& loads) {
+  cloth_.setPointLoads(loads);
+}
 
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
   for (const int particle : requireParticles(particles)) {

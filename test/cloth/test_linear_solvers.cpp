@@ -118,6 +118,92 @@ TEST(DenseKernels, SubtractTheProductForEverySizeOfRemainder) {
   }
 }
 
+TEST(DenseKernels, MultiplyByTheOwnTopBelowItsDiagonalBlocks) {
+  for (int columns : {3, 6, 9}) {
+    for (int rows = columns; rows <= columns + 29; ++rows) {
+      const int depth = 6, lda = rows + 2, ldc = rows + 3;
+      const Eigen::MatrixXd a = Eigen::MatrixXd::Random(lda, depth);
+      const Eigen::MatrixXd before = Eigen::MatrixXd::Random(ldc, columns);
+      Eigen::MatrixXd c = before;
+      multiplyByOwnTop(rows, columns, depth, a.data(), lda, c.data(), ldc);
+      Eigen::MatrixXd exact = before;
+      exact.topRows(rows) = a.topRows(rows) * a.topRows(columns).transpose();
+      for (int j = 0; j < columns; ++j)
+        exact.col(j).head(j / 3 * 3) = before.col(j).head(j / 3 * 3);
+      EXPECT_LT((c - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+    }
+  }
+}
+
+/// A panel of the factor as the kernels keep it, with its diagonal inverted.
+struct RandomPanel {
+  Eigen::MatrixXd exact;   // lower trapezoid
+  Eigen::MatrixXd stored;  // with a row more, which no kernel may change
+  RandomPanel(int rows, int columns) : exact(Eigen::MatrixXd::Random(rows, columns)) {
+    exact.triangularView<Eigen::StrictlyUpper>().setZero();
+    exact.diagonal().array() += 3.0;
+    stored = Eigen::MatrixXd::Constant(rows + 1, columns, 7.0);
+    stored.topRows(rows) = exact;
+    stored.diagonal() = exact.diagonal().cwiseInverse();
+  }
+};
+
+TEST(DenseKernels, FactoriseThreeColumnsOfEveryHeight) {
+  for (int rows = 3; rows <= 32; ++rows) {
+    const RandomPanel panel(rows, 3);
+    Eigen::MatrixXd a = panel.stored;
+    a.topRows(rows) = panel.exact * panel.exact.topRows(3).transpose();
+    ASSERT_TRUE(factoriseThreeColumns(rows, a.data(), rows + 1));
+    a.triangularView<Eigen::StrictlyUpper>().setZero();
+    Eigen::MatrixXd exact = panel.stored;
+    // Some ten operations on numbers of order 10.
+    EXPECT_LT((a - exact).cwiseAbs().maxCoeff(), 1e-13) << rows;
+  }
+}
+
+TEST(DenseKernels, SubstituteThroughPanelsOfEveryHeight) {
+  for (int columns : {3, 6, 9}) {
+    for (int rows = columns; rows <= columns + 20; ++rows) {
+      const RandomPanel panel(rows, columns);
+      const auto top = panel.exact.topRows(columns).triangularView<Eigen::Lower>();
+      const auto below = panel.exact.bottomRows(rows - columns);
+      const Eigen::VectorXd start = Eigen::VectorXd::Random(rows + 1);
+
+      Eigen::VectorXd x = start, exact = start;
+      substituteForward(rows, columns, panel.stored.data(), rows + 1, x.data());
+      exact.head(columns) = top.solve(start.head(columns));
+      exact.segment(columns, rows - columns) -= below * exact.head(columns);
+      EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+
+      x = exact = start;
+      substituteBackward(rows, columns, panel.stored.data(), rows + 1, x.data());
+      exact.head(columns) -= below.transpose() * start.segment(columns, rows - columns);
+      exact.head(columns) = top.transpose().solve(exact.head(columns)).eval();
+      EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+    }
+  }
+}
+
+TEST(DenseKernels, SubstituteFourVectorsLikeEachAlone) {
+  for (int columns : {3, 6, 9}) {
+    for (int rows = columns; rows <= columns + 7; ++rows) {
+      const RandomPanel panel(rows, columns);
+      const Eigen::Matrix4Xd start = Eigen::Matrix4Xd::Random(4, rows + 1);
+      Eigen::Matrix4Xd forward = start, backward = start;
+      substituteFourForward(rows, columns, panel.stored.data(), rows + 1, forward.data());
+      substituteFourBackward(rows, columns, panel.stored.data(), rows + 1, backward.data());
+      for (int k = 0; k < 4; ++k) {
+        Eigen::VectorXd x = start.row(k);
+        substituteForward(rows, columns, panel.stored.data(), rows + 1, x.data());
+        EXPECT_LT((forward.row(k).transpose() - x).cwiseAbs().maxCoeff(), 1e-14);
+        x = start.row(k);
+        substituteBackward(rows, columns, panel.stored.data(), rows + 1, x.data());
+        EXPECT_LT((backward.row(k).transpose() - x).cwiseAbs().maxCoeff(), 1e-14);
+      }
+    }
+  }
+}
+
 TEST(Elimination, SupernodesPartitionTheColumnsAndHoldTheWholePattern) {
   const SymmetricBlockMatrix pattern = randomDefinite(square(9), 1.0);
   const Elimination elimination = analyse(pattern);
@@ -162,6 +248,25 @@ TEST(BlockCholesky, SolvesToRoundingOnEveryShapeOfPattern) {
     cholesky.solve(x);
     const Eigen::VectorXd exact = dense(matrix).llt().solve(stacked(rhs));
     EXPECT_LT((stacked(x) - exact).norm(), 1e-11 * exact.norm());
+  }
+}
+
+TEST(BlockCholesky, SolvesForSeveralRightHandSidesLikeForEachAlone) {
+  const SymmetricBlockMatrix matrix = randomDefinite(square(9), 40.0);
+  for (bool several : {false, true}) {
+    BlockCholesky cholesky(matrix, several);
+    ASSERT_TRUE(cholesky.factorise(matrix));
+    for (int count = 0; count <= 9; ++count) {
+      std::vector<BlockVector> x, exact;
+      for (int k = 0; k <= count; ++k) x.push_back(BlockVector::Random(3, matrix.size()));
+      exact = x;  // the last one must stay as it is
+      cholesky.solve(x.data(), count);
+      for (int k = 0; k < count; ++k) cholesky.solve(exact[k]);
+      EXPECT_EQ(x[count], exact[count]);
+      for (int k = 0; k < count; ++k) {
+        EXPECT_LT((x[k] - exact[k]).norm(), 1e-14 * exact[k].norm()) << k << " of " << count;
+      }
+    }
   }
 }
 
@@ -250,6 +355,31 @@ TEST(LinearSolver, AutomaticIteratesWhereItIsEasyAndFactorisesWhereItIsHard) {
     solver.solve(hard, rhs, 1e-6, x);
   }
   EXPECT_EQ(direct_solves_before_success(), 16);
+}
+
+TEST(SymmetricBlockMatrix, HasTheBlocksOfFurtherPairsForBothSolvers) {
+  const ClothMesh mesh = square(6);
+  const int size = static_cast<int>(mesh.rest_coordinates.size());
+  const std::vector<std::array<int, 2>> pairs = {{0, 48}, {30, 2}, {2, 30}, {0, 1}};
+  const SymmetricBlockMatrix without(size, mesh.triangles);
+  SymmetricBlockMatrix matrix(size, mesh.triangles, pairs);
+  EXPECT_EQ(matrix.lowerCount(), without.lowerCount() + 2);  // {0, 1} is an edge
+  for (int i = 0; i < size; ++i) {
+    matrix.diagonal(i) = 20.0 * Eigen::Matrix3d::Identity();
+    for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) matrix.lower(s).setRandom();
+  }
+  matrix.lower(matrix.slot(48, 0)).setConstant(2.0);
+  matrix.lower(matrix.slot(30, 2)).setConstant(-3.0);
+  const BlockVector rhs = BlockVector::Random(3, size);
+  const Eigen::VectorXd exact = dense(matrix).llt().solve(stacked(rhs));
+  BlockVector x = rhs;
+  BlockCholesky cholesky(matrix);
+  ASSERT_TRUE(cholesky.factorise(matrix));
+  cholesky.solve(x);
+  EXPECT_LT((stacked(x) - exact).norm(), 1e-12 * exact.norm());
+  x.setZero();
+  EXPECT_TRUE(ConjugateGradient(size).solve(matrix, rhs, 1e-12, 1000, x).converged);
+  EXPECT_LT((stacked(x) - exact).norm(), 1e-10 * exact.norm());
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point, Vector3
-from haptex.msg import ClothMesh, ClothState
+from haptex.msg import ClothMesh, ClothState, ContactForces
 from haptex.srv import (AttachParticles, GetJacobian, MoveParticles, ReleaseParticles, SetFabric,
                         StepCloth)
 from std_msgs.msg import Header
@@ -72,6 +72,7 @@ class ClothSimulation(unittest.TestCase):
             self.assertEqual(len(array), PARTICLES)
         self.assertEqual(state.header.frame_id, 'world')
         self.assertEqual(state.positions[TOP_CORNER], Point(0.0, 0.1, 0.0))
+        self.assertEqual(list(state.attached), list(range(PARTICLES - 33, PARTICLES)))
 
     def test_mesh_reaches_late_subscribers(self):
         for _ in range(2):
@@ -204,6 +205,85 @@ class ClothSimulation(unittest.TestCase):
             own = matrix[np.array(response.rows) == row]
             self.assertLess(np.abs(own.sum(axis=0)).max(), 1e-9 * np.abs(own).max())
             self.assertGreater(np.abs(own).max(), 0.0)
+
+    def contact_forces(self):
+        """A push of 0.05 N along x on the middle of the first triangle, at the lower edge."""
+        return ContactForces(header=Header(frame_id='world', stamp=rospy.Time.now()),
+                             triangles=[0], barycentric=[0.25, 0.25, 0.5], positions=[Point()],
+                             forces=[Vector3(0.05, 0.0, 0.0)], stiffness=[0.0] * 9)
+
+    def contact_publisher(self):
+        publisher = rospy.Publisher('cloth/contact_forces', ContactForces, queue_size=1,
+                                    tcp_nodelay=True)
+        deadline = rospy.Time.now() + rospy.Duration(WAIT)
+        while publisher.get_num_connections() == 0 and rospy.Time.now() < deadline:
+            rospy.sleep(0.01)
+        self.assertEqual(publisher.get_num_connections(), 1)
+        return publisher
+
+    def push(self, publisher, contact, seconds):
+        rate = rospy.Rate(80)
+        for _ in range(int(80 * seconds)):
+            contact.header.stamp = rospy.Time.now()
+            publisher.publish(contact)
+            rate.sleep()
+
+    def test_contact_forces_move_the_cloth_until_they_fall_silent(self):
+        publisher = self.contact_publisher()
+        self.accepted(self.pause(False))
+        # 0.05 N are nearly the weight of the whole sample: they lift its corner far out.
+        self.push(publisher, self.contact_forces(), 1.0)
+        self.accepted(self.pause(True))
+        pushed = self.state()
+        self.assertGreater(pushed.positions[CORNER].x, 0.01)
+        rospy.sleep(0.2)
+        self.accepted(self.step(1))
+        released = self.state()
+        # The loads have ended, so the published forces lack them: internal forces sum to nothing,
+        # and what remains along x is nothing but the bar's share.
+        total = sum(force.x for force in released.forces)
+        self.assertAlmostEqual(total, 0.0, delta=1e-9)
+        self.accepted(self.reset())
+        self.assertEqual(self.state().step, 0)
+        publisher.unregister()
+
+    def test_refuses_contact_forces_and_survives(self):
+        publisher = self.contact_publisher()
+        self.accepted(self.pause(False))
+        spoiled = []
+        for attribute, value in (('triangles', [TRIANGLES]), ('triangles', [0, 1]),
+                                 ('barycentric', [NAN, 0.0, 1.0]), ('barycentric', [1.0]),
+                                 ('positions', []), ('forces', [Vector3(INFINITY, 0, 0)]),
+                                 ('stiffness', [NAN] * 9), ('stiffness', [-1.0] + [0.0] * 8),
+                                 ('header', Header(frame_id='map'))):
+            spoiled.append(self.contact_forces())
+            setattr(spoiled[-1], attribute, value)
+        before = self.state()
+        for contact in spoiled:
+            publisher.publish(contact)
+            rospy.sleep(0.05)
+        rospy.sleep(2.1)
+        status = message('/diagnostics', DiagnosticArray).status[0]
+        values = {item.key: item.value for item in status.values}
+        self.assertEqual(int(values['contact forces refused']), len(spoiled))
+        self.assertIn("allowed is 'world'", values['last contact forces refused for'])
+        self.assertEqual(int(values['rejected steps']), 0)
+        after = self.state()
+        self.assertGreater(after.step, before.step)
+        self.assertLess(abs(after.positions[CORNER].x), 1e-6)  # nothing has pushed it
+        publisher.unregister()
+
+    def test_heartbeat_goes_on_while_paused(self):
+        beats = []
+        subscriber = rospy.Subscriber('cloth/heartbeat', Header, beats.append, tcp_nodelay=True)
+        message('cloth/heartbeat', Header)
+        count = len(beats)
+        rospy.sleep(2.0)
+        subscriber.unregister()
+        # 400 beats; a busy machine may delay some.
+        self.assertGreater(len(beats) - count, 200)
+        self.assertLess(len(beats) - count, 440)
+        self.assertEqual(beats[0].frame_id, 'world')
 
     def test_refuses_steps(self):
         self.refused(self.step, 0, says='steps = 0: allowed are 1 to 100000')

@@ -20,7 +20,7 @@ class TouchedSheet {
   static constexpr int kCells = 8;
   static constexpr double kSize = 0.1;  // m; the sheet hangs from z = 0 in the plane x = 0
 
-  TouchedSheet() : loop_({{kRadius, kRadius}}) {
+  TouchedSheet() : loop_(exoskeleton::PerFinger<double>{{kRadius, kRadius}}) {
     mesh_ = cloth::makeRectangle(kSize, kSize, kCells, kCells, cloth::Triangulation::kAlternating);
     state_.positions = mesh_.initial_positions;
     state_.velocities.assign(state_.positions.size(), Eigen::Vector3d::Zero());
@@ -35,16 +35,15 @@ class TouchedSheet {
   Time now() const { return now_; }
 
   static material::Fabric wool() {
-    return material::loadFabric(std::string(HAPTEX_SOURCE_DIRECTORY) +
-                                "/config/fabrics/wool.yaml");
+    return material::loadFabric(std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/fabrics/wool.yaml");
   }
 
   /// A layer with a patch of all triangles.
   void giveLayer() {
     contact::HapticSettings settings;
     settings.refinement = 1;
-    auto layer = std::make_unique<contact::HapticLayer>(mesh_, wool(), cloth::ModelledEffects(),
-                                                        settings);
+    auto layer =
+        std::make_unique<contact::HapticLayer>(mesh_, wool(), cloth::ModelledEffects(), settings);
     std::vector<int> triangles(mesh_.triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) triangles[i] = static_cast<int>(i);
     auto update = std::make_unique<LayerUpdate>();

@@ -49,8 +49,8 @@ TEST(ForceLoop, NoForceWithoutALayer) {
 }
 
 TEST(ForceLoop, ForceFallsToZeroWithin20MillisecondsAndComesBackWithoutAJump) {
-  for (const RendererSource source : {RendererSource::kHeartbeat, RendererSource::kProximity,
-                                      RendererSource::kFingertip}) {
+  for (const RendererSource source :
+       {RendererSource::kHeartbeat, RendererSource::kProximity, RendererSource::kFingertip}) {
     const auto sheet = touched();
     const double felt = sheet->force().norm();
     sheet->silence(source);

@@ -8,8 +8,7 @@
 namespace haptex::nodes {
 namespace {
 
-const std::string kScene =
-    std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/scenes/wool_sample.yaml";
+const std::string kScene = std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/scenes/wool_sample.yaml";
 
 haptex::ClothMesh message(const std::string& fabric, int cells = 4) {
   const cloth::ClothMesh mesh =

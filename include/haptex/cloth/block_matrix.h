@@ -12,13 +12,13 @@ using BlockVector = Eigen::Matrix3Xd;
 
 /// Diagonal blocks and those below it; the blocks above are their transposes.
 ///
-/// The pattern has a block (i, j), i > j, for every edge of the triangles. It never changes, so an
-/// element may remember the slots that it adds to.
+/// The pattern has a block (i, j), i > j, for every edge of the triangles and every further pair.
+/// It never changes, so an element may remember the slots that it adds to.
 class SymmetricBlockMatrix {
  public:
   /// @param size      number of block rows
   /// @param triangles particle indices in [0, size)
-  /// @param pairs     of particle indices that have a block beside those of the triangles
+  /// @param pairs     likewise, in any order; may repeat each other and the triangles' edges
   SymmetricBlockMatrix(int size, const std::vector<std::array<int, 3>>& triangles,
                        const std::vector<std::array<int, 2>>& pairs = {});
 

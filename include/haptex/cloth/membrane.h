@@ -45,9 +45,8 @@ class Membrane {
   /// Takes the curves of another fabric.
   void setFabric(const material::Fabric& fabric);
 
-  /// For matrices with another pattern than that of the mesh's triangles alone: looks up where the
-  /// elements' blocks are.
-  /// @throws std::out_of_range if the pattern lacks one
+  /// Looks up the elements' slots in a matrix whose pattern has more than the mesh's edges.
+  /// @throws std::out_of_range if the pattern lacks one of them
   void bind(const SymmetricBlockMatrix& matrix);
 
   const std::vector<MembraneElement>& elements() const { return elements_; }
@@ -106,7 +105,6 @@ class Membrane {
   struct Frame;                                               // U, V of an element, or their rates
   struct Response;  // stress and slope of all three curves
   static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
-  void makeBatches();
   template <bool kViscous>
   void addStepOf(const MembraneElement& element, const Positions& positions,
                  const Velocities& velocities, double h, SymmetricBlockMatrix& matrix,

@@ -20,6 +20,8 @@
 
 #include "haptex/cloth/scene.h"
 #include "haptex/nodes/cloth_markers.h"
+#include "haptex/nodes/contact_input.h"
+#include "haptex/nodes/heartbeat.h"
 #include "haptex/nodes/real_time_loop.h"
 
 namespace haptex::nodes {
@@ -40,8 +42,10 @@ struct ClothNodeParameters {
 ///   cloth/mesh (ClothMesh, latched), cloth/state (ClothState),
 ///   cloth/markers (visualization_msgs/MarkerArray), each filled only for subscribers, and while
 ///   the simulation is paused or its steps are rejected ten times a second;
+///   cloth/heartbeat (std_msgs/Header, 200 Hz), whether it is paused or not;
 ///   services cloth/reset (std_srvs/Trigger), cloth/pause (std_srvs/SetBool), cloth/step,
 ///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian (srv/).
+/// Subscribes to cloth/contact_forces (ContactForces), which act for NewestLoads::kLifetime.
 /// A refused request is answered with success = false and changes nothing. The services may be
 /// called from several threads at once.
 class ClothNode {
@@ -61,6 +65,7 @@ class ClothNode {
   void publishMesh(const cloth::Cloth& cloth);
   void publishStep(const SimulatedCloth& simulation, bool rests);
   void republishIfResting();
+  void takeContactForces(SimulatedCloth& simulation);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   bool reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
@@ -89,12 +94,16 @@ class ClothNode {
   std::vector<Eigen::Vector3d> forces_;
   ros::Time state_stamp_;
   std::uint64_t stamped_step_ = 0;
+  std::vector<cloth::PointLoad> loads_;
 
   // Constant.
   double time_step_;  // s
   double tolerance_;
   std::size_t particle_count_;
   std::size_t triangle_count_;
+
+  ContactInput contact_input_;
+  Heartbeat heartbeat_;
 
   RealTimeLoop loop_;  // last: its thread uses the members above
 };

@@ -33,8 +33,8 @@ class FingertipFilter {
   /// After this long without a message taken the next may have any stamp within the tolerance, so
   /// that a driver that was started anew is believed again.
   static constexpr Time kForgetAfter = std::chrono::milliseconds(100);
-  static constexpr double kFarthest = 10.0;         ///< m
-  static constexpr double kFastest = 100.0;         ///< m/s
+  static constexpr double kFarthest = 10.0;          ///< m
+  static constexpr double kFastest = 100.0;          ///< m/s
   static constexpr double kFastestTurning = 1000.0;  ///< rad/s
 
   /// By one thread. @param now of ROS @param steady_now of the steady clock

@@ -16,11 +16,11 @@
 #include "haptex/contact/haptic_layer.h"
 #include "haptex/exoskeleton/clock.h"
 #include "haptex/exoskeleton/finger.h"
-#include "haptex/nodes/contact_messages.h"
 #include "haptex/nodes/fingertip_filter.h"
 #include "haptex/nodes/frame_follower.h"
 #include "haptex/nodes/handover.h"
 #include "haptex/nodes/renderer_liveness.h"
+#include "haptex/nodes/renderer_messages.h"
 #include "haptex/nodes/semaphore.h"
 #include "haptex/nodes/triple_buffer.h"
 
@@ -39,7 +39,7 @@ struct LayerUpdate {
 struct LoopView {
   LoopView() { loads.reserve(cloth::Cloth::kMostPointLoads); }
 
-  std::uint64_t states = 0;  ///< of the cloth, taken so far
+  std::uint64_t states = 0;   ///< of the cloth, taken so far
   double state_period = 0.0;  ///< s, of simulated time, between the last two
   exoskeleton::PerFinger<std::optional<contact::Fingertip>> fingertips;
   std::vector<cloth::PointLoad> loads;

@@ -43,7 +43,7 @@ class FrameFollower {
 
   // What remains of the error when the last pose came.
   Time blend_begin_{0};
-  Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();         // m
+  Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();       // m
   Eigen::AngleAxisd turn_{0.0, Eigen::Vector3d::UnitX()};  // from the last pose's extrapolation
 };
 

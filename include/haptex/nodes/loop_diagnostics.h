@@ -15,8 +15,8 @@ namespace haptex::nodes {
 void addQuantiles(diagnostic_updater::DiagnosticStatusWrapper& status, const std::string& what,
                   const std::string& when, const DurationHistogram::Counts& counts);
 
-/// Whether the loop is in time, whether it has SCHED_FIFO, and its jitter, since the start and since
-/// it was asked before. By one thread.
+/// Whether the loop is in time, whether it has SCHED_FIFO, and its jitter, since the start and
+/// since it was asked before. By one thread.
 class LoopDiagnostics {
  public:
   void diagnose(const PeriodicThread& loop, diagnostic_updater::DiagnosticStatusWrapper& status);

@@ -24,11 +24,11 @@
 namespace haptex::nodes {
 
 struct PatchSupplierStatus {
-  std::string trouble;        ///< why there is no layer; empty: there is one
-  std::string query_trouble;  ///< why the last query failed; empty: it did not
-  std::uint64_t queries = 0;  ///< answered since the start
+  std::string trouble;         ///< why there is no layer; empty: there is one
+  std::string query_trouble;   ///< why the last query failed; empty: it did not
+  std::uint64_t queries = 0;   ///< answered since the start
   std::uint64_t failures = 0;  ///< queries that were not, since the start
-  std::size_t triangles = 0;  ///< of the patch
+  std::size_t triangles = 0;   ///< of the patch
   double query_seconds = 0.0;  ///< from question to answer, both fingers, of the last one
 };
 
@@ -78,7 +78,7 @@ class PatchSupplier {
   Time next_question_{0};
   RestMesh mesh_;
   std::string fabric_;
-  const contact::HapticLayer* layer_ = nullptr;  // the loop's; null: none
+  const contact::HapticLayer* layer_ = nullptr;         // the loop's; null: none
   std::unique_ptr<contact::PatchSelection> selection_;  // with the layer
   std::vector<char> patch_attached_;
   bool patch_outdated_ = false;

@@ -54,8 +54,10 @@ class RealTimeLoop {
   using Observer = std::function<void(const SimulatedCloth&, bool rests)>;
   using Command = std::function<void(SimulatedCloth&)>;
 
-  /// Does not start yet. @param observer must not call back into the loop
-  RealTimeLoop(SimulatedCloth simulation, Observer observer);
+  /// Does not start yet.
+  /// @param observer must not call back into the loop
+  /// @param prepare  runs on the loop's thread before every step; likewise; must not throw
+  RealTimeLoop(SimulatedCloth simulation, Observer observer, Command prepare = {});
   /// Ends the thread; calls that wait for it throw.
   ~RealTimeLoop();
   RealTimeLoop(const RealTimeLoop&) = delete;
@@ -102,6 +104,7 @@ class RealTimeLoop {
 
   SimulatedCloth simulation_;  // touched by the loop's thread only
   Observer observer_;
+  Command prepare_;  // may be empty
 
   mutable std::mutex mutex_;           // guards all below
   std::condition_variable wake_loop_;  // for the loop: there is something to do

@@ -37,7 +37,7 @@ struct RendererNews {
 
   std::optional<Time> heartbeat;
   std::optional<Time> cloth_state;
-  Time cloth_period{0};           ///< of simulated time, between the last two states
+  Time cloth_period{0};  ///< of simulated time, between the last two states
   bool proximity_needed = true;
   bool proximity_answered = false;  ///< the last query; false before the first
   std::optional<Time> question;     ///< when it was asked what is not answered yet

@@ -34,11 +34,14 @@ class SimulatedCloth {
   /// Takes one step. @returns false if it was rejected and the state is as before
   bool step();
 
-  /// Positions, velocities, attachments and time as at the start. The fabric stays.
+  /// Positions, velocities, attachments and time as at the start, without loads. The fabric stays.
   void reset();
 
   /// Takes effect in the next step; positions and velocities stay.
   void setFabric(material::Fabric fabric);
+
+  /// Act until replaced. @throws std::invalid_argument what Cloth::setPointLoads() throws
+  void setPointLoads(const std::vector<cloth::PointLoad>& loads);
 
   /// Attaches particles where they are now.
   /// @throws std::invalid_argument if there is none, one does not exist or is named twice

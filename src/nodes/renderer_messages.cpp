@@ -1,4 +1,4 @@
-#include "haptex/nodes/contact_messages.h"
+#include "haptex/nodes/renderer_messages.h"
 
 #include <cmath>
 #include <sstream>

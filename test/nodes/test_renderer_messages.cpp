@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "haptex/nodes/contact_messages.h"
+#include "haptex/nodes/renderer_messages.h"
 
 namespace haptex::nodes {
 namespace {
@@ -72,14 +72,14 @@ Eigen::Matrix3d matrix(const Nine& nine) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&nine[0]);
 }
 
-TEST(ContactMessages, MeshOfAMessage) {
+TEST(RendererMessages, MeshOfAMessage) {
   const cloth::ClothMesh mesh = clothMesh(someMesh());
   EXPECT_EQ(mesh.triangles.size(), 2u);
   EXPECT_EQ(mesh.rest_coordinates[2], Eigen::Vector2d(0.1, 0.1));
   EXPECT_EQ(mesh.initial_positions.size(), 4u);
 }
 
-TEST(ContactMessages, RefusesAMeshWithDefects) {
+TEST(RendererMessages, RefusesAMeshWithDefects) {
   haptex::ClothMesh message = someMesh();
   message.triangles = {0, 1, 1};
   EXPECT_THROW(clothMesh(message), std::invalid_argument);
@@ -87,7 +87,7 @@ TEST(ContactMessages, RefusesAMeshWithDefects) {
   EXPECT_THROW(clothMesh(message), std::invalid_argument);
 }
 
-TEST(ContactMessages, StateOfAMessage) {
+TEST(RendererMessages, StateOfAMessage) {
   LargeScaleState state;
   readState(someState(), state);
   EXPECT_EQ(state.simulated_time, 2.5);
@@ -97,7 +97,7 @@ TEST(ContactMessages, StateOfAMessage) {
   EXPECT_EQ(state.attached, (std::vector<char>{0, 1, 0, 1}));
 }
 
-TEST(ContactMessages, RefusesABadStateAndSaysWhy) {
+TEST(RendererMessages, RefusesABadStateAndSaysWhy) {
   using Message = haptex::ClothState;
   const std::vector<std::pair<std::string, std::function<void(Message&)>>> flaws = {
       {"frame_id", [](Message& m) { m.header.frame_id = "map"; }},
@@ -125,7 +125,7 @@ TEST(ContactMessages, RefusesABadStateAndSaysWhy) {
 
 // The promise of a command: evaluated in the hand's frame for a fingertip that is elsewhere and
 // moves differently, it gives the force of the contact there in the world frame.
-TEST(ContactMessages, CommandIsTheSameForceInTheFrameOfAMovingHand) {
+TEST(RendererMessages, CommandIsTheSameForceInTheFrameOfAMovingHand) {
   const contact::FingertipContact contact = someContact();
   const FrameMotion hand = movingHand();
   haptex::ServoForce message;
@@ -133,8 +133,8 @@ TEST(ContactMessages, CommandIsTheSameForceInTheFrameOfAMovingHand) {
   EXPECT_EQ(message.header.frame_id, "hand_base");
   EXPECT_EQ(message.header.stamp, kStamp);
 
-  const Eigen::Vector3d moved(1e-3, -2e-3, 3e-3);    // in the world frame
-  const Eigen::Vector3d faster(0.02, 0.01, -0.03);   // likewise
+  const Eigen::Vector3d moved(1e-3, -2e-3, 3e-3);   // in the world frame
+  const Eigen::Vector3d faster(0.02, 0.01, -0.03);  // likewise
   const Eigen::Vector3d in_world =
       contact.force - contact.stiffness * moved - contact.damping * faster;
   const Eigen::Matrix3d to_hand = hand.pose.linear().transpose();
@@ -150,7 +150,7 @@ TEST(ContactMessages, CommandIsTheSameForceInTheFrameOfAMovingHand) {
   EXPECT_LT((hand.pose.linear() * in_hand - in_world).norm(), 1e-12);
 }
 
-TEST(ContactMessages, GainScalesForceStiffnessAndDampingTogether) {
+TEST(RendererMessages, GainScalesForceStiffnessAndDampingTogether) {
   haptex::ServoForce whole, part;
   fillServoForce(someContact(), 1.0, movingHand(), kStamp, whole);
   fillServoForce(someContact(), 0.25, movingHand(), kStamp, part);
@@ -160,7 +160,7 @@ TEST(ContactMessages, GainScalesForceStiffnessAndDampingTogether) {
   EXPECT_EQ(vector(part.position), vector(whole.position));
 }
 
-TEST(ContactMessages, ContactForTheTactileRenderer) {
+TEST(RendererMessages, ContactForTheTactileRenderer) {
   const contact::FingertipContact contact = someContact();
   std::array<double, contact::kContactors> contactors{};
   contactors[7] = 0.5;
@@ -182,7 +182,7 @@ TEST(ContactMessages, ContactForTheTactileRenderer) {
   EXPECT_EQ(message.contactor_forces[7], 0.25);
 }
 
-TEST(ContactMessages, NoContactWithoutAGain) {
+TEST(RendererMessages, NoContactWithoutAGain) {
   std::array<double, contact::kContactors> contactors{};
   contactors[7] = 0.5;
   haptex::Contact message;
@@ -198,7 +198,7 @@ TEST(ContactMessages, NoContactWithoutAGain) {
   EXPECT_EQ(message.contactor_forces[7], 0.0);
 }
 
-TEST(ContactMessages, ForcesOnTheCloth) {
+TEST(RendererMessages, ForcesOnTheCloth) {
   cloth::PointLoad load;
   load.triangle = 5;
   load.weights = {0.2, 0.3, 0.5};
@@ -221,7 +221,7 @@ TEST(ContactMessages, ForcesOnTheCloth) {
   EXPECT_TRUE(message.triangles.empty() && message.stiffness.empty());
 }
 
-TEST(ContactMessages, AsksForTheNearestInAVolume) {
+TEST(RendererMessages, AsksForTheNearestInAVolume) {
   contact::SearchVolume volume;
   volume.begin = {0.1, 0.2, 0.3};
   volume.end = {0.4, 0.5, 0.6};
@@ -238,7 +238,7 @@ TEST(ContactMessages, AsksForTheNearestInAVolume) {
   EXPECT_EQ(request.nearest, 50u);
 }
 
-TEST(ContactMessages, SelectsWhatAnAnswerFoundAndRefusesTrianglesThatDoNotExist) {
+TEST(RendererMessages, SelectsWhatAnAnswerFoundAndRefusesTrianglesThatDoNotExist) {
   haptex::QueryProximity::Response response;
   response.elements.resize(3);
   response.elements[0].triangle = 5;
