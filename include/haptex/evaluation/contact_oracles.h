@@ -1,0 +1,18 @@
+// The parts of validateContact(), by what they look at.
+#pragma once
+
+#include "haptex/evaluation/validation.h"
+#include "haptex/material/fabric.h"
+
+namespace haptex::evaluation {
+
+/// The sample hangs from the fingertips, and is stretched between them and the bar.
+void validateContactEquilibrium(const material::Fabric& fabric, const Sink& sink);
+/// The contact cases, and force against depth under refinement.
+void validateContactTouch(const material::Fabric& fabric, const Sink& sink);
+/// Coulomb friction: slip, stick, drift.
+void validateContactFriction(const material::Fabric& fabric, const Sink& sink);
+/// Ripple, steps when the patch moves on, energy at the fingertip, the whole cloth at 1 kHz.
+void validateContactFeel(const material::Fabric& fabric, const Sink& sink);
+
+}  // namespace haptex::evaluation

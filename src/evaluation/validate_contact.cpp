@@ -1,0 +1,15 @@
+// The oracles of the contact room: what issues of each part are in the files named after it.
+#include "haptex/evaluation/contact_oracles.h"
+#include "haptex/material/fabric_file.h"
+
+namespace haptex::evaluation {
+
+void validateContact(const std::string& config_directory, const Sink& sink) {
+  const material::Fabric wool = material::loadFabric(config_directory + "/fabrics/wool.yaml");
+  validateContactTouch(wool, sink);
+  validateContactFriction(wool, sink);
+  validateContactEquilibrium(wool, sink);
+  validateContactFeel(wool, sink);
+}
+
+}  // namespace haptex::evaluation

@@ -1,0 +1,119 @@
+#include <cmath>
+
+#include "haptex/evaluation/contact_oracles.h"
+#include "haptex/evaluation/contact_scenes.h"
+
+namespace haptex::evaluation {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kWeightTolerance = 0.01;
+constexpr double kBarTolerance = 0.005;
+constexpr double kReferenceTolerance = 0.02;
+constexpr double kSettledTolerance = 1e-3;
+
+constexpr double kPinchHeight = -0.19;  // m: 10 mm above the lower edge
+constexpr double kOpen = 4e-3;          // m, gap in which nothing touches
+const Vector3d kStill = Vector3d::Zero();
+
+/// The bar lets go; the sample falls over and hangs from the fingertips.
+void validateWeight(const material::Fabric& fabric, double rate, const Sink& sink) {
+  constexpr double kFall = 9.0, kMean = 0.5;  // s
+  const HapticLoopSettings sample = hangingSample(fabric, Direction::kWarp, rate);
+  HapticLoop loop(sample);
+  Hand hand;
+  hand.middle.z() = kPinchHeight;
+  hand.gap = kOpen;
+  const auto step = [&](const Fingertips& fingertips) { loop.step(fingertips); };
+  move(hand, kStill, -2.0 * kOpen, 0.2, 1e-3, step);
+  move(hand, kStill, 0.0, 0.3, 1e-3, step);
+  loop.cloth().releaseAll();
+  move(hand, kStill, 0.0, kFall - kMean, 1e-3, step);
+  double sum = 0.0, squares = 0.0;
+  int count = 0;
+  move(hand, kStill, 0.0, kMean, 1e-3, [&](const Fingertips& fingertips) {
+    loop.step(fingertips);
+    const double force = -forceOnFingertips(loop.layer()).z();
+    sum += force;
+    squares += force * force;
+    ++count;
+  });
+  const double mean = sum / count;
+  const std::string name = std::to_string(std::lround(rate)) + "Hz";
+  sink(relativeTo(weight(sample), "contact/weight/" + name, weight(sample), mean,
+                  kWeightTolerance));
+  const double ripple = std::sqrt(std::max(0.0, squares / count - mean * mean));
+  sink({"contact/weight/ripple_N/" + name, 0.0, ripple, ripple, 0.01});
+}
+
+/// Forces on the fingertips (N) at each extension of the refined cloth, quasi-static.
+std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand, double closing,
+                                    const std::vector<double>& extensions, const std::string& name,
+                                    const Sink& sink) {
+  RefinedCloth cloth(sample);
+  const auto step = [&](double h) {
+    return [&cloth, h](const Fingertips& fingertips) { cloth.step(fingertips, h); };
+  };
+  const auto force = [&] { return cloth.force(0).z() + cloth.force(1).z(); };
+  move(hand, kStill, -closing, 0.4, 0.02, step(0.02));
+  move(hand, kStill, 0.0, 0.4, 0.1, step(0.1));
+  std::vector<double> forces;
+  Quantity settled{"contact/stretch/" + name + "/reference_settled", 0.0, 0.0, 0.0,
+                   kSettledTolerance};
+  double reached = 0.0;
+  for (double extension : extensions) {
+    move(hand, {0.0, 0.0, reached - extension}, 0.0, 0.4, 0.04, step(0.04));
+    reached = extension;
+    move(hand, kStill, 0.0, 0.5, 0.1, step(0.1));
+    const double before = force();
+    move(hand, kStill, 0.0, 0.1, 0.1, step(0.1));
+    forces.push_back(force());
+    settled.measured = settled.error =
+        largerOrNaN(settled.error, std::abs(force() - before) / force());
+  }
+  sink(settled);
+  return forces;
+}
+
+void validateStretch(const material::Fabric& fabric, Direction direction, double longest,
+                     const Sink& sink) {
+  const std::string name = direction == Direction::kWeft ? "weft" : "warp";
+  const HapticLoopSettings sample = hangingSample(fabric, direction, 80.0);
+  constexpr double kClosing = 10e-3;  // m: so deep that nothing slips
+  std::vector<double> extensions;
+  for (int i = 1; i <= 5; ++i) extensions.push_back(0.2 * i * longest);
+  Hand hand;
+  hand.middle.z() = kPinchHeight;
+  hand.gap = kOpen;
+  const std::vector<double> reference =
+      referenceForces(sample, hand, kClosing, extensions, name, sink);
+
+  HapticLoop loop(sample);
+  const auto step = [&](const Fingertips& fingertips) { loop.step(fingertips); };
+  move(hand, kStill, -kClosing, 0.4, 1e-3, step);
+  double reached = 0.0;
+  for (std::size_t i = 0; i < extensions.size(); ++i) {
+    move(hand, {0.0, 0.0, reached - extensions[i]}, 0.0, 0.2, 1e-3, step);
+    reached = extensions[i];
+    move(hand, kStill, 0.0, 1.0, 1e-3, step);
+    const double force = forceOnFingertips(loop.layer()).z();
+    const double bar = loop.attachmentForce().z() - weight(sample);
+    const std::string line =
+        "contact/stretch/" + name + "/" + std::to_string(std::lround(1e4 * extensions[i])) + "e-4m";
+    sink(relativeTo(bar, line + "/bar", bar, force, kBarTolerance));
+    sink(relativeTo(reference[i], line + "/reference", reference[i], force, kReferenceTolerance));
+    const bool slips = loop.layer().contacts()[0].slipping || loop.layer().contacts()[1].slipping;
+    sink({line + "/slips", 0.0, slips ? 1.0 : 0.0, slips ? 1.0 : 0.0, 0.0});
+  }
+}
+
+}  // namespace
+
+void validateContactEquilibrium(const material::Fabric& fabric, const Sink& sink) {
+  for (double rate : {25.0, 50.0, 80.0}) validateWeight(fabric, rate, sink);
+  validateStretch(fabric, Direction::kWarp, 0.005, sink);
+  validateStretch(fabric, Direction::kWeft, 0.02, sink);
+}
+
+}  // namespace haptex::evaluation
