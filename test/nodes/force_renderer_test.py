@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The promises of force_renderer with the real nodes around it: an emulated hand pinches the lower
-edge of a wool sample."""
+edge of a wool sample, again and again."""
 import collections
 import math
 import os
