@@ -260,7 +260,14 @@ class ForceRenderer(unittest.TestCase):
 
     def no_force_after_the_death_of(self, node, listeners=None, zero=0.0):
         listeners = listeners or list(self.commanded.values())
-        lasted = [self.die(node, listeners, zero) for _ in range(REPEATS)]
+        lasted = []
+        for _ in range(2 * REPEATS):
+            took = self.die(node, listeners, zero)
+            if took > 0.0:  # else the force had fallen a moment before, which tells nothing
+                lasted.append(took)
+            if len(lasted) == REPEATS:
+                break
+        self.assertTrue(lasted)
         print(f'{node}: median {statistics.median(lasted):.1f} ms, largest {max(lasted):.1f} ms')
         self.assertLessEqual(statistics.median(lasted), DEADLINE)
 
