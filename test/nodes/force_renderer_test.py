@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The promises of force_renderer with the real nodes around it: an emulated hand pinches the lower
-edge of a wool sample."""
+edge of a wool sample, again and again."""
 import collections
 import math
 import os
@@ -127,14 +127,12 @@ class ForceRenderer(unittest.TestCase):
         self.eventually(is_ready, lambda: f'homed and enabled: {self.state}', 2 * WAIT)
 
     def await_contact(self):
-        """Both fingertips feel the cloth between them, and no force rises any more."""
+        """Both fingertips feel the cloth between them."""
         def felt():
             if not self.state or self.state.state != 'ENABLED':
                 self.recover()
-            return (all(forces.size > FELT and forces.age() < 0.1
-                        for forces in self.commanded.values())
-                    and float(self.values('contact force of the index')
-                              ['share of the force that is rendered']) == 1.0)
+            return all(forces.size > FELT and forces.age() < 0.1
+                       for forces in self.commanded.values())
 
         self.eventually(felt, lambda: 'contact: ' + self.diagnostics[SOURCES].message, 2 * WAIT)
 
@@ -243,7 +241,7 @@ class ForceRenderer(unittest.TestCase):
         still subtracted"""
         victim = self.process(node)
         others = {other: self.process(other) for other in NODES if other != node}
-        self.assertTrue(all(listener.size > zero for listener in listeners))
+        self.eventually(lambda: all(listener.size > zero for listener in listeners), 'a force')
         death = rospy.get_time()
         os.kill(victim, signal.SIGKILL)
         time.sleep(0.3)
@@ -262,7 +260,14 @@ class ForceRenderer(unittest.TestCase):
 
     def no_force_after_the_death_of(self, node, listeners=None, zero=0.0):
         listeners = listeners or list(self.commanded.values())
-        lasted = [self.die(node, listeners, zero) for _ in range(REPEATS)]
+        lasted = []
+        for _ in range(2 * REPEATS):
+            took = self.die(node, listeners, zero)
+            if took > 0.0:  # else the force had fallen a moment before, which tells nothing
+                lasted.append(took)
+            if len(lasted) == REPEATS:
+                break
+        self.assertTrue(lasted)
         print(f'{node}: median {statistics.median(lasted):.1f} ms, largest {max(lasted):.1f} ms')
         self.assertLessEqual(statistics.median(lasted), DEADLINE)
 
