@@ -18,6 +18,12 @@ template <typename... Parts>
   throw std::invalid_argument(message.str());
 }
 
+bool isUnit(const Eigen::Quaterniond& orientation) {  // false for NaN too
+  return std::abs(orientation.norm() - 1.0) <= kLargestQuaternionDeviation;
+}
+
+bool isInRange(double radius) { return radius > 0.0 && radius <= kLargestRadius; }
+
 void requireFinite(const char* name, const Eigen::Vector3d& vector) {
   if (!vector.allFinite()) refuse(name, " (", vector.transpose(), ") must be finite");
 }
@@ -39,14 +45,19 @@ void requireSound(const Fingertip& fingertip) {
   requireFinite("position", fingertip.position);
   requireFinite("velocity", fingertip.velocity);
   requireFinite("angular velocity", fingertip.angular_velocity);
-  const double norm = fingertip.orientation.norm();
-  if (!(std::abs(norm - 1.0) <= kLargestQuaternionDeviation)) {  // NaN too
-    refuse("orientation has the norm ", norm, ", it must be 1 to ", kLargestQuaternionDeviation);
+  if (!isUnit(fingertip.orientation)) {
+    refuse("orientation has the norm ", fingertip.orientation.norm(), ", it must be 1 to ",
+           kLargestQuaternionDeviation);
   }
-  if (!std::isfinite(fingertip.radius) || fingertip.radius <= 0.0 ||
-      fingertip.radius > kLargestRadius) {
+  if (!isInRange(fingertip.radius)) {
     refuse("radius ", fingertip.radius, " must be > 0 and <= ", kLargestRadius, " m");
   }
+}
+
+bool isSound(const Fingertip& fingertip) {
+  return fingertip.position.allFinite() && fingertip.velocity.allFinite() &&
+         fingertip.angular_velocity.allFinite() && isUnit(fingertip.orientation) &&
+         isInRange(fingertip.radius);
 }
 
 }  // namespace haptex::contact

@@ -141,7 +141,7 @@ void HapticLayer::startAgain() {
 void HapticLayer::step(const PerFingertip<std::optional<Fingertip>>& fingertips) {
   fingertips_ = fingertips;
   for (int f = 0; f < kFingertips; ++f) {
-    present_[f] = fingertips_[f] ? &*fingertips_[f] : nullptr;
+    present_[f] = fingertips_[f] && isSound(*fingertips_[f]) ? &*fingertips_[f] : nullptr;
   }
   loads_.clear();
   last_step_accepted_ = true;

@@ -31,8 +31,8 @@ HapticLoopSettings hangingSample(const material::Fabric& fabric, Direction up,
                                  double large_scale_rate) {
   HapticLoopSettings settings = sampleAt(fabric, large_scale_rate);
   settings.effects.gravity = {0.0, 0.0, -kGravity};
-  settings.attached_particles = sideParticles(
-      settings.mesh, up == Direction::kWarp ? cloth::Side::kTop : cloth::Side::kLeft);
+  settings.attached_particles =
+      sideParticles(settings.mesh, up == Direction::kWarp ? cloth::Side::kTop : cloth::Side::kLeft);
   if (up == Direction::kWarp) return settings;
   for (std::size_t i = 0; i < settings.mesh.rest_coordinates.size(); ++i) {
     const Eigen::Vector2d& rest = settings.mesh.rest_coordinates[i];
@@ -45,8 +45,8 @@ HapticLoopSettings tautSample(const material::Fabric& fabric, double strain,
                               double large_scale_rate) {
   HapticLoopSettings settings = sampleAt(fabric, large_scale_rate);
   std::vector<char> held(settings.mesh.rest_coordinates.size(), 0);
-  for (cloth::Side side : {cloth::Side::kTop, cloth::Side::kBottom, cloth::Side::kLeft,
-                           cloth::Side::kRight}) {
+  for (cloth::Side side :
+       {cloth::Side::kTop, cloth::Side::kBottom, cloth::Side::kLeft, cloth::Side::kRight}) {
     for (int particle : sideParticles(settings.mesh, side)) held[particle] = 1;
   }
   const Vector3d middle(0.0, 0.0, -0.5 * kSampleSide);

@@ -41,8 +41,8 @@ void validateWeight(const material::Fabric& fabric, double rate, const Sink& sin
   });
   const double mean = sum / count;
   const std::string name = std::to_string(std::lround(rate)) + "Hz";
-  sink(relativeTo(weight(sample), "contact/weight/" + name, weight(sample), mean,
-                  kWeightTolerance));
+  sink(
+      relativeTo(weight(sample), "contact/weight/" + name, weight(sample), mean, kWeightTolerance));
   const double ripple = std::sqrt(std::max(0.0, squares / count - mean * mean));
   sink({"contact/weight/ripple_N/" + name, 0.0, ripple, ripple, 0.01});
 }

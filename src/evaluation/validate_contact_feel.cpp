@@ -114,8 +114,8 @@ void validateSteps(const material::Fabric& fabric, bool taut, double speed, cons
 /// The force acts until the next one comes.
 void validatePassivity(const material::Fabric& fabric, const Sink& sink) {
   constexpr int kCycles = 1000;
-  constexpr int kTicks = 25;       // of approach, and of retreat
-  constexpr double kSpeed = 0.1;   // m/s
+  constexpr int kTicks = 25;      // of approach, and of retreat
+  constexpr double kSpeed = 0.1;  // m/s
   HapticLoop loop(tautSample(fabric, 0.005, 80.0));
   Fingertip fingertip;
   fingertip.radius = kIndexRadius;

@@ -77,8 +77,8 @@ struct FlatSheet {
 /// for displacements s that are small beside it.
 double exactDrag(const contact::ContactLaw& law, double depth, double displacement) {
   const double centre = kIndexRadius + law.halfThickness() - depth;
-  const double radius = std::sqrt(std::pow(kIndexRadius + law.halfThickness(), 2) -
-                                  centre * centre);
+  const double radius =
+      std::sqrt(std::pow(kIndexRadius + law.halfThickness(), 2) - centre * centre);
   constexpr int kRings = 20000;
   double sum = 0.0;
   for (int i = 0; i < kRings; ++i) {
@@ -111,8 +111,7 @@ void validateStick(const material::Fabric& fabric, const Sink& sink) {
     for (const auto& touched : contact.commit(sheet.particles(), fingertip)) {
       force += touched.friction.y();
     }
-    sink(relativeTo(full,
-                    "contact/friction/stick/" + std::to_string(20 * i) + "percent_of_slip",
+    sink(relativeTo(full, "contact/friction/stick/" + std::to_string(20 * i) + "percent_of_slip",
                     exactDrag(law, kDepth, displacement), force, kFrictionTolerance));
   }
 }

@@ -65,8 +65,7 @@ void sinkRim(const HapticLoop& loop, const std::string& name, const Sink& sink) 
   const auto& contacts = loop.layer().contacts();
   const Vector3d force = forceOnFingertips(loop.layer());
   const Vector3d rim = loop.attachmentForce();
-  const double error =
-      (force - rim).norm() / (contacts[0].force.norm() + contacts[1].force.norm());
+  const double error = (force - rim).norm() / (contacts[0].force.norm() + contacts[1].force.norm());
   sink({"contact/" + name + "/rim", rim.norm(), force.norm(), error, kRimTolerance});
 }
 

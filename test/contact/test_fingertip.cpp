@@ -50,7 +50,9 @@ TEST(Fingertip, StaysWhereItIsWithoutVelocitiesOrTime) {
 std::string refusalOf(const Fingertip& fingertip) {
   try {
     requireSound(fingertip);
+    EXPECT_TRUE(isSound(fingertip));
   } catch (const std::invalid_argument& error) {
+    EXPECT_FALSE(isSound(fingertip));
     return error.what();
   }
   return "(not refused)";

@@ -69,8 +69,7 @@ TEST_P(RefinedCutLevel, WeightsAndSharesTellTheSamePlace) {
         EXPECT_GT(support.shares[k], 0);
         by_shares += support.shares[k] * mesh_.rest_coordinates[support.particles[k]] / divisions();
       }
-      by_weights +=
-          cut.weights[i][k] * mesh_.rest_coordinates[mesh_.triangles[cut.owners[i]][k]];
+      by_weights += cut.weights[i][k] * mesh_.rest_coordinates[mesh_.triangles[cut.owners[i]][k]];
     }
     EXPECT_EQ(sum, divisions());
     EXPECT_NEAR((by_shares - cut.mesh.rest_coordinates[i]).norm(), 0.0, 1e-15);

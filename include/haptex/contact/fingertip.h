@@ -23,8 +23,9 @@ struct Fingertip {
 Fingertip predict(const Fingertip& fingertip, double seconds);
 
 /// @throws std::invalid_argument naming what is not finite, not a unit quaternion to 1e-3, or out
-/// of
-///   range: the radius must be > 0 and at most 0.1 m
+///   of range: the radius must be > 0 and at most 0.1 m
 void requireSound(const Fingertip& fingertip);
+/// Whether requireSound() accepts the fingertip. Allocates nothing.
+bool isSound(const Fingertip& fingertip);
 
 }  // namespace haptex::contact

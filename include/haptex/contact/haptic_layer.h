@@ -90,7 +90,7 @@ class HapticLayer {
   /// @returns the one before, to be destroyed where time does not matter
   std::unique_ptr<Patch> exchange(std::unique_ptr<Patch> next);
 
-  /// Advances by settings().time_step. A fingertip that is absent does not touch.
+  /// Advances by settings().time_step. A fingertip that is absent, or not sound, does not touch.
   /// Without a state yet there is no contact.
   void step(const PerFingertip<std::optional<Fingertip>>& fingertips);
 

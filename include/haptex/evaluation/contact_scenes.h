@@ -12,10 +12,10 @@ namespace haptex::evaluation {
 
 using Fingertips = contact::PerFingertip<std::optional<contact::Fingertip>>;
 
-constexpr double kSampleSide = 0.2;       ///< m
-constexpr double kIndexRadius = 7.5e-3;   ///< m
-constexpr double kThumbRadius = 9e-3;     ///< m
-constexpr double kGravity = 9.80665;      ///< m/s^2
+constexpr double kSampleSide = 0.2;      ///< m
+constexpr double kIndexRadius = 7.5e-3;  ///< m
+constexpr double kThumbRadius = 9e-3;    ///< m
+constexpr double kGravity = 9.80665;     ///< m/s^2
 
 /// The 200 mm sample in the plane x = 0, 32 x 32 cells, hanging from the bar at the world's origin
 /// with the given direction of the fabric along +z. Patches of refinement 2.

@@ -1,0 +1,51 @@
+// An executable of its own, because it counts every call of malloc in the process.
+#include <gtest/gtest.h>
+
+#include "../malloc_counter.h"
+#include "fixtures.h"
+
+namespace haptex::contact {
+namespace {
+
+TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  const cloth::ClothMesh mesh = smallSample();
+  for (const auto kind : {HapticSettings::Layer::kPatch, HapticSettings::Layer::kWholeCloth}) {
+    HapticSettings settings;
+    settings.layer = kind;
+    HapticLayer layer(mesh, wool(), {true, {0.0, 0.0, -9.81}}, settings);
+    const auto prepare = [&](double u) {
+      return layer.preparePatch(trianglesAround(mesh, {u, 0.02}, 0.01), nothingAttached(mesh));
+    };
+    const bool patches = kind == HapticSettings::Layer::kPatch;
+    std::unique_ptr<Patch> first = patches ? prepare(0.02) : nullptr;
+    std::unique_ptr<Patch> second = patches ? prepare(0.025) : nullptr;
+    Fingertip index = pressing(layer.law(), kSmallSampleMiddle, 1e-3);
+    Fingertip thumb = index;
+    thumb.position.x() *= -1.0;
+    Fingertip unsound = thumb;
+    unsound.position.y() = std::nan("");
+    const std::vector<Eigen::Vector3d> rest = atRest(mesh);
+    bool touched = false;
+
+    const long before = allocations;
+    layer.step({index, thumb});
+    layer.receive(mesh.initial_positions, rest, 0.02);
+    layer.exchange(std::move(first));
+    for (int i = 0; i < 50; ++i) layer.step({index, thumb});
+    touched = layer.contacts()[0].touching && layer.contacts()[1].touching;
+    layer.receive(mesh.initial_positions, rest, 0.02);
+    std::unique_ptr<Patch> old = layer.exchange(std::move(second));
+    for (int i = 0; i < 50; ++i) layer.step({index, i % 2 == 0 ? thumb : unsound});
+    std::unique_ptr<Patch> older = layer.exchange(nullptr);
+    layer.step({index, std::nullopt});
+    EXPECT_EQ(allocations - before, 0);
+    EXPECT_GT(before, 0) << "the count does not work";
+    EXPECT_TRUE(touched);
+  }
+}
+
+}  // namespace
+}  // namespace haptex::contact
