@@ -73,7 +73,7 @@ class RendererLiveness {
   static constexpr Time kProximityPatience = std::chrono::milliseconds(6);
   /// Three periods of a tracker of 60 Hz.
   static constexpr Time kHandBasePatience = std::chrono::milliseconds(50);
-  static constexpr Time kFingertipPatience = std::chrono::milliseconds(5);
+  static constexpr Time kFingertipPatience = std::chrono::milliseconds(10);
   static constexpr Time kFall = std::chrono::milliseconds(8);
   static constexpr Time kSettle = std::chrono::milliseconds(15);
   static constexpr Time kRise = std::chrono::milliseconds(35);
