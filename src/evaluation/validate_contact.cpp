@@ -1,4 +1,4 @@
-// The oracles of the contact room: what issues of each part are in the files named after it.
+// The oracles of the contact room. Each part is in a file named after it.
 #include "haptex/evaluation/contact_oracles.h"
 #include "haptex/material/fabric_file.h"
 

@@ -110,8 +110,9 @@ void validateSteps(const material::Fabric& fabric, bool taut, double speed, cons
         kStepTolerance});
 }
 
-/// What a person puts into the cloth over cycles of approach and retreat (J): never below zero.
-/// The force acts until the next one comes.
+/// What a person has put into the cloth (J) over cycles of approach and retreat: never below zero,
+/// as Hannaford and Ryu 2002 observe it. Between two samples the device follows the linearised
+/// force, so the mean of both acts.
 void validatePassivity(const material::Fabric& fabric, const Sink& sink) {
   constexpr int kCycles = 1000;
   constexpr int kTicks = 25;      // of approach, and of retreat

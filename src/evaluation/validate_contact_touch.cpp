@@ -75,7 +75,9 @@ void validateFree(const material::Fabric& fabric, const Sink& sink) {
   loop.rest({near, std::nullopt}, 0.1);
   const contact::FingertipContact& felt = loop.layer().contacts()[0];
   const double all = felt.force.norm() + felt.normal_force + felt.stiffness.norm();
-  sink({"contact/free_N", 0.0, all, all + static_cast<double>(loop.layer().loads().size()), 0.0});
+  sink({"contact/free", 0.0, all, all, 0.0});
+  const double loads = static_cast<double>(loop.layer().loads().size());
+  sink({"contact/free_loads", 0.0, loads, loads, 0.0});
 }
 
 /// Fingertips at different places feel what each alone feels; those on the same side too.
@@ -107,14 +109,16 @@ void validateTwoPlaces(const material::Fabric& fabric, const Sink& sink) {
 }
 
 /// Force of a pinch against the integral of the contact law, and the fabric's thickness in the
-/// middle against its compression curve.
+/// middle against its compression curve. In the middle of a cell of the large-scale mesh: all
+/// particles there stand for equal areas.
 void validatePinch(const material::Fabric& fabric, const Sink& sink) {
   HapticLoopSettings sample = tautSample(fabric, kStrain, kRate);
   sample.haptics.refinement = 3;
   HapticLoop loop(sample);
   const contact::ContactLaw& law = loop.layer().law();
   Hand hand;
-  hand.middle = kMiddle;
+  const double half_cell = 0.5 * kSampleSide / 32.0;
+  hand.middle = kMiddle + Vector3d(0.0, half_cell, half_cell);
   hand.thumb_radius = kIndexRadius;
   hand.gap = 2.0 * law.halfThickness();
   const auto step = [&](const Fingertips& fingertips) { loop.step(fingertips); };

@@ -10,6 +10,7 @@ const std::vector<Validation>& validations() {
   static const std::vector<Validation> all = {{"material", validateMaterial},
                                               {"cloth", validateCloth},
                                               {"proximity", validateProximity},
+                                              {"contact", validateContact},
                                               {"exoskeleton", validateExoskeleton}};
   return all;
 }

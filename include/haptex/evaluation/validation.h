@@ -31,6 +31,10 @@ void validateCloth(const std::string& config_directory, const Sink& sink);
 /// Answers of proximity queries on deformed sheets against brute force and FCL: how many differ.
 void validateProximity(const std::string& config_directory, const Sink& sink);
 
+/// Two fingertips on the wool sample, both layers in one loop without clocks: equilibrium, contact
+/// cases, friction, refinement, and what disturbs the feel. Takes minutes.
+void validateContact(const std::string& config_directory, const Sink& sink);
+
 /// Kinematics of the fingers of urdf/hand_exoskeleton.urdf: against differences, closed forms and
 /// what its comment says, and whether the fingertips meet.
 /// @throws std::invalid_argument naming the file if it cannot be read, and as FingerKinematics
