@@ -18,8 +18,8 @@ using namespace haptex;
 
 constexpr int kRuns = 20;
 constexpr int kIterations = 50;
-constexpr int kPatchRuns = 100;
-constexpr int kPatchRepetitions = 20;
+constexpr int kPatchRuns = 10;
+constexpr int kPatchRepetitions = 200;
 constexpr int kPatchCells = 16;
 constexpr double kPatchStep = 0.001;  // s
 

@@ -173,12 +173,15 @@ void ForceLoop::takeFingers(Time now) {
       layer_ready_ && layer_ && states_.value().state.positions.size() == layer_particles_;
 }
 
-/// In the world frame; nothing if it is not known where it is, or not any more.
-std::optional<contact::Fingertip> ForceLoop::fingertip(Finger finger) const {
+/// Whether it is known where the fingertip is, or was until a moment ago.
+bool ForceLoop::isPresent(Finger finger) const {
   const bool silent = liveness_.isSilent(finger, RendererSource::kFingertip) ||
                       liveness_.isSilent(finger, RendererSource::kHandBase);
-  const bool known = news_.fingertips[finger] && news_.hand_base;
-  if (!known || (silent && liveness_.gain(finger) == 0.0)) return std::nullopt;
+  return !silent || liveness_.gain(finger) > 0.0;
+}
+
+/// In the world frame.
+contact::Fingertip ForceLoop::fingertip(Finger finger) const {
   const Pose& pose = inputs_[finger].pose.value();
   const FingertipTwist& twist = inputs_[finger].twist.value().twist;
   const Eigen::Matrix3d turn = hand_.pose.linear();
@@ -193,7 +196,13 @@ std::optional<contact::Fingertip> ForceLoop::fingertip(Finger finger) const {
 }
 
 void ForceLoop::step() {
-  for (const Finger finger : kFingers) fingertips_[index(finger)] = fingertip(finger);
+  for (const Finger finger : kFingers) {
+    if (isPresent(finger)) {
+      fingertips_[index(finger)] = view_.fingertips[finger] = fingertip(finger);
+    } else {
+      fingertips_[index(finger)].reset();
+    }
+  }
   if (layer_) {
     layer_->step(fingertips_);
     if (!layer_->lastStepAccepted()) {
@@ -242,7 +251,6 @@ void ForceLoop::showView(bool state_taken) {
   ticks_to_view_ = 0;
   view_.states = status_.states;
   view_.state_period = state_period_;
-  for (const Finger finger : kFingers) view_.fingertips[finger] = fingertips_[index(finger)];
   view_.loads.clear();
   if (layer_) view_.loads.assign(layer_->loads().begin(), layer_->loads().end());
   view_.load_gain = loadGain();

@@ -6,9 +6,9 @@
 #include <cerrno>
 #include <ctime>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
+#include "haptex/nodes/scheduling.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
@@ -20,20 +20,6 @@ void sleepUntil(Time time) {
   const timespec end = toTimespec(time);
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &end, nullptr) == EINTR) {
   }
-}
-
-/// @returns why it was refused; empty if it was granted
-std::string askForFifo(pthread_t thread) {
-  sched_param parameters{};
-  parameters.sched_priority = PeriodicThread::kPriority;
-  const int error = pthread_setschedparam(thread, SCHED_FIFO, &parameters);
-  if (error == 0) return "";
-  std::string why = std::generic_category().message(error);
-  if (error == EPERM) {
-    why += ": give the user rtprio " + std::to_string(PeriodicThread::kPriority) +
-           " in /etc/security/limits.conf, or the program cap_sys_nice";
-  }
-  return why;
 }
 
 }  // namespace
@@ -49,7 +35,7 @@ PeriodicThread::PeriodicThread(Time period, Work work) : period_(period), work_(
                                 " ns: allowed are periods > 0");
   }
   thread_ = std::thread([this] { run(); });
-  refused_scheduler_ = askForFifo(thread_.native_handle());
+  refused_scheduler_ = askForFifo(thread_.native_handle(), kLoopPriority);
 }
 
 PeriodicThread::~PeriodicThread() { stop(); }

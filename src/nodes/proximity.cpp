@@ -4,8 +4,10 @@
 #include <exception>
 
 #include "haptex/nodes/proximity_node.h"
+#include "haptex/nodes/scheduling.h"
 
 int main(int argc, char** argv) {
+  haptex::nodes::preferMessages();
   ros::init(argc, argv, "proximity");
   const ros::NodeHandle node;  // outlives the exception: without a node ROS_FATAL prints nothing
   try {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/nodes/scheduling.h"
+
 namespace haptex::nodes {
 namespace {
 
@@ -90,6 +92,7 @@ LoopStatus RealTimeLoop::status() const {
 }
 
 void RealTimeLoop::run() {
+  beOrdinary();  // long steps may not keep messages waiting
   std::unique_lock<std::mutex> lock(mutex_);
   resume();
   while (running_) {

@@ -119,15 +119,26 @@ void RendererLiveness::update(const RendererNews& news, Time now) {
       silent_[finger][index] = silent;
       all_live = all_live && !silent;
     }
-    const double change = all_live ? share(elapsed, kRise) : -share(elapsed, kFall);
-    gains_[finger] = std::clamp(gains_[finger] + change, 0.0, 1.0);
+    std::optional<Time>& since = alive_since_[finger];
+    if (!all_live) {
+      since.reset();
+    } else if (!since) {
+      since = now;
+    }
+    const bool settles = all_live && gains_[finger] == 0.0 && now - *since < kSettle;
+    const double rise = settles ? 0.0 : share(elapsed, kRise);
+    gains_[finger] =
+        std::clamp(gains_[finger] + (all_live ? rise : -share(elapsed, kFall)), 0.0, 1.0);
   }
   for (std::size_t i = 0; i < kRendererSourceCount; ++i) silences_[i] += fell_silent[i] ? 1 : 0;
   last_update_ = now;
 }
 
 void RendererLiveness::restart() {
-  for (const Finger finger : exoskeleton::kFingers) gains_[finger] = 0.0;
+  for (const Finger finger : exoskeleton::kFingers) {
+    gains_[finger] = 0.0;
+    alive_since_[finger].reset();
+  }
 }
 
 }  // namespace haptex::nodes

@@ -163,9 +163,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "loop: unknown key, allowed here: key_frames, repeat"},
         Refusal{"MissingKeyFrames", kValid.substr(kValid.find("key_frames")), "",
                 "the key 'key_frames' is missing, required here: key_frames"},
-        Refusal{
-            "UnknownKeyOfAFrame", "time: 2, ", "time: 2, speed: 1, ",
-            "key_frames[1].speed: unknown key, allowed here: time, index, thumb, position, rpy"},
+        Refusal{"UnknownKeyOfAFrame", "time: 2, ", "time: 2, speed: 1, ",
+                "key_frames[1].speed: unknown key, allowed here: time, index, thumb, position, "
+                "rpy, phase"},
         Refusal{"MissingThumb", "thumb: [0, 0.3, 0], ", "",
                 "key_frames[1]: the key 'thumb' is missing, required here: time, index, thumb, "
                 "position"},

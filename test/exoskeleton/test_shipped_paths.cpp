@@ -20,6 +20,7 @@ constexpr double kStep = 0.01;          // s
 constexpr double kThumbRadius = 0.009;  // m, and of the index: hand_exoskeleton.urdf
 constexpr double kIndexRadius = 0.0075;
 
+const std::string kDemo = HAPTEX_SOURCE_DIRECTORY "/config/paths/demo.yaml";
 const std::string kPinch = HAPTEX_SOURCE_DIRECTORY "/config/paths/pinch.yaml";
 
 Vector3d inWorld(const HandPlace& place, Finger finger) {
@@ -94,6 +95,49 @@ TEST(ShippedPaths, PinchTakesTheSampleNearItsLowerEdgeLiftsItAndLetsGo) {
   EXPECT_GT((inWorld(held, Finger::kIndex) - inWorld(held, Finger::kThumb)).normalized().x(), 0.99);
   // Away from the sample, which ends at z = -0.2.
   for (const Finger finger : kFingers) EXPECT_LT(inWorld(path.at(0.0), finger).z(), -0.23);
+}
+
+/// When a phase of a path begins (s).
+double beginOf(const HandPath& path, const std::string& phase) {
+  for (double time = 0.0; time <= path.duration(); time += kStep) {
+    if (path.phases()[path.at(time).phase] == phase) return time;
+  }
+  ADD_FAILURE() << "no phase " << phase;
+  return 0.0;
+}
+
+TEST(ShippedPaths, DemoPinchesLiftsStretchesAndSlidesWithTheForcesThatItSays) {
+  const HandPath path = loadHandPath(kDemo);
+  EXPECT_EQ(path.phases(), (std::vector<std::string>{"", "approach", "pinch", "lift", "stretch",
+                                                     "slide", "release", "retreat", "end"}));
+  EXPECT_GT(path.duration(), 25.0);
+  EXPECT_LT(path.duration(), 30.0);
+  const FingerMechanics person;
+  const double yields = 1.0 / person.fingertip_stiffness + 1.0 / person.pulp_stiffness;
+  constexpr double kPulp = 4e6;  // Pa/m, PulpSettings::stiffness: F = pi R kPulp depth^2
+  const auto target = [&](double force, double radius) {
+    return radius - std::sqrt(force / (M_PI * radius * kPulp)) - force * yields;
+  };
+  const struct {
+    const char* before_phase;
+    double force, y, z;  // N, m
+  } holds[] = {{"lift", 1.0, 0.0, -0.19},
+               {"stretch", 1.0, 0.0, -0.16},
+               {"slide", 2.2, 0.0, -0.194},
+               {"release", 0.3, 0.025, -0.19}};
+  for (const auto& hold : holds) {
+    const HandPlace place = path.at(beginOf(path, hold.before_phase) - 1e-3);
+    const Vector3d index = inWorld(place, Finger::kIndex), thumb = inWorld(place, Finger::kThumb);
+    // The file's coordinates are rounded to 0.1 mm, of which three add up.
+    const Vector3d expected_index(target(hold.force, kIndexRadius), hold.y, hold.z);
+    const Vector3d expected_thumb(-target(hold.force, kThumbRadius), hold.y, hold.z);
+    EXPECT_LT((index - expected_index).norm(), 2e-4) << hold.before_phase << index.transpose();
+    EXPECT_LT((thumb - expected_thumb).norm(), 2e-4) << hold.before_phase << thumb.transpose();
+  }
+  // Away from the sample at both ends.
+  for (const double time : {0.0, path.duration()}) {
+    for (const Finger finger : kFingers) EXPECT_LT(inWorld(path.at(time), finger).z(), -0.26);
+  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A force loop with a wool sample that hangs still and a hand whose index can touch it.
+// A force loop with a wool sample in a frame and a hand whose index can touch it.
 #pragma once
 
 #include <chrono>
@@ -16,15 +16,20 @@ class TouchedSheet {
   using Finger = exoskeleton::Finger;
   using Time = exoskeleton::Time;
 
-  static constexpr double kRadius = 0.0075;  // m
+  static constexpr double kRadius = 0.0075;         // m
+  static constexpr double kTouch = kRadius - 5e-3;  // m
   static constexpr int kCells = 8;
-  static constexpr double kSize = 0.1;  // m; the sheet hangs from z = 0 in the plane x = 0
+  static constexpr double kSize = 0.1;  // m; in the plane x = 0, its top edge at z = 0
 
   TouchedSheet() : loop_(exoskeleton::PerFinger<double>{{kRadius, kRadius}}) {
     mesh_ = cloth::makeRectangle(kSize, kSize, kCells, kCells, cloth::Triangulation::kAlternating);
     state_.positions = mesh_.initial_positions;
     state_.velocities.assign(state_.positions.size(), Eigen::Vector3d::Zero());
     state_.attached.assign(state_.positions.size(), 0);
+    for (const cloth::Side side :
+         {cloth::Side::kBottom, cloth::Side::kTop, cloth::Side::kLeft, cloth::Side::kRight}) {
+      for (const int particle : cloth::sideParticles(mesh_, side)) state_.attached[particle] = 1;
+    }
     place(Finger::kIndex, 0.05);
     place(Finger::kThumb, 0.05);
     loop_.takeHandBase(hand_, now_, now_, true);
@@ -60,8 +65,13 @@ class TouchedSheet {
   void place(Finger finger, double x) {
     poses_[finger] = hand_.inverse() * Eigen::Translation3d(x, 0.0, -0.5 * kSize);
   }
-  /// Presses the index into the sheet so that it feels it.
-  void touch() { place(Finger::kIndex, kRadius - 0.5e-3); }
+  /// Presses the index 5 mm deep into the sheet within 100 ms. Its centre stays before the sheet.
+  void touch() {
+    for (int i = 0; i <= 100; ++i) {
+      place(Finger::kIndex, kTouch + (1.0 - 0.01 * i) * 6e-3);
+      tick();
+    }
+  }
 
   void silence(RendererSource source, bool silent = true) {
     silent_[static_cast<std::size_t>(source)] = silent;

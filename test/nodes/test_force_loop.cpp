@@ -36,7 +36,7 @@ TEST(ForceLoop, AFingertipThatPressesIntoTheClothIsPushedBack) {
 
 TEST(ForceLoop, FingertipIsWhereHandAndFingerAre) {
   const auto sheet = touched();
-  const Eigen::Vector3d expected(TouchedSheet::kRadius - 0.5e-3, 0.0, -0.05);
+  const Eigen::Vector3d expected(TouchedSheet::kTouch, 0.0, -0.05);
   EXPECT_LT((sheet->loop().rendered(Finger::kIndex).contact.position - expected).norm(), 1e-12);
 }
 
@@ -65,8 +65,7 @@ TEST(ForceLoop, ForceFallsToZeroWithin20MillisecondsAndComesBackWithoutAJump) {
       largest_step = std::max(largest_step, std::abs(sheet->force().norm() - before));
       before = sheet->force().norm();
     }
-    // A fiftieth of the force that is there while it rises; the cloth gives way anew meanwhile, and
-    // before it has the fingertip feels more than at rest.
+    // A 35th of the force per millisecond; the cloth that has been displaced anew still swings.
     EXPECT_LT(largest_step, 0.1 * felt) << name(source);
     EXPECT_NEAR(before, felt, 0.05 * felt) << name(source);
   }
@@ -85,7 +84,7 @@ TEST(ForceLoop, StartsAgainFromZeroWhenTheSimulationWasReset) {
   const auto sheet = touched();
   sheet->state().simulated_time = 0.0;
   while (sheet->loop().rendered(Finger::kIndex).gain == 1.0) sheet->tick();
-  EXPECT_LT(sheet->loop().rendered(Finger::kIndex).gain, 0.05);
+  EXPECT_EQ(sheet->loop().rendered(Finger::kIndex).gain, 0.0);
   sheet->run(60);
   EXPECT_EQ(sheet->loop().rendered(Finger::kIndex).gain, 1.0);
 }
@@ -104,9 +103,11 @@ TEST(ForceLoop, WhatActsOnTheClothIsTheOppositeOfWhatTheFingertipFeels) {
   const auto sheet = touched();
   const LoopView& view = sheet->loop().view();
   EXPECT_EQ(view.load_gain, 1.0);
-  EXPECT_FALSE(view.loads.empty());
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const cloth::PointLoad& load : view.loads) sum += load.force;
+  EXPECT_LT((sum + sheet->force()).norm(), 0.02 * sheet->force().norm());  // it rests, nearly
   EXPECT_TRUE(view.fingertips[Finger::kIndex] && view.fingertips[Finger::kThumb]);
-  EXPECT_DOUBLE_EQ(view.state_period, 0.012);
+  EXPECT_NEAR(view.state_period, 0.012, 1e-12);
 }
 
 TEST(ForceLoop, NothingActsOnTheClothFromAFingerThatIsGone) {
@@ -115,8 +116,8 @@ TEST(ForceLoop, NothingActsOnTheClothFromAFingerThatIsGone) {
   sheet->run(40);
   const LoopView& view = sheet->loop().view();
   EXPECT_EQ(view.load_gain, 0.0);
-  EXPECT_FALSE(view.fingertips[Finger::kIndex]);
-  EXPECT_TRUE(view.fingertips[Finger::kThumb]);
+  EXPECT_TRUE(view.loads.empty());
+  EXPECT_TRUE(view.fingertips[Finger::kIndex]) << "its patch stays for when it is back";
 }
 
 TEST(ForceLoop, TellsWhenAStateWasTaken) {
@@ -168,7 +169,7 @@ TEST(ForceLoop, AReplacedLayerStartsWithoutForceAndRises) {
   ASSERT_TRUE(sheet->loop().canOffer());
   sheet->giveLayer();
   sheet->run(1);
-  EXPECT_LT(sheet->loop().rendered(Finger::kIndex).gain, 0.05);
+  EXPECT_EQ(sheet->loop().rendered(Finger::kIndex).gain, 0.0);
   EXPECT_TRUE(sheet->loop().canOffer()) << "and the old layer is freed by the one who offers";
   sheet->run(500);
   EXPECT_NEAR(sheet->force().norm(), felt, 0.05 * felt);

@@ -54,10 +54,10 @@ TEST(LayerBuilder, MakesALayerOfAnotherMesh) {
   EXPECT_NE(layer->preparePatch({7}, std::vector<char>(9, 0)), nullptr);
 }
 
-TEST(LayerBuilder, NamesTheFabricThatItCannotLoadOrThatLacksWhatContactNeeds) {
-  for (const std::string fabric : {"linear", "no_such_fabric", "../fabrics/wool", ""}) {
+TEST(LayerBuilder, NamesTheFabricThatItCannotLoad) {
+  for (const std::string fabric : {"no_such_fabric", "../fabrics/wool", ""}) {
     const std::string why = refusal(message(fabric));
-    EXPECT_NE(why.find("'" + fabric + "'"), std::string::npos) << why;
+    EXPECT_NE(why.find("'" + fabric + "'"), std::string::npos) << fabric << ": " << why;
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "haptex/nodes/periodic_thread.h"
+#include "haptex/nodes/scheduling.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
@@ -102,7 +103,7 @@ TEST(PeriodicThread, HasTheSchedulerThatItSaysItHas) {
   while (policy < 0) std::this_thread::yield();
   const bool granted = thread.refusedScheduler().empty();
   EXPECT_EQ(policy, granted ? SCHED_FIFO : SCHED_OTHER) << thread.refusedScheduler();
-  EXPECT_EQ(priority, granted ? PeriodicThread::kPriority : 0);
+  EXPECT_EQ(priority, granted ? kLoopPriority : 0);
 }
 
 TEST(PeriodicThread, WorksAndSaysWhyWhereTheSchedulerIsNotPermitted) {

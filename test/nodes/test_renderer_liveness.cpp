@@ -114,10 +114,12 @@ TEST(RendererLiveness, FallsAndRisesWithoutAJump) {
   steps_of_at_most(1.0 / 8.0, 50ms);  // zero within 8 ms
   EXPECT_EQ(sources.gain(), 0.0);
   sources.revive(RendererSource::kHeartbeat);
-  steps_of_at_most(1.0 / 50.0, 40ms);  // full after 50 ms
+  // Heard again after 5 ms at most, settled after 15 ms, full after 35 ms more.
+  steps_of_at_most(0.0, 15ms);
+  steps_of_at_most(1.0 / 35.0, 30ms);
   EXPECT_LT(sources.gain(), 1.0);
   EXPECT_GT(sources.gain(), 0.5);
-  steps_of_at_most(1.0 / 50.0, 20ms);
+  steps_of_at_most(1.0 / 35.0, 12ms);
   EXPECT_EQ(sources.gain(), 1.0);
 }
 
@@ -160,8 +162,21 @@ TEST(RendererLiveness, RestartsFromZero) {
   Sources sources = living();
   sources.liveness().restart();
   EXPECT_EQ(sources.gain(), 0.0);
+  sources.run(15ms);
+  EXPECT_EQ(sources.gain(), 0.0);
   sources.run(1ms);
-  EXPECT_NEAR(sources.gain(), 1.0 / 50.0, 1e-12);
+  EXPECT_NEAR(sources.gain(), 1.0 / 35.0, 1e-12);
+}
+
+TEST(RendererLiveness, RisesAtOnceAfterAHiccupThatDidNotTakeTheWholeForce) {
+  Sources sources = living();
+  sources.kill(RendererSource::kFingertip);
+  while (sources.gain() == 1.0) sources.tick();
+  const double least = sources.gain();
+  EXPECT_GT(least, 0.8);
+  sources.revive(RendererSource::kFingertip);
+  sources.run(2ms);
+  EXPECT_GT(sources.gain(), least);
 }
 
 TEST(RendererLiveness, CountsHowOftenASourceWentSilentOnceForBothFingers) {

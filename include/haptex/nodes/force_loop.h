@@ -41,6 +41,7 @@ struct LoopView {
 
   std::uint64_t states = 0;   ///< of the cloth, taken so far
   double state_period = 0.0;  ///< s, of simulated time, between the last two
+  /// Where they were last, also of one that is silent: its patch stays for when it is back.
   exoskeleton::PerFinger<std::optional<contact::Fingertip>> fingertips;
   std::vector<cloth::PointLoad> loads;
   double load_gain = 0.0;  ///< share of them that is to act
@@ -167,7 +168,8 @@ class ForceLoop {
   bool takeClothState();
   void receiveState(double period);
   void takeFingers(Time now);
-  std::optional<contact::Fingertip> fingertip(Finger finger) const;
+  bool isPresent(Finger finger) const;
+  contact::Fingertip fingertip(Finger finger) const;
   void step();
   void showView(bool state_taken);
   void showPicture();

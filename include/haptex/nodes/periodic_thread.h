@@ -25,11 +25,10 @@ NextPeriod nextPeriod(exoskeleton::Time start, exoskeleton::Time period, exoskel
 
 /// Works at absolute times, so that lateness does not add up. A period whose start has passed
 /// before the work for the one before is done is missed: it is counted and skipped, without a burst
-/// of catching up. Asks for the scheduler SCHED_FIFO and works without it too.
+/// of catching up. Asks for SCHED_FIFO with kLoopPriority and works without it too.
 class PeriodicThread {
  public:
   using Time = exoskeleton::Time;
-  static constexpr int kPriority = 80;  ///< of SCHED_FIFO, from 1 to 99
 
   /// On the thread; must not throw. @param now when the thread woke up
   using Work = std::function<void(Time now)>;

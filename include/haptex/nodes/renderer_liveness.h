@@ -55,8 +55,9 @@ bool isSilent(RendererSource source, exoskeleton::Finger finger, const RendererN
 std::string whySilent(exoskeleton::Finger finger, const RendererNews& news, exoskeleton::Time now);
 
 /// The share of each finger's forces that is rendered: it falls to zero within kFall when a source
-/// of the finger goes silent, and rises from zero within kRise when all live (again). Allocates
-/// nothing.
+/// of the finger goes silent. When all live (again) it rises, within kRise; from zero it does so
+/// when they have lived for kSettle: a fingertip that appears within the cloth has then displaced
+/// it. Allocates nothing.
 ///
 /// A source that is killed is noticed 10 ms after its last sign at the latest, the hand base
 /// excepted; with kFall all forces are zero 20 ms after it.
@@ -72,9 +73,10 @@ class RendererLiveness {
   static constexpr Time kProximityPatience = std::chrono::milliseconds(6);
   /// Three periods of a tracker of 60 Hz.
   static constexpr Time kHandBasePatience = std::chrono::milliseconds(50);
-  static constexpr Time kFingertipPatience = std::chrono::milliseconds(5);
+  static constexpr Time kFingertipPatience = std::chrono::milliseconds(10);
   static constexpr Time kFall = std::chrono::milliseconds(8);
-  static constexpr Time kRise = std::chrono::milliseconds(50);
+  static constexpr Time kSettle = std::chrono::milliseconds(15);
+  static constexpr Time kRise = std::chrono::milliseconds(35);
   /// A loop that stood still for longer has not heard what came meanwhile: it counts as this long.
   static constexpr Time kLongestPeriod = std::chrono::milliseconds(2);
 
@@ -98,6 +100,7 @@ class RendererLiveness {
  private:
   std::optional<Time> last_update_;
   exoskeleton::PerFinger<double> gains_;
+  exoskeleton::PerFinger<std::optional<Time>> alive_since_;
   exoskeleton::PerFinger<std::array<bool, kRendererSourceCount>> silent_{};
   std::array<std::uint64_t, kRendererSourceCount> silences_{};
 };
