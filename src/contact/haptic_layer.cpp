@@ -11,14 +11,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// How much of every contact spring goes back to the large-scale layer as implicit stiffness. From
-// one of its steps to the next the patch changes the force by S dx, where S, the springs K condensed
-// with the patch behind them, is at most K in every direction of all points together. Returned are
-// the force and c K. What is left, (c K - S) dx, alternates and grows if S exceeds 2 c K: c must be
-// 1/2 or more, or a cloth that hangs around a fingertip flutters from step to step. The smaller c,
-// the faster is equilibrium reached.
-constexpr double kReturned = 0.6;
-
 const material::Fabric& requireBending(const material::Fabric& fabric,
                                        const HapticSettings& settings) {
   if (settings.layer == HapticSettings::Layer::kPatch && !fabric.bending) {
@@ -177,8 +169,11 @@ void HapticLayer::stepPatch() {
     FingertipContact& contact = contacts_[f];
     if (!contact.touching) continue;
     contact.stiffness = stiffness_.own(f);
+    // Every point goes back with its own spring, although the patch behind it makes that softer: a
+    // part of the cloth that hangs around the fingertip flutters from one large-scale step to the
+    // next if less holds it. Equilibrium takes some more steps for it.
     Matrix3d stiffness = Matrix3d::Zero();
-    for (const TouchedParticle& point : touched) stiffness += kReturned * point.tangent;
+    for (const TouchedParticle& point : touched) stiffness += point.tangent;
     const Vector3d ahead = aheadOf(contact, stiffness);
     Eigen::Vector2d place = Eigen::Vector2d::Zero();
     Vector3d weft = Vector3d::Zero();
@@ -194,7 +189,7 @@ void HapticLayer::stepPatch() {
       if (loads_.size() == loads_.capacity()) continue;
       loads_.push_back({patch_->cut().owners[point.particle], patch_->cut().weights[point.particle],
                         patch_->placeOnCloth(point.particle, motion_) + ahead, point.force(),
-                        kReturned * point.tangent});
+                        point.tangent});
     }
     contact.fabric_position = place;
     contact.fabric_velocity = inFabric(contact.sliding_velocity, weft, warp);
