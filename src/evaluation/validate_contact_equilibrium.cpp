@@ -17,9 +17,12 @@ constexpr double kPinchHeight = -0.19;  // m: 10 mm above the lower edge
 constexpr double kOpen = 4e-3;          // m, gap in which nothing touches
 const Vector3d kStill = Vector3d::Zero();
 
-/// The bar lets go; the sample falls over and hangs from the fingertips.
+/// The bar lets go; the sample falls over, swings, and hangs from the fingertips when it rests.
 void validateWeight(const material::Fabric& fabric, double rate, const Sink& sink) {
-  constexpr double kFall = 9.0, kMean = 0.5;  // s
+  constexpr double kShortest = 5.0, kLongest = 30.0, kMean = 0.5;  // s
+  // At rest: neither ripple nor creep, without looking at the weight.
+  constexpr double kStillRipple = 1e-3;  // N, RMS
+  constexpr double kStillCreep = 1e-4;   // N, of the mean from one interval to the next
   const HapticLoopSettings sample = hangingSample(fabric, Direction::kWarp, rate);
   HapticLoop loop(sample);
   Hand hand;
@@ -29,21 +32,26 @@ void validateWeight(const material::Fabric& fabric, double rate, const Sink& sin
   move(hand, kStill, -2.0 * kOpen, 0.2, 1e-3, step);
   move(hand, kStill, 0.0, 0.3, 1e-3, step);
   loop.cloth().releaseAll();
-  move(hand, kStill, 0.0, kFall - kMean, 1e-3, step);
-  double sum = 0.0, squares = 0.0;
-  int count = 0;
-  move(hand, kStill, 0.0, kMean, 1e-3, [&](const Fingertips& fingertips) {
-    loop.step(fingertips);
-    const double force = -forceOnFingertips(loop.layer()).z();
-    sum += force;
-    squares += force * force;
-    ++count;
-  });
-  const double mean = sum / count;
+  double mean = 0.0, ripple = 0.0;
+  bool rests = false;
+  while (!rests && loop.time() < kLongest) {
+    double sum = 0.0, squares = 0.0;
+    int count = 0;
+    move(hand, kStill, 0.0, kMean, 1e-3, [&](const Fingertips& fingertips) {
+      loop.step(fingertips);
+      const double force = -forceOnFingertips(loop.layer()).z();
+      sum += force;
+      squares += force * force;
+      ++count;
+    });
+    const double creep = std::abs(sum / count - mean);
+    mean = sum / count;
+    ripple = std::sqrt(std::max(0.0, squares / count - mean * mean));
+    rests = loop.time() > kShortest && ripple < kStillRipple && creep < kStillCreep;
+  }
   const std::string name = std::to_string(std::lround(rate)) + "Hz";
   sink(
       relativeTo(weight(sample), "contact/weight/" + name, weight(sample), mean, kWeightTolerance));
-  const double ripple = std::sqrt(std::max(0.0, squares / count - mean * mean));
   sink({"contact/weight/ripple_N/" + name, 0.0, ripple, ripple, 0.01});
 }
 
@@ -56,8 +64,12 @@ std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand,
     return [&cloth, h](const Fingertips& fingertips) { cloth.step(fingertips, h); };
   };
   const auto force = [&] { return cloth.force(0).z() + cloth.force(1).z(); };
-  move(hand, kStill, -closing, 0.4, 0.025, step(0.025));
-  move(hand, kStill, 0.0, 0.3, 0.1, step(0.1));
+  move(hand, kStill, 0.0, 1.0, 0.25, step(0.25));
+  // Friction remembers the way: up to the touch at once, from there on as finely as it may be.
+  const double free_way = hand.gap - 2.0 * contact::ContactLaw(sample.fabric).halfThickness();
+  move(hand, kStill, -free_way, 0.25, 0.25, step(0.25));
+  move(hand, kStill, free_way - closing, 0.4, 0.01, step(0.01));
+  move(hand, kStill, 0.0, 0.5, 0.25, step(0.25));
   std::vector<double> forces;
   Quantity settled{"contact/stretch/" + name + "/reference_settled", 0.0, 0.0, 0.0,
                    kSettledTolerance};
@@ -65,9 +77,9 @@ std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand,
   for (double extension : extensions) {
     move(hand, {0.0, 0.0, reached - extension}, 0.0, 0.4, 0.08, step(0.08));
     reached = extension;
-    move(hand, kStill, 0.0, 0.4, 0.1, step(0.1));
+    move(hand, kStill, 0.0, 2.0, 0.25, step(0.25));
     const double before = force();
-    move(hand, kStill, 0.0, 0.1, 0.1, step(0.1));
+    move(hand, kStill, 0.0, 0.25, 0.25, step(0.25));
     forces.push_back(force());
     settled.measured = settled.error =
         largerOrNaN(settled.error, std::abs(force() - before) / force());
@@ -91,6 +103,7 @@ void validateStretch(const material::Fabric& fabric, Direction direction, double
 
   HapticLoop loop(sample);
   const auto step = [&](const Fingertips& fingertips) { loop.step(fingertips); };
+  move(hand, kStill, 0.0, 0.6, 1e-3, step);  // until it hangs still
   move(hand, kStill, -kClosing, 0.4, 1e-3, step);
   double reached = 0.0;
   for (std::size_t i = 0; i < extensions.size(); ++i) {

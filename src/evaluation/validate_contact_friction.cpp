@@ -25,7 +25,7 @@ void validateSlip(const material::Fabric& fabric, const Sink& sink) {
   // Two cells of the mesh, after which the pattern of particles under the fingertips repeats: what
   // the particles store in their dents and give back is zero on average.
   constexpr double kPeriod = 2.0 * kSampleSide / 32.0;  // m
-  for (double closing : {0.8e-3, 1.2e-3, 1.6e-3}) {
+  for (double closing : {0.4e-3, 0.8e-3, 1.2e-3}) {
     HapticLoop loop(tautSample(fabric, 0.005, 80.0));
     const double thickness = 2.0 * loop.layer().law().halfThickness();
     Hand hand;
