@@ -133,7 +133,7 @@ class Feel {
 
   void print(const std::string& prefix) {
     loop_.rest(0.3);
-    loop_.close(-0.016, 0.5);
+    loop_.close(-0.012, 0.5);
     loop_.rest(1.5);
     begin();
     loop_.rest(1.0);

@@ -35,8 +35,21 @@ void EmulatedDevice::setTarget(Finger finger, const Vector3d& target) {
   if (target.allFinite()) fingers_[finger].dynamics.setTarget(target);
 }
 
+void EmulatedDevice::keepApart() {
+  EmulatedFinger& index = fingers_[Finger::kIndex].dynamics;
+  EmulatedFinger& thumb = fingers_[Finger::kThumb].dynamics;
+  const Vector3d way = index.fingertip() - thumb.fingertip();
+  const double distance = way.norm();
+  const bool meet = distance > 0.0 && distance < kClosest;
+  const Vector3d force =
+      meet ? Vector3d(kBoneStiffness * (kClosest / distance - 1.0) * way) : Vector3d::Zero();
+  index.push(force);
+  thumb.push(-force);
+}
+
 void EmulatedDevice::step(const DeviceCommand& command) {
   ++steps_;
+  keepApart();
   for (const Finger finger : kFingers) {
     EmulatedSide& side = fingers_[finger];
     MotorVector torques = command.torques[finger];

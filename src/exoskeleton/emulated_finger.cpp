@@ -107,7 +107,7 @@ void EmulatedFinger::step(const MotorVector& torques, double period) {
       m.presliding_stiffness > 0.0 ? m.coulomb_friction / m.presliding_stiffness : 0.0;
   presliding_ = (presliding_ + period * velocities_).cwiseMax(-give).cwiseMin(give);
 
-  fingertip_velocity_ += period / m.fingertip_mass * (contact_force_ + held);
+  fingertip_velocity_ += period / m.fingertip_mass * (contact_force_ + held + push_);
   fingertip_velocity_ /= 1.0 + period * fingertip_damping / m.fingertip_mass;
   fingertip_ += period * fingertip_velocity_;
   refresh();

@@ -114,7 +114,7 @@ TEST(ShippedPaths, DemoPinchesLiftsStretchesAndSlidesWithTheForcesThatItSays) {
   EXPECT_LT(path.duration(), 30.0);
   const FingerMechanics person;
   const double yields = 1.0 / person.fingertip_stiffness + 1.0 / person.pulp_stiffness;
-  constexpr double kPulp = 4e6;  // Pa/m, PulpSettings::stiffness: F = pi R kPulp depth^2
+  constexpr double kPulp = 8e6;  // Pa/m, PulpSettings::stiffness: F = pi R kPulp depth^2
   const auto target = [&](double force, double radius) {
     return radius - std::sqrt(force / (M_PI * radius * kPulp)) - force * yields;
   };

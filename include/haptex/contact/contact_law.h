@@ -9,10 +9,10 @@ namespace haptex::contact {
 /// What a fingertip's pulp adds to the fabric's own properties.
 struct PulpSettings {
   /// Pa/m: pressure by depth of the pulp. The force on a fingertip of radius R at depth d in a flat
-  /// fabric is pi R stiffness d^2, its stiffness 2 sqrt(pi R stiffness force): with 4e6 Pa/m and a
-  /// thumb of 9 mm 1345 N/m at 4 N, the stiffest wall that the exoskeleton renders steadily under
+  /// fabric is pi R stiffness d^2, its stiffness 2 sqrt(pi R stiffness force): with 8e6 Pa/m and a
+  /// thumb of 9 mm 1345 N/m at 2 N, the stiffest wall that the exoskeleton renders steadily under
   /// every finger (scripts/bench exoskeleton).
-  double stiffness = 4e6;
+  double stiffness = 8e6;
   /// s/m: the pressure of a fingertip that approaches with v is 1 + damping v times the elastic one
   /// (Hunt and Crossley 1975).
   double damping = 2.0;

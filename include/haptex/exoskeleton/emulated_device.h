@@ -32,6 +32,10 @@ class EmulatedDevice {
   /// normal with this standard deviation (N). Both are representative.
   static constexpr double kForceRange = 10.0;
   static constexpr double kForceNoise = 0.002;
+  /// Fingers do not pass through each other: below this distance (m) of their middles they push each
+  /// other apart with this stiffness (N/m). Bones with compressed pulp: representative.
+  static constexpr double kClosest = 0.008;
+  static constexpr double kBoneStiffness = 3000.0;
 
   /// @param urdf text of the exoskeleton's URDF: geometry, masses, limits
   /// @param mechanics of both fingers
@@ -57,6 +61,8 @@ class EmulatedDevice {
   const EmulatedFinger& finger(Finger finger) const { return fingers_[finger].dynamics; }
 
  private:
+  void keepApart();
+
   struct EmulatedSide {
     EmulatedSide(const std::string& urdf, Finger finger, const FingerMechanics& mechanics)
         : dynamics(urdf, finger, mechanics) {}

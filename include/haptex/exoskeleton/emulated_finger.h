@@ -65,6 +65,11 @@ class EmulatedFinger {
   /// Whether the person lets the finger be moved.
   void relax(bool relaxed);
 
+  /// N, what pushes the person's fingertip from outside of the device in the steps to come: zero at
+  /// first.
+  /// @param force finite
+  void push(const Eigen::Vector3d& force) { push_ = force; }
+
   /// Semi-implicit Euler: forces at the present places, but damping by the coming velocities, which
   /// then move the places.
   /// @param torques N m on the motor axes, finite
@@ -106,6 +111,7 @@ class EmulatedFinger {
   Eigen::Vector3d fingertip_, fingertip_velocity_;
   Eigen::Matrix3d jacobian_;
   Eigen::Vector3d contact_force_;
+  Eigen::Vector3d push_ = Eigen::Vector3d::Zero();  // N
 
   FingertipReach::Place target_;
   Eigen::Vector3d asked_target_;
