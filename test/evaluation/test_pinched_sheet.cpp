@@ -31,7 +31,8 @@ ContactLaw softLaw() {
 TEST(PinchedSheet, HasTheClosedFormOfALinearLaw) {
   // Pressure k depth: force = pi z k depth^2.
   const double thickness = 6e-4, modulus = 2e4, pulp = 1.3e7;
-  const ContactLaw law(fabricWith({thickness, material::StrainStressCurve::linear(modulus)}));
+  const ContactLaw law(fabricWith({thickness, material::StrainStressCurve::linear(modulus)}),
+                       {pulp, 2.0});
   const double k = 1.0 / (1.0 / pulp + thickness / (2.0 * modulus));
   for (const double depth : {1e-6, 1e-4, 1e-3, 3e-3}) {
     const double z = kRadius + thickness / 2.0 - depth;
