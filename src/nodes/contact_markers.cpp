@@ -25,8 +25,9 @@ constexpr double kPointSize = 0.0015;  // m
 constexpr double kFullForce = 0.1;     // N, on a particle, with the last colour
 constexpr int kForceDecades = 3;       // that the colours span
 constexpr double kPatchDistance = 0.0005;  // m, from the cloth
-constexpr double kTextHeight = 0.011;      // m, of a line
-constexpr double kTextPlace = 0.07;        // m, above the origin
+constexpr double kTextHeight = 0.009;      // m, of a line
+constexpr double kTextSide = -0.17;        // m, y: beside a sample of 0.2 m
+constexpr double kTextPlace = -0.04;       // m, z
 
 std::string rateLine(const char* name, double rate) {
   char line[64];
@@ -88,6 +89,7 @@ ContactMarkers::ContactMarkers() {
   }
   markers.push_back(makeMarker("patch", 0, Marker::TRIANGLE_LIST));
   markers.push_back(makeMarker("rates", 0, Marker::TEXT_VIEW_FACING));
+  markers.back().pose.position.y = kTextSide;
   markers.back().pose.position.z = kTextPlace;
   markers.back().scale.z = kTextHeight;
   markers.back().color = colourMessage(Eigen::Vector3f(0.1F, 0.1F, 0.1F));
