@@ -25,7 +25,7 @@ CondensedStiffness::CondensedStiffness(std::size_t most_particles) : column_(3, 
 
 void CondensedStiffness::clear() {
   for (int f = 0; f < kFingertips; ++f) {
-    for (Matrix3d& block : blocks_[f]) block.setZero();
+    condensed_[f].setZero();
     known_direct_[f].setZero();
     direct_[f].setZero();
   }
@@ -36,10 +36,7 @@ void CondensedStiffness::update(Patch& patch, double h) {
     direct_[f].setZero();
     for (const TouchedParticle& touched : patch.linearised(f)) direct_[f] += touched.tangent;
     if (!patch.linearised(f).empty()) continue;
-    for (int g = 0; g < kFingertips; ++g) {
-      blocks_[f][g].setZero();
-      blocks_[g][f].setZero();
-    }
+    condensed_[f].setZero();
     known_direct_[f].setZero();
   }
   // The next direction of a fingertip that touches.
@@ -53,24 +50,22 @@ void CondensedStiffness::update(Patch& patch, double h) {
 }
 
 void CondensedStiffness::computeColumn(Patch& patch, double h) {
-  const int g = next_ / 3;
+  const int f = next_ / 3;
   const int direction = next_ % 3;
   column_.leftCols(patch.freeCount()).setZero();
-  for (const TouchedParticle& touched : patch.linearised(g)) {
-    column_.col(touched.particle) += touched.tangent.col(direction);
+  for (const TouchedParticle& touched : patch.linearised(f)) {
+    column_.col(touched.particle) = touched.tangent.col(direction);
   }
   patch.solve(column_);
-  for (int f = 0; f < kFingertips; ++f) {
-    Vector3d change = f == g ? Vector3d(direct_[f].col(direction)) : Vector3d(Vector3d::Zero());
-    for (const TouchedParticle& touched : patch.linearised(f)) {
-      change -= h * h * touched.tangent * column_.col(touched.particle);
-    }
-    blocks_[f][g].col(direction) = change;
+  Vector3d change = direct_[f].col(direction);
+  for (const TouchedParticle& touched : patch.linearised(f)) {
+    change -= h * h * touched.tangent * column_.col(touched.particle);
   }
-  known_direct_[g][direction] = direct_[g].col(direction).norm();
+  condensed_[f].col(direction) = change;
+  known_direct_[f][direction] = direct_[f].col(direction).norm();
 }
 
-Matrix3d CondensedStiffness::own(int f) const {
+Matrix3d CondensedStiffness::of(int f) const {
   double scale = 1.0;
   for (int direction = 0; direction < 3; ++direction) {
     const double now = direct_[f].col(direction).norm();
@@ -78,11 +73,7 @@ Matrix3d CondensedStiffness::own(int f) const {
       scale = std::min(scale, now / known_direct_[f][direction]);
     }
   }
-  return scale * positivePart(blocks_[f][f]);
-}
-
-Matrix3d CondensedStiffness::common(int f) const {
-  return positivePart(blocks_[f][0] + blocks_[f][1]);
+  return scale * positivePart(condensed_[f]);
 }
 
 }  // namespace haptex::contact

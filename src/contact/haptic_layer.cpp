@@ -168,7 +168,7 @@ void HapticLayer::stepPatch() {
     fillContact(f, touched, particles);
     FingertipContact& contact = contacts_[f];
     if (!contact.touching) continue;
-    contact.stiffness = stiffness_.own(f);
+    contact.stiffness = stiffness_.of(f);
     // Every point goes back with its own spring, although the patch behind it makes that softer: a
     // part of the cloth that hangs around the fingertip flutters from one large-scale step to the
     // next if less holds it. Equilibrium takes some more steps for it.
