@@ -37,12 +37,17 @@ bool allFinite(const std::vector<Eigen::Vector3d>& vectors) {
                      [](const Eigen::Vector3d& vector) { return vector.allFinite(); });
 }
 
+std::size_t couplingCount(const Cloth& cloth) {
+  return cloth.bending() ? cloth.bending()->couplings().size() : 0;
+}
+
 }  // namespace
 
 BackwardEuler::BackwardEuler(const Cloth& cloth, const StepSettings& settings)
     : settings_(requireSound(settings)),
       element_count_(cloth.membrane().elements().size()),
-      matrix_(static_cast<int>(cloth.particleCount()), cloth.mesh().triangles),
+      coupling_count_(couplingCount(cloth)),
+      matrix_(cloth.pattern()),
       solver_(matrix_, settings.solver),
       rhs_(3, cloth.particleCount()),
       solution_(BlockVector::Zero(3, cloth.particleCount())),
@@ -63,7 +68,8 @@ StepReport BackwardEuler::step(const Cloth& cloth, ClothState& state, double tim
   }
   if (state.positions.size() != cloth.particleCount() ||
       state.velocities.size() != cloth.particleCount() || fixed_.size() != cloth.particleCount() ||
-      cloth.membrane().elements().size() != element_count_) {
+      cloth.membrane().elements().size() != element_count_ ||
+      couplingCount(cloth) != coupling_count_) {
     throw std::invalid_argument("the state, the cloth and the integrator differ in size");
   }
   StepReport report;
@@ -75,6 +81,9 @@ StepReport BackwardEuler::step(const Cloth& cloth, ClothState& state, double tim
     rhs_.col(i) = time_step * (cloth.externalForces()[i] + masses[i] * cloth.effects().gravity);
   }
   cloth.membrane().addStep(state.positions, state.velocities, time_step, matrix_, rhs_);
+  if (cloth.bending()) {
+    cloth.bending()->addStep(state.positions, state.velocities, time_step, matrix_, rhs_);
+  }
   addPointLoadStep(cloth.pointLoads(), cloth.mesh().triangles, cloth.membrane().elements(),
                    state.positions, state.velocities, time_step, time_step, matrix_, rhs_);
   prescribe(cloth, state, time_step);
@@ -138,6 +147,7 @@ double BackwardEuler::incrementalPotential(const Cloth& cloth, const ClothState&
                                            const Velocities& velocities) const {
   double potential = cloth.membrane().incrementalPotential(positions, begin_strains_, h) +
                      pointLoadEnergy(cloth.pointLoads(), cloth.mesh().triangles, positions);
+  if (cloth.bending()) potential += cloth.bending()->energy(positions);
   for (int i = 0; i < matrix_.size(); ++i) {
     if (fixed_[i]) continue;
     const double mass = cloth.masses()[i];
@@ -159,6 +169,7 @@ void BackwardEuler::assembleNewton(const Cloth& cloth, const ClothState& begin, 
                   mass * (end_.velocities[i] - begin.velocities[i]);
   }
   cloth.membrane().addNewton(end_.positions, begin_strains_, h, hessian, matrix_, rhs_);
+  if (cloth.bending()) cloth.bending()->addNewton(end_.positions, h, matrix_, rhs_);
   addPointLoadStep(cloth.pointLoads(), cloth.mesh().triangles, cloth.membrane().elements(),
                    end_.positions, end_.velocities, h, 0.0, matrix_, rhs_);
   if (any_fixed_) matrix_.eliminate(fixed_, prescribed_, rhs_);

@@ -179,6 +179,15 @@ double Bending::energy(const Positions& positions) const {
   return energy;
 }
 
+void Bending::addToMatrix(double h, SymmetricBlockMatrix& matrix) const {
+  for (const Coupling& coupling : couplings_) {
+    matrix.lower(coupling.slot).diagonal().array() += h * h * coupling.stiffness;
+  }
+  for (int i = 0; i < matrix.size(); ++i) {
+    matrix.diagonal(i).diagonal().array() += h * h * diagonal_[i];
+  }
+}
+
 void Bending::addStep(const Positions& positions, const Velocities& velocities, double h,
                       SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
   // F(x) + h K v = F(x + h v), because the forces are linear.
@@ -188,11 +197,19 @@ void Bending::addStep(const Positions& positions, const Velocities& velocities, 
     const Vector3d impulse = h * coupling.stiffness * difference;
     rhs.col(coupling.row) += impulse;
     rhs.col(coupling.column) -= impulse;
-    matrix.lower(coupling.slot).diagonal().array() += h * h * coupling.stiffness;
   }
-  for (int i = 0; i < matrix.size(); ++i) {
-    matrix.diagonal(i).diagonal().array() += h * h * diagonal_[i];
+  addToMatrix(h, matrix);
+}
+
+void Bending::addNewton(const Positions& positions, double h, SymmetricBlockMatrix& matrix,
+                        BlockVector& rhs) const {
+  for (const Coupling& coupling : couplings_) {
+    const Vector3d impulse =
+        h * coupling.stiffness * (positions[coupling.row] - positions[coupling.column]);
+    rhs.col(coupling.row) += impulse;
+    rhs.col(coupling.column) -= impulse;
   }
+  addToMatrix(h, matrix);
 }
 
 }  // namespace haptex::cloth

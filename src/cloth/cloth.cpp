@@ -31,6 +31,17 @@ std::vector<double> lumpedMasses(const Membrane& membrane, std::size_t particles
   return masses;
 }
 
+/// Nothing if bending is not modelled.
+std::optional<Bending> bendingOf(const ClothMesh& mesh, const material::Fabric& fabric,
+                                 const ModelledEffects& effects) {
+  if (!effects.bending) return std::nullopt;
+  if (!fabric.bending) {
+    throw std::invalid_argument("bending is modelled and fabric '" + fabric.name +
+                                "' has no bending rigidity: add the key bending");
+  }
+  return Bending(mesh, *fabric.bending);
+}
+
 }  // namespace
 
 Eigen::Vector3d AttachmentPath::position(double time) const {
@@ -45,6 +56,7 @@ Cloth::Cloth(ClothMesh mesh, material::Fabric fabric, const ModelledEffects& eff
       fabric_(std::move(fabric)),
       effects_(effects),
       membrane_(requireSoundAndReturn(mesh_), fabric_, effects.viscosity),
+      bending_(bendingOf(mesh_, fabric_, effects)),
       external_forces_(mesh_.rest_coordinates.size(), Eigen::Vector3d::Zero()),
       attachments_(mesh_.rest_coordinates.size()) {
   requireDensity(fabric_);
@@ -52,8 +64,22 @@ Cloth::Cloth(ClothMesh mesh, material::Fabric fabric, const ModelledEffects& eff
     throw std::invalid_argument("gravity has a component that is not finite");
   }
   masses_ = lumpedMasses(membrane_, mesh_.rest_coordinates.size(), fabric_.areal_density);
+  bindBending();
   point_loads_.reserve(kMostPointLoads);
   checked_loads_.reserve(kMostPointLoads);
+}
+
+SymmetricBlockMatrix Cloth::pattern() const {
+  const int count = static_cast<int>(particleCount());
+  if (!bending_) return {count, mesh_.triangles};
+  return {count, mesh_.triangles, bending_->pairs()};
+}
+
+void Cloth::bindBending() {
+  if (!bending_) return;
+  const SymmetricBlockMatrix matrix = pattern();
+  membrane_.bind(matrix);
+  bending_->bind(matrix);
 }
 
 ClothState Cloth::initialState() const {
@@ -65,6 +91,8 @@ ClothState Cloth::initialState() const {
 
 void Cloth::setFabric(material::Fabric fabric) {
   requireDensity(fabric);
+  bending_ = bendingOf(mesh_, fabric, effects_);
+  bindBending();
   membrane_.setFabric(fabric);
   masses_ = lumpedMasses(membrane_, particleCount(), fabric.areal_density);
   fabric_ = std::move(fabric);
@@ -146,6 +174,7 @@ void Cloth::computeForces(const ClothState& state, std::vector<Eigen::Vector3d>&
     forces[i] = external_forces_[i] + masses_[i] * effects_.gravity;
   }
   membrane_.addForces(state.positions, state.velocities, forces);
+  if (bending_) bending_->addForces(state.positions, forces);
   addPointForces(point_loads_, mesh_.triangles, state.positions, forces);
 }
 
@@ -153,6 +182,7 @@ double Cloth::potentialEnergy(const ClothState& state) const {
   requireState(state);
   double energy = membrane_.elasticEnergy(state.positions) +
                   pointLoadEnergy(point_loads_, mesh_.triangles, state.positions);
+  if (bending_) energy += bending_->energy(state.positions);
   for (std::size_t i = 0; i < particleCount(); ++i) {
     energy -= (external_forces_[i] + masses_[i] * effects_.gravity).dot(state.positions[i]);
   }
@@ -184,6 +214,24 @@ void Cloth::addPointLoadJacobian(const std::map<int, std::vector<std::size_t>>& 
   }
 }
 
+void Cloth::addBendingJacobian(const std::map<int, std::vector<std::size_t>>& rows_of_particle,
+                               std::vector<JacobianRow>& rows) const {
+  const auto add = [&](int row, int column, double stiffness) {
+    const auto asked = rows_of_particle.find(row);
+    if (asked == rows_of_particle.end()) return;
+    const Eigen::Matrix3d block = stiffness * Eigen::Matrix3d::Identity();
+    for (std::size_t r : asked->second) {
+      rows[r].at(row).by_position += block;
+      const JacobianBlock empty{row, column, Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
+      rows[r].emplace(column, empty).first->second.by_position -= block;
+    }
+  };
+  for (const Bending::Coupling& coupling : bending_->couplings()) {
+    add(coupling.row, coupling.column, coupling.stiffness);
+    add(coupling.column, coupling.row, coupling.stiffness);
+  }
+}
+
 std::vector<JacobianBlock> Cloth::jacobian(const ClothState& state,
                                            const std::vector<int>& particles) const {
   requireState(state);
@@ -210,6 +258,7 @@ std::vector<JacobianBlock> Cloth::jacobian(const ClothState& state,
       }
     }
   }
+  if (bending_) addBendingJacobian(rows_of_particle, rows);
   addPointLoadJacobian(rows_of_particle, rows);
   std::vector<JacobianBlock> blocks;
   for (const auto& row : rows) {

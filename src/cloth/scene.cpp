@@ -93,8 +93,10 @@ ModelledEffects readEffects(const YamlValue& scene) {
   ModelledEffects effects;
   bool gravity = false;
   for (const YamlValue& item : scene.at("model").items()) {
-    const bool is_gravity = item.oneOf({"gravity", "viscosity"}) == "gravity";
-    bool& effect = is_gravity ? gravity : effects.viscosity;
+    const std::string name = item.oneOf({"gravity", "viscosity", "bending"});
+    bool& effect = name == "gravity"     ? gravity
+                   : name == "viscosity" ? effects.viscosity
+                                         : effects.bending;
     if (effect) item.refuse("is listed twice");
     effect = true;
   }

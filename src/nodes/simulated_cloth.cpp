@@ -33,7 +33,8 @@ std::string element(const std::string& array, std::size_t index) {
 SimulatedCloth::SimulatedCloth(cloth::Scene scene, material::Fabric fabric)
     : cloth_(std::move(scene.mesh), std::move(fabric), scene.effects),
       state_(cloth_.initialState()),
-      integrator_(cloth_, scene.step),
+      step_settings_(scene.step),
+      integrator_(cloth_, step_settings_),
       initially_attached_(std::move(scene.attached_particles)),
       time_step_(scene.time_step) {
   attachInitially();
@@ -56,7 +57,10 @@ void SimulatedCloth::reset() {
   steps_ = 0;
 }
 
-void SimulatedCloth::setFabric(material::Fabric fabric) { cloth_.setFabric(std::move(fabric)); }
+void SimulatedCloth::setFabric(material::Fabric fabric) {
+  cloth_.setFabric(std::move(fabric));
+  if (cloth_.bending()) integrator_ = cloth::BackwardEuler(cloth_, step_settings_);
+}
 
 void SimulatedCloth::setPointLoads(const std::vector<cloth::PointLoad>& loads) {
   cloth_.setPointLoads(loads);

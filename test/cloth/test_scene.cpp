@@ -259,7 +259,7 @@ INSTANTIATE_TEST_SUITE_P(
     Values, SceneFileRefuses,
     testing::Values(
         Refusal{"UnknownEffect", "viscosity]", "wind]",
-                "model[1]: 'wind' must be one of gravity, viscosity"},
+                "model[1]: 'wind' must be one of gravity, viscosity, bending"},
         Refusal{"EffectListedTwice", "viscosity]", "gravity]",
                 "model[1]: 'gravity' is listed twice"},
         Refusal{"ModelNotAList", "[gravity, viscosity]", "gravity",

@@ -56,7 +56,8 @@ class BackwardEuler {
   BackwardEuler(const Cloth& cloth, const StepSettings& settings);
 
   /// Advances `state` by `time_step` seconds; steps need not be uniform.
-  /// @param cloth that of the constructor; its fabric, loads and attachments may have changed
+  /// @param cloth that of the constructor; its fabric, loads and attachments may have changed,
+  ///   but not Cloth::pattern()
   /// @throws std::invalid_argument if the time step is not finite and > 0, or state and cloth
   ///   differ in size from each other or from the constructor's; the state is then as before
   StepReport step(const Cloth& cloth, ClothState& state, double time_step);
@@ -74,6 +75,7 @@ class BackwardEuler {
 
   StepSettings settings_;
   std::size_t element_count_;
+  std::size_t coupling_count_;  // of bending
   SymmetricBlockMatrix matrix_;
   LinearSolver solver_;
   BlockVector rhs_;

@@ -56,16 +56,24 @@ class Bending {
   /// @param h time step, s, finite and > 0
   void addStep(const Positions& positions, const Velocities& velocities, double h,
                SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
+  /// Adds what bending contributes to a Newton iteration on the incremental potential,
+  ///   matrix += -h^2 K,  rhs += h F.
+  /// @param positions at the end of the step
+  void addNewton(const Positions& positions, double h, SymmetricBlockMatrix& matrix,
+                 BlockVector& rhs) const;
 
- private:
   /// The sum over all hinges of stiffness weights[i] weights[j]: force on `row`
   /// stiffness (P_row - P_column), and the opposite on `column`.
   struct Coupling {
     int row;
-    int column;  // < row
-    int slot;    // of the block in the matrix, -1 before bind()
-    double stiffness;
+    int column;        ///< < row
+    int slot;          ///< of the block in the matrix, -1 before bind()
+    double stiffness;  ///< N/m
   };
+  const std::vector<Coupling>& couplings() const { return couplings_; }
+
+ private:
+  void addToMatrix(double h, SymmetricBlockMatrix& matrix) const;
 
   std::vector<Hinge> hinges_;
   std::vector<Coupling> couplings_;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "haptex/cloth/bending.h"
 #include "haptex/cloth/block_matrix.h"
 #include "haptex/cloth/membrane.h"
 #include "haptex/cloth/mesh.h"
@@ -26,6 +27,7 @@ struct ClothState {
 struct ModelledEffects {
   bool viscosity = false;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< m/s^2
+  bool bending = false;                               ///< by the fabric's rigidity
 };
 
 /// The place of an attached particle: it rests at `start` until `start_time`, then follows a
@@ -52,8 +54,8 @@ class Cloth {
  public:
   static constexpr std::size_t kMostPointLoads = 4096;
 
-  /// @throws std::invalid_argument if the mesh has defects, the density is not finite and > 0, or
-  ///   gravity is not finite
+  /// @throws std::invalid_argument if the mesh has defects, the density is not finite and > 0,
+  ///   gravity is not finite, or bending is modelled and the fabric has none
   Cloth(ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects);
 
   const ClothMesh& mesh() const { return mesh_; }
@@ -63,12 +65,18 @@ class Cloth {
   /// Lumped particle masses (kg): a third of each adjacent triangle.
   const std::vector<double>& masses() const { return masses_; }
   const Membrane& membrane() const { return membrane_; }
+  /// Null if bending is not modelled.
+  const Bending* bending() const { return bending_ ? &*bending_ : nullptr; }
+  /// A matrix with the pattern that membrane and bending are bound to.
+  SymmetricBlockMatrix pattern() const;
 
   /// The state at rest in the initial positions at time 0.
   ClothState initialState() const;
 
   /// Changes the fabric from the next step on: masses and curves, not positions or velocities.
-  /// @throws std::invalid_argument if the density is not finite and > 0; nothing has changed then
+  /// With bending another rigidity may change pattern(): make a new integrator.
+  /// @throws std::invalid_argument if the density is not finite and > 0, or bending is modelled and
+  ///   the fabric has none; nothing has changed then
   void setFabric(material::Fabric fabric);
 
   /// User-defined external force (N) on a particle, until set again; zero at first.
@@ -118,9 +126,12 @@ class Cloth {
                                       const std::vector<int>& particles) const;
 
  private:
+  void bindBending();
   void requireParticle(int particle) const;
   void requireState(const ClothState& state) const;
   using JacobianRow = std::map<int, JacobianBlock>;  // by column
+  void addBendingJacobian(const std::map<int, std::vector<std::size_t>>& rows_of_particle,
+                          std::vector<JacobianRow>& rows) const;
   void addPointLoadJacobian(const std::map<int, std::vector<std::size_t>>& rows_of_particle,
                             std::vector<JacobianRow>& rows) const;
 
@@ -128,6 +139,7 @@ class Cloth {
   material::Fabric fabric_;
   ModelledEffects effects_;
   Membrane membrane_;
+  std::optional<Bending> bending_;
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> external_forces_;
   std::vector<std::optional<AttachmentPath>> attachments_;

@@ -75,6 +75,7 @@ class SimulatedCloth {
 
   cloth::Cloth cloth_;
   cloth::ClothState state_;
+  cloth::StepSettings step_settings_;
   cloth::BackwardEuler integrator_;
   std::vector<int> initially_attached_;
   double time_step_;
