@@ -31,6 +31,7 @@ evaluation::HapticLoopSettings woolSample(double large_scale_step) {
   settings.mesh = cloth::makeRectangle(0.2, 0.2, 32, 32, cloth::Triangulation::kAlternating);
   settings.fabric = material::loadFabric(kConfig + "/fabrics/wool.yaml");
   settings.effects.viscosity = true;
+  settings.effects.bending = true;
   settings.effects.gravity = Vector3d(0.0, 0.0, -9.80665);
   settings.attached_particles = cloth::sideParticles(settings.mesh, cloth::Side::kTop);
   settings.large_scale_step = large_scale_step;

@@ -19,6 +19,7 @@ HapticLoopSettings sampleAt(const material::Fabric& fabric, double large_scale_r
                                        cloth::Triangulation::kAlternating);
   settings.fabric = fabric;
   settings.effects.viscosity = true;
+  settings.effects.bending = true;
   settings.large_scale_step =
       std::round(1.0 / large_scale_rate / settings.haptics.time_step) * settings.haptics.time_step;
   settings.step.newton_iterations = 4;
