@@ -92,13 +92,16 @@ std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand,
   return forces;
 }
 
-void validateStretch(const material::Fabric& fabric, Direction direction, double longest,
-                     const Sink& sink) {
+// Friction remembers how the pinch closed, in steps of 1 ms here and in few long ones in the
+// reference, so the two differ by 2 mN at every extension, which is 2 % of 0.1 N.
+// @param first, further m, of the extensions
+void validateStretch(const material::Fabric& fabric, Direction direction, double first,
+                     double further, const Sink& sink) {
   const std::string name = direction == Direction::kWeft ? "weft" : "warp";
   const HapticLoopSettings sample = hangingSample(fabric, direction, 80.0);
-  constexpr double kClosing = 8e-3;  // m: a pinch of about 1 N
+  constexpr double kClosing = 8e-3;  // m: a pinch of about 1 N, which holds 0.4 N
   std::vector<double> extensions;
-  for (int i = 2; i <= 6; ++i) extensions.push_back(i * longest / 6.0);
+  for (int i = 0; i < 5; ++i) extensions.push_back(first + i * further);
   Hand hand;
   hand.middle.z() = kPinchHeight;
   hand.gap = kOpen;
@@ -129,8 +132,8 @@ void validateStretch(const material::Fabric& fabric, Direction direction, double
 
 void validateContactEquilibrium(const material::Fabric& fabric, const Sink& sink) {
   for (double rate : {25.0, 50.0, 80.0}) validateWeight(fabric, rate, sink);
-  validateStretch(fabric, Direction::kWarp, 0.0006, sink);
-  validateStretch(fabric, Direction::kWeft, 0.0018, sink);
+  validateStretch(fabric, Direction::kWarp, 3e-4, 1e-4, sink);
+  validateStretch(fabric, Direction::kWeft, 1.2e-3, 3e-4, sink);
 }
 
 }  // namespace haptex::evaluation
