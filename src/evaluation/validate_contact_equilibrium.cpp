@@ -92,16 +92,17 @@ std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand,
   return forces;
 }
 
-// Friction remembers how the pinch closed, in steps of 1 ms here and in few long ones in the
-// reference, so the two differ by 2 mN at every extension, which is 2 % of 0.1 N.
-// @param first, further m, of the extensions
+// Friction and folds remember how the cloth was pinched and pulled, in steps of 1 ms here and in
+// few long ones in the reference: some 2 mN at every extension. The first extensions, whose force
+// is below 0.12 N, are therefore on the way only.
+// @param first, further m, of the extensions @param skipped how many are on the way
 void validateStretch(const material::Fabric& fabric, Direction direction, double first,
-                     double further, const Sink& sink) {
+                     double further, std::size_t skipped, const Sink& sink) {
   const std::string name = direction == Direction::kWeft ? "weft" : "warp";
   const HapticLoopSettings sample = hangingSample(fabric, direction, 80.0);
   constexpr double kClosing = 8e-3;  // m: a pinch of about 1 N, which holds 0.4 N
   std::vector<double> extensions;
-  for (int i = 0; i < 5; ++i) extensions.push_back(first + i * further);
+  for (std::size_t i = 0; i < skipped + 5; ++i) extensions.push_back(first + i * further);
   Hand hand;
   hand.middle.z() = kPinchHeight;
   hand.gap = kOpen;
@@ -117,6 +118,7 @@ void validateStretch(const material::Fabric& fabric, Direction direction, double
     move(hand, {0.0, 0.0, reached - extensions[i]}, 0.0, 0.2, 1e-3, step);
     reached = extensions[i];
     move(hand, kStill, 0.0, 1.0, 1e-3, step);
+    if (i < skipped) continue;
     const double force = forceOnFingertips(loop.layer()).z();
     const double bar = loop.attachmentForce().z() - weight(sample);
     const std::string line =
@@ -132,8 +134,8 @@ void validateStretch(const material::Fabric& fabric, Direction direction, double
 
 void validateContactEquilibrium(const material::Fabric& fabric, const Sink& sink) {
   for (double rate : {25.0, 50.0, 80.0}) validateWeight(fabric, rate, sink);
-  validateStretch(fabric, Direction::kWarp, 3e-4, 1e-4, sink);
-  validateStretch(fabric, Direction::kWeft, 1.2e-3, 3e-4, sink);
+  validateStretch(fabric, Direction::kWarp, 2e-4, 1e-4, 1, sink);
+  validateStretch(fabric, Direction::kWeft, 6e-4, 3e-4, 2, sink);
 }
 
 }  // namespace haptex::evaluation
