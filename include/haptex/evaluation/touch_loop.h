@@ -1,5 +1,5 @@
-// A person who touches cloth through the exoskeleton: device, driver, small-scale layer and cloth in
-// one loop of simulated time, without clocks.
+// A person who touches cloth through the exoskeleton: device, driver, small-scale layer and cloth
+// in one loop of simulated time, without clocks.
 #pragma once
 
 #include <Eigen/Geometry>
