@@ -32,8 +32,8 @@ class EmulatedDevice {
   /// normal with this standard deviation (N). Both are representative.
   static constexpr double kForceRange = 10.0;
   static constexpr double kForceNoise = 0.002;
-  /// Fingers do not pass through each other: below this distance (m) of their middles they push each
-  /// other apart with this stiffness (N/m). Bones with compressed pulp: representative.
+  /// Fingers do not pass through each other: below this distance (m) of their middles they push
+  /// each other apart with this stiffness (N/m). Bones with compressed pulp: representative.
   static constexpr double kClosest = 0.008;
   static constexpr double kBoneStiffness = 3000.0;
 
