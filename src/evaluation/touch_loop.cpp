@@ -12,7 +12,7 @@ namespace {
 using namespace exoskeleton;
 using Eigen::Vector3d;
 
-constexpr double kOpen = 0.02;  // m, between the fingertips at first
+constexpr double kOpen = 0.02;                    // m, between the fingertips at first
 const PerFinger<double> kRadii{{0.0075, 0.009}};  // m, of the round ends, as the URDF has them
 
 Pinch requirePinch(const std::string& urdf) {
