@@ -1,6 +1,7 @@
 #include "haptex/nodes/scheduling.h"
 
 #include <sched.h>
+#include <sys/resource.h>
 
 #include <cerrno>
 #include <system_error>
@@ -20,11 +21,9 @@ std::string askForFifo(pthread_t thread, int priority) {
   return why;
 }
 
-void preferMessages() { askForFifo(pthread_self(), kMessagePriority); }
+// In Linux a niceness is a thread's, and those that it starts inherit it.
+void preferMessages() { setpriority(PRIO_PROCESS, 0, kMessageNiceness); }
 
-void beOrdinary() {
-  const sched_param ordinary{};
-  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);  // always allowed
-}
+void beOrdinary() { setpriority(PRIO_PROCESS, 0, 0); }
 
 }  // namespace haptex::nodes
