@@ -1,7 +1,6 @@
 #include "haptex/nodes/scheduling.h"
 
 #include <sched.h>
-#include <sys/resource.h>
 
 #include <cerrno>
 #include <system_error>
@@ -21,9 +20,11 @@ std::string askForFifo(pthread_t thread, int priority) {
   return why;
 }
 
-// In Linux a niceness is a thread's, and those that it starts inherit it.
-void preferMessages() { setpriority(PRIO_PROCESS, 0, kMessageNiceness); }
+void preferMessages() { askForFifo(pthread_self(), kMessagePriority); }
 
-void beOrdinary() { setpriority(PRIO_PROCESS, 0, 0); }
+void beOrdinary() {
+  const sched_param ordinary{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);  // always allowed
+}
 
 }  // namespace haptex::nodes

@@ -7,14 +7,12 @@
 
 namespace haptex::nodes {
 
-/// Of SCHED_FIFO, from 1 to 99: the loops.
+/// Of SCHED_FIFO, from 1 to 99: the loops before the threads that bring their messages, and these
+/// before everything ordinary, such as a recorder.
 constexpr int kLoopPriority = 80;
-/// Of the threads that bring messages and send them: before everything ordinary, such as a
-/// recorder. Not SCHED_FIFO, because the kernel holds all of that up for 50 ms when it takes 95 %
-/// of a core.
-constexpr int kMessageNiceness = -15;
+constexpr int kMessagePriority = 20;
 
-/// Asks for SCHED_FIFO for a thread.
+/// Asks for SCHED_FIFO for a thread and those that it will start.
 /// @returns why it was refused; empty if it was granted
 std::string askForFifo(pthread_t thread, int priority);
 
