@@ -123,7 +123,7 @@ TEST(ShippedPaths, DemoPinchesLiftsStretchesAndSlidesWithTheForcesThatItSays) {
     double force, y, z;  // N, m
   } holds[] = {{"lift", 1.0, 0.0, -0.19},
                {"stretch", 1.0, 0.0, -0.16},
-               {"slide", 2.2, 0.0, -0.194},
+               {"slide", 2.2, 0.0, -0.1918},
                {"release", 0.3, 0.025, -0.19}};
   for (const auto& hold : holds) {
     const HandPlace place = path.at(beginOf(path, hold.before_phase) - 1e-3);
