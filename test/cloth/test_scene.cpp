@@ -327,7 +327,7 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names,
             (std::vector<std::string>{"acrylic_knit_sample", "cotton_knit_sample", "linear_sheet",
-                                      "wool_among_obstacles", "wool_sample", "wool_sample_fast"}));
+                                      "wool_among_obstacles", "wool_sample"}));
 }
 
 TEST(ShippedScenes, WoolSampleIsTheTwoHundredMillimetreSquare) {
