@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "haptex/ServoForce.h"
+#include "haptex/nodes/scheduling.h"
 #include "tab_lines.h"
 
 namespace {
@@ -100,6 +101,7 @@ void run() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  haptex::nodes::preferMessages();  // as the nodes do
   ros::init(argc, argv, "bench_haptic_loop_nodes");
   // Information goes to standard output, which is for the lines only.
   ros::console::set_logger_level(ROSCONSOLE_ROOT_LOGGER_NAME, ros::console::levels::Warn);
