@@ -20,7 +20,7 @@ namespace {
 
 using haptex::bench::printLine;
 
-constexpr std::size_t kSamples = 15000;
+constexpr std::size_t kSamples = 8000;
 constexpr double kPatience = 90.0;   // s, for all of them
 constexpr double kSamePlace = 1e-9;  // m: the force is for this measured position
 constexpr std::size_t kRemembered = 200;
