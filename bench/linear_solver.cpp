@@ -6,8 +6,6 @@
 // blocks that bending needs.
 #include "haptex/cloth/linear_solver.h"
 
-#include <map>
-
 #include "haptex/cloth/cloth.h"
 #include "haptex/material/fabric_file.h"
 #include "tab_lines.h"
@@ -71,28 +69,12 @@ void iterations(benchmark::State& run, int cells) {
   }
 }
 
-/// The corners opposite to each inner edge.
-std::vector<std::array<int, 2>> oppositeCorners(const cloth::ClothMesh& mesh) {
-  std::map<std::pair<int, int>, int> corner_of;
-  std::vector<std::array<int, 2>> pairs;
-  for (const std::array<int, 3>& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const auto edge = std::minmax(t[k], t[(k + 1) % 3]);
-      const int corner = t[(k + 2) % 3];
-      const auto [other, is_first] = corner_of.emplace(edge, corner);
-      if (!is_first) pairs.push_back({other->second, corner});
-    }
-  }
-  return pairs;
-}
-
 struct Patch {
   cloth::Cloth cloth;
-  cloth::Membrane membrane;
   cloth::ClothState state;
   System system;
 
-  explicit Patch(bool bending) : Patch(makeCloth(), bending) {}
+  explicit Patch(bool bending) : Patch(makeCloth(bending)) {}
 
   void assemble() {
     system.matrix.setZero();
@@ -100,26 +82,26 @@ struct Patch {
       system.matrix.diagonal(i).diagonal().setConstant(cloth.masses()[i]);
     }
     system.rhs.setZero();
-    membrane.addStep(state.positions, state.velocities, kPatchStep, system.matrix, system.rhs);
+    cloth.membrane().addStep(state.positions, state.velocities, kPatchStep, system.matrix,
+                             system.rhs);
+    if (!cloth.bending()) return;
+    cloth.bending()->addStep(state.positions, state.velocities, kPatchStep, system.matrix,
+                             system.rhs);
   }
 
  private:
-  static cloth::Cloth makeCloth() {
+  static cloth::Cloth makeCloth(bool bending) {
     cloth::ModelledEffects effects;
     effects.viscosity = true;
+    effects.bending = bending;
     return {cloth::makeRectangle(0.025, 0.025, kPatchCells, kPatchCells,
                                  cloth::Triangulation::kAlternating),
             material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), effects};
   }
-  Patch(cloth::Cloth made, bool bending)
+  explicit Patch(cloth::Cloth made)
       : cloth(std::move(made)),
-        membrane(cloth.membrane()),
         state(cloth.initialState()),
-        system{cloth::SymmetricBlockMatrix(
-                   static_cast<int>(cloth.particleCount()), cloth.mesh().triangles,
-                   bending ? oppositeCorners(cloth.mesh()) : std::vector<std::array<int, 2>>{}),
-               cloth::BlockVector::Zero(3, cloth.particleCount())} {
-    membrane.bind(system.matrix);
+        system{cloth.pattern(), cloth::BlockVector::Zero(3, cloth.particleCount())} {
     for (Eigen::Vector3d& position : state.positions) position *= 1.02;
     assemble();
   }

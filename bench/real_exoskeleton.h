@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -48,7 +49,8 @@ class RealExoskeleton {
 
   /// Homes and enables the device. @throws std::runtime_error if that does not succeed
   explicit RealExoskeleton(const std::string& urdf)
-      : link_("/tmp/haptex_bench_" + std::to_string(getpid())),
+      : link_(std::filesystem::temp_directory_path() /
+              ("haptex_bench_" + std::to_string(getpid()))),
         emulator_(urdf, link_, [](const nodes::EmulatorSample&) {}),
         driver_(link_, urdf),
         emulator_thread_(nodes::Emulator::kPeriod, [this](Time now) { emulator_.advanceTo(now); }),

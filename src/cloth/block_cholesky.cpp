@@ -5,13 +5,8 @@
 #include "haptex/cloth/dense_kernels.h"
 
 namespace haptex::cloth {
-namespace {
 
-constexpr int kTogether = 4;  // right-hand sides of the kernels for several
-
-}  // namespace
-
-BlockCholesky::BlockCholesky(const SymmetricBlockMatrix& pattern, bool several)
+BlockCholesky::BlockCholesky(const SymmetricBlockMatrix& pattern)
     : elimination_(analyse(pattern)),
       cost_(factorisationCost(elimination_)),
       permuted_(3, pattern.size()) {
@@ -39,10 +34,6 @@ BlockCholesky::BlockCholesky(const SymmetricBlockMatrix& pattern, bool several)
   }
   update_.resize(largest_update);
   front_.resize(largest_front);
-  if (several) {
-    four_fronts_.resize(static_cast<std::size_t>(kTogether) * largest_front);
-    four_permuted_.resize(kTogether * permuted_.size());
-  }
   first_descendant_.resize(count);
   next_descendant_.resize(count);
   next_row_.resize(count);
@@ -213,66 +204,6 @@ void BlockCholesky::solve(BlockVector& x) {
     std::copy_n(front, width, own);
   }
   for (int k = 0; k < n; ++k) x.col(elimination_.order[k]) = permuted_.col(k);
-}
-
-void BlockCholesky::solve(BlockVector* x, int count) {
-  const int alone = four_permuted_.empty() ? count : count % kTogether == 1;
-  for (int k = 0; k < alone; ++k) solve(x[k]);
-  for (int k = alone; k < count; k += kTogether) solveFour(x + k, std::min(count - k, kTogether));
-}
-
-void BlockCholesky::solveFour(BlockVector* x, int count) {
-  constexpr int kBlock = 3 * kTogether;  // doubles per block row
-  const int n = static_cast<int>(permuted_.cols());
-  double* const values = four_permuted_.data();
-  double* const front = four_fronts_.data();
-  for (int k = 0; k < n; ++k) {
-    for (int axis = 0; axis < 3; ++axis) {
-      double* const row = values + kBlock * k + kTogether * axis;
-      for (int b = 0; b < kTogether; ++b) {
-        row[b] = b < count ? x[b](axis, elimination_.order[k]) : 0.0;
-      }
-    }
-  }
-  for (std::size_t s = 0; s < panel_of_.size(); ++s) {  // L y = b
-    const Supernode& supernode = elimination_.supernodes[s];
-    const Panel& panel = panel_of_[s];
-    const int width = supernode.width();
-    double* const own = values + kBlock * supernode.first;
-    std::copy_n(own, kBlock * width, front);
-    std::fill(front + kBlock * width, front + kTogether * panel.leading, 0.0);
-    substituteFourForward(panel.leading, 3 * width, panels_.data() + panel.offset, panel.leading,
-                          front);
-    std::copy_n(front, kBlock * width, own);
-    const double* change = front + kBlock * width;
-    for (int row : supernode.rows) {
-      double* const other = values + kBlock * row;
-      for (int k = 0; k < kBlock; ++k) other[k] += change[k];
-      change += kBlock;
-    }
-  }
-  for (std::size_t s = panel_of_.size(); s-- > 0;) {  // L^T x = y
-    const Supernode& supernode = elimination_.supernodes[s];
-    const Panel& panel = panel_of_[s];
-    const int width = supernode.width();
-    double* const own = values + kBlock * supernode.first;
-    std::copy_n(own, kBlock * width, front);
-    double* below = front + kBlock * width;
-    for (int row : supernode.rows) {
-      std::copy_n(values + kBlock * row, kBlock, below);
-      below += kBlock;
-    }
-    substituteFourBackward(panel.leading, 3 * width, panels_.data() + panel.offset, panel.leading,
-                           front);
-    std::copy_n(front, kBlock * width, own);
-  }
-  for (int k = 0; k < n; ++k) {
-    for (int b = 0; b < count; ++b) {
-      for (int axis = 0; axis < 3; ++axis) {
-        x[b](axis, elimination_.order[k]) = values[kBlock * k + kTogether * axis + b];
-      }
-    }
-  }
 }
 
 }  // namespace haptex::cloth

@@ -205,97 +205,39 @@ template <int kVectors>
   }
 }
 
-[[gnu::always_inline]] inline void substituteFourForwardOf(int rows, int columns, const double* l,
-                                                           int ldl, double* four_x) {
-  Lanes* const x = reinterpret_cast<Lanes*>(four_x);
-  for (int c = 0; c < columns; c += 3) {
-    const double* l0 = l + static_cast<std::ptrdiff_t>(ldl) * c;
-    const double* l1 = l0 + ldl;
-    const double* l2 = l1 + ldl;
-    const Lanes x0 = x[c] * l0[c];
-    const Lanes x1 = (x[c + 1] - x0 * l0[c + 1]) * l1[c + 1];
-    const Lanes x2 = (x[c + 2] - x0 * l0[c + 2] - x1 * l1[c + 2]) * l2[c + 2];
-    x[c] = x0;
-    x[c + 1] = x1;
-    x[c + 2] = x2;
-    for (int r = c + 3; r < rows; ++r) x[r] -= x0 * l0[r] + x1 * l1[r] + x2 * l2[r];
-  }
-}
-
-[[gnu::always_inline]] inline void substituteFourBackwardOf(int rows, int columns, const double* l,
-                                                            int ldl, double* four_x) {
-  Lanes* const x = reinterpret_cast<Lanes*>(four_x);
-  for (int c = columns - 3; c >= 0; c -= 3) {
-    const double* l0 = l + static_cast<std::ptrdiff_t>(ldl) * c;
-    const double* l1 = l0 + ldl;
-    const double* l2 = l1 + ldl;
-    Lanes even[3] = {}, odd[3] = {};
-    int r = c + 3;
-    for (; r + 2 <= rows; r += 2) {
-      even[0] += x[r] * l0[r];
-      even[1] += x[r] * l1[r];
-      even[2] += x[r] * l2[r];
-      odd[0] += x[r + 1] * l0[r + 1];
-      odd[1] += x[r + 1] * l1[r + 1];
-      odd[2] += x[r + 1] * l2[r + 1];
-    }
-    if (r < rows) {
-      even[0] += x[r] * l0[r];
-      even[1] += x[r] * l1[r];
-      even[2] += x[r] * l2[r];
-    }
-    const Lanes x2 = (x[c + 2] - even[2] - odd[2]) * l2[c + 2];
-    const Lanes x1 = (x[c + 1] - even[1] - odd[1] - x2 * l1[c + 2]) * l1[c + 1];
-    x[c] = (x[c] - even[0] - odd[0] - x1 * l0[c + 1] - x2 * l0[c + 2]) * l0[c];
-    x[c + 1] = x1;
-    x[c + 2] = x2;
-  }
-}
-
 struct Kernels {
   void (*subtract_product)(int, int, int, const double*, int, const double*, int, double*, int);
   void (*multiply_by_own_top)(int, int, int, const double*, int, double*, int);
   bool (*factorise_three_columns)(int, double*, int);
   void (*substitute_forward)(int, int, const double*, int, double*);
   void (*substitute_backward)(int, int, const double*, int, double*);
-  void (*substitute_four_forward)(int, int, const double*, int, double*);
-  void (*substitute_four_backward)(int, int, const double*, int, double*);
 };
 
 // One class per instruction set, because a template cannot be given the attribute.
-#define HAPTEX_DENSE_KERNELS(Name, ...)                                                            \
-  struct Name {                                                                                    \
-    __VA_ARGS__ static void subtractProduct(int rows, int columns, int depth, const double* a,     \
-                                            int lda, const double* b, int ldb, double* c,          \
-                                            int ldc) {                                             \
-      subtractProductOf(rows, columns, depth, a, lda, b, ldb, c, ldc);                             \
-    }                                                                                              \
-    __VA_ARGS__ static void multiplyByOwnTop(int rows, int columns, int depth, const double* a,    \
-                                             int lda, double* c, int ldc) {                        \
-      multiplyByOwnTopOf(rows, columns, depth, a, lda, c, ldc);                                    \
-    }                                                                                              \
-    __VA_ARGS__ static bool factoriseThreeColumns(int rows, double* a, int lda) {                  \
-      return factoriseThreeColumnsOf(rows, a, lda);                                                \
-    }                                                                                              \
-    __VA_ARGS__ static void substituteForward(int rows, int columns, const double* l, int ldl,     \
-                                              double* x) {                                         \
-      substituteForwardOf(rows, columns, l, ldl, x);                                               \
-    }                                                                                              \
-    __VA_ARGS__ static void substituteBackward(int rows, int columns, const double* l, int ldl,    \
-                                               double* x) {                                        \
-      substituteBackwardOf(rows, columns, l, ldl, x);                                              \
-    }                                                                                              \
-    __VA_ARGS__ static void substituteFourForward(int rows, int columns, const double* l, int ldl, \
-                                                  double* x) {                                     \
-      substituteFourForwardOf(rows, columns, l, ldl, x);                                           \
-    }                                                                                              \
-    __VA_ARGS__ static void substituteFourBackward(int rows, int columns, const double* l,         \
-                                                   int ldl, double* x) {                           \
-      substituteFourBackwardOf(rows, columns, l, ldl, x);                                          \
-    }                                                                                              \
-    static constexpr Kernels kKernels{                                                             \
-        subtractProduct,    multiplyByOwnTop,      factoriseThreeColumns, substituteForward,       \
-        substituteBackward, substituteFourForward, substituteFourBackward};                        \
+#define HAPTEX_DENSE_KERNELS(Name, ...)                                                         \
+  struct Name {                                                                                 \
+    __VA_ARGS__ static void subtractProduct(int rows, int columns, int depth, const double* a,  \
+                                            int lda, const double* b, int ldb, double* c,       \
+                                            int ldc) {                                          \
+      subtractProductOf(rows, columns, depth, a, lda, b, ldb, c, ldc);                          \
+    }                                                                                           \
+    __VA_ARGS__ static void multiplyByOwnTop(int rows, int columns, int depth, const double* a, \
+                                             int lda, double* c, int ldc) {                     \
+      multiplyByOwnTopOf(rows, columns, depth, a, lda, c, ldc);                                 \
+    }                                                                                           \
+    __VA_ARGS__ static bool factoriseThreeColumns(int rows, double* a, int lda) {               \
+      return factoriseThreeColumnsOf(rows, a, lda);                                             \
+    }                                                                                           \
+    __VA_ARGS__ static void substituteForward(int rows, int columns, const double* l, int ldl,  \
+                                              double* x) {                                      \
+      substituteForwardOf(rows, columns, l, ldl, x);                                            \
+    }                                                                                           \
+    __VA_ARGS__ static void substituteBackward(int rows, int columns, const double* l, int ldl, \
+                                               double* x) {                                     \
+      substituteBackwardOf(rows, columns, l, ldl, x);                                           \
+    }                                                                                           \
+    static constexpr Kernels kKernels{subtractProduct, multiplyByOwnTop, factoriseThreeColumns, \
+                                      substituteForward, substituteBackward};                   \
   };
 
 HAPTEX_DENSE_KERNELS(Baseline, )
@@ -334,14 +276,6 @@ void substituteForward(int rows, int columns, const double* l, int ldl, double* 
 
 void substituteBackward(int rows, int columns, const double* l, int ldl, double* x) {
   kernels().substitute_backward(rows, columns, l, ldl, x);
-}
-
-void substituteFourForward(int rows, int columns, const double* l, int ldl, double* x) {
-  kernels().substitute_four_forward(rows, columns, l, ldl, x);
-}
-
-void substituteFourBackward(int rows, int columns, const double* l, int ldl, double* x) {
-  kernels().substitute_four_backward(rows, columns, l, ldl, x);
 }
 
 }  // namespace haptex::cloth

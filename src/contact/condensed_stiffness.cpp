@@ -19,10 +19,6 @@ Matrix3d positivePart(const Matrix3d& matrix) {
 
 }  // namespace
 
-CondensedStiffness::CondensedStiffness(std::size_t most_particles) : column_(3, most_particles) {
-  clear();
-}
-
 void CondensedStiffness::clear() {
   for (int f = 0; f < kFingertips; ++f) {
     condensed_[f].setZero();
@@ -52,14 +48,10 @@ void CondensedStiffness::update(Patch& patch, double h) {
 void CondensedStiffness::computeColumn(Patch& patch, double h) {
   const int f = next_ / 3;
   const int direction = next_ % 3;
-  column_.leftCols(patch.freeCount()).setZero();
-  for (const TouchedParticle& touched : patch.linearised(f)) {
-    column_.col(touched.particle) = touched.tangent.col(direction);
-  }
-  patch.solve(column_);
+  const cloth::BlockVector& solution = patch.respond(f, direction);
   Vector3d change = direct_[f].col(direction);
   for (const TouchedParticle& touched : patch.linearised(f)) {
-    change -= h * h * touched.tangent * column_.col(touched.particle);
+    change -= h * h * touched.tangent * solution.col(touched.particle);
   }
   condensed_[f].col(direction) = change;
   known_direct_[f][direction] = direct_[f].col(direction).norm();

@@ -20,6 +20,11 @@ const material::Fabric& requireBending(const material::Fabric& fabric,
   return fabric;
 }
 
+cloth::ClothMesh requireSoundAndReturn(cloth::ClothMesh mesh) {
+  cloth::requireSound(mesh);
+  return mesh;
+}
+
 bool allFinite(const std::vector<Vector3d>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(),
                      [](const Vector3d& vector) { return vector.allFinite(); });
@@ -33,6 +38,11 @@ Eigen::Vector2d inFabric(const Vector3d& velocity, const Vector3d& weft, const V
   const double determinant = metric.determinant();
   if (!(std::abs(determinant) > 1e-12)) return Eigen::Vector2d::Zero();
   return metric.inverse() * Eigen::Vector2d(weft.dot(velocity), warp.dot(velocity));
+}
+
+/// The part of a contact's normal force on a point; without force all points are alike.
+double shareOf(const TouchedParticle& point, const FingertipContact& contact, std::size_t points) {
+  return contact.normal_force > 0.0 ? point.normal_force / contact.normal_force : 1.0 / points;
 }
 
 /// Images of the unit vectors along weft and warp of a triangle.
@@ -54,14 +64,12 @@ std::pair<Vector3d, Vector3d> fabricDirections(const cloth::ClothMesh& mesh, int
 HapticLayer::HapticLayer(cloth::ClothMesh mesh, material::Fabric fabric,
                          const cloth::ModelledEffects& effects, const HapticSettings& settings)
     : settings_(settings),
-      mesh_(std::move(mesh)),
+      mesh_(requireSoundAndReturn(std::move(mesh))),
       fabric_(std::move(fabric)),
       effects_(effects),
       law_(requireBending(fabric_, settings)),
       topology_(mesh_),
-      motion_(mesh_.rest_coordinates.size()),
-      stiffness_(mesh_.triangles.size() << (2 * settings.refinement)) {
-  cloth::requireSound(mesh_);
+      motion_(mesh_.rest_coordinates.size()) {
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
     whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabric_, law_);
   }
@@ -175,24 +183,14 @@ void HapticLayer::stepPatch() {
     Matrix3d stiffness = Matrix3d::Zero();
     for (const TouchedParticle& point : touched) stiffness += point.tangent;
     const Vector3d ahead = aheadOf(contact, stiffness);
-    Eigen::Vector2d place = Eigen::Vector2d::Zero();
-    Vector3d weft = Vector3d::Zero();
-    Vector3d warp = Vector3d::Zero();
-    for (const TouchedParticle& point : touched) {
-      const double share = contact.normal_force > 0.0 ? point.normal_force / contact.normal_force
-                                                      : 1.0 / touched.size();
-      place += share * patch_->restCoordinates(point.particle);
-      const auto directions =
-          fabricDirections(mesh_, patch_->cut().owners[point.particle], motion_);
-      weft += share * directions.first;
-      warp += share * directions.second;
-      if (loads_.size() == loads_.capacity()) continue;
-      loads_.push_back({patch_->cut().owners[point.particle], patch_->cut().weights[point.particle],
-                        patch_->placeOnCloth(point.particle, motion_) + ahead, point.force(),
-                        point.tangent});
-    }
-    contact.fabric_position = place;
-    contact.fabric_velocity = inFabric(contact.sliding_velocity, weft, warp);
+    const RefinedCut& cut = patch_->cut();
+    sendBack(
+        contact, touched, [this](int particle) { return patch_->restCoordinates(particle); },
+        [&](const TouchedParticle& point) {
+          return cloth::PointLoad{cut.owners[point.particle], cut.weights[point.particle],
+                                  patch_->placeOnCloth(point.particle, motion_) + ahead,
+                                  point.force(), point.tangent};
+        });
   }
 }
 
@@ -214,25 +212,34 @@ void HapticLayer::stepWholeCloth() {
     FingertipContact& contact = contacts_[f];
     if (!contact.touching) continue;
     contact.stiffness = whole_cloth_->stiffness(f, settings_.time_step);
-    Eigen::Vector2d place = Eigen::Vector2d::Zero();
-    Vector3d weft = Vector3d::Zero();
-    Vector3d warp = Vector3d::Zero();
-    for (const TouchedParticle& point : touched) {
-      const double share = contact.normal_force > 0.0 ? point.normal_force / contact.normal_force
-                                                      : 1.0 / touched.size();
-      const int triangle = whole_cloth_->triangleOf(point.particle);
-      place += share * whole_cloth_->restCoordinates(point.particle);
-      const auto directions = fabricDirections(mesh_, triangle, motion_);
-      weft += share * directions.first;
-      warp += share * directions.second;
-      if (loads_.size() == loads_.capacity()) continue;
-      loads_.push_back({triangle, Vector3d::Unit(whole_cloth_->cornerOf(point.particle)),
-                        whole_cloth_->particles().positions[point.particle], point.force(),
-                        point.stiffness});
-    }
-    contact.fabric_position = place;
-    contact.fabric_velocity = inFabric(contact.sliding_velocity, weft, warp);
+    sendBack(
+        contact, touched, [this](int particle) { return whole_cloth_->restCoordinates(particle); },
+        [this](const TouchedParticle& point) {
+          return cloth::PointLoad{whole_cloth_->triangleOf(point.particle),
+                                  Vector3d::Unit(whole_cloth_->cornerOf(point.particle)),
+                                  whole_cloth_->particles().positions[point.particle],
+                                  point.force(), point.stiffness};
+        });
   }
+}
+
+/// What goes back to the cloth from a fingertip, and where on the fabric that is.
+/// @param rest_of a particle's rest coordinates @param load_of the load of a touched particle
+template <typename RestOf, typename LoadOf>
+void HapticLayer::sendBack(FingertipContact& contact, const std::vector<TouchedParticle>& touched,
+                           const RestOf& rest_of, const LoadOf& load_of) {
+  Vector3d weft = Vector3d::Zero();
+  Vector3d warp = Vector3d::Zero();
+  for (const TouchedParticle& point : touched) {
+    const double share = shareOf(point, contact, touched.size());
+    const cloth::PointLoad load = load_of(point);
+    const auto directions = fabricDirections(mesh_, load.triangle, motion_);
+    contact.fabric_position += share * rest_of(point.particle);
+    weft += share * directions.first;
+    warp += share * directions.second;
+    if (loads_.size() < loads_.capacity()) loads_.push_back(load);
+  }
+  contact.fabric_velocity = inFabric(contact.sliding_velocity, weft, warp);
 }
 
 void HapticLayer::fillContact(int f, const std::vector<TouchedParticle>& touched,
@@ -250,8 +257,7 @@ void HapticLayer::fillContact(int f, const std::vector<TouchedParticle>& touched
   double slipping = 0.0;
   for (const TouchedParticle& point : touched) contact.normal_force += point.normal_force;
   for (const TouchedParticle& point : touched) {
-    const double share = contact.normal_force > 0.0 ? point.normal_force / contact.normal_force
-                                                    : 1.0 / touched.size();
+    const double share = shareOf(point, contact, touched.size());
     const Vector3d& place = particles.positions[point.particle];
     contact.force -= point.force();
     contact.damping += point.damping;

@@ -181,4 +181,13 @@ bool Patch::advance(const LargeScaleMotion& motion,
   return true;
 }
 
+const cloth::BlockVector& Patch::respond(int fingertip, int direction) {
+  solution_.setZero();
+  for (const TouchedParticle& touched : linearised_[fingertip]) {
+    solution_.col(touched.particle) = touched.tangent.col(direction);
+  }
+  cholesky_.solve(solution_);
+  return solution_;
+}
+
 }  // namespace haptex::contact

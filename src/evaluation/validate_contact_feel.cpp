@@ -141,8 +141,8 @@ void validatePassivity(const material::Fabric& fabric, const Sink& sink) {
 }
 
 /// Pressed with the contact on the patch, and on the particles of the whole cloth at 1 kHz. Both
-/// meshes are the same where the fingertip is: refinement 0. Without bending, which only patches
-/// have.
+/// meshes are the same where the fingertip is: refinement 0. Without bending, which
+/// patches always have and this cloth does not model.
 void validateWholeCloth(const material::Fabric& fabric, const Sink& sink) {
   constexpr double kSide = 0.06;
   HapticLoopSettings sample;

@@ -184,26 +184,6 @@ TEST(DenseKernels, SubstituteThroughPanelsOfEveryHeight) {
   }
 }
 
-TEST(DenseKernels, SubstituteFourVectorsLikeEachAlone) {
-  for (int columns : {3, 6, 9}) {
-    for (int rows = columns; rows <= columns + 7; ++rows) {
-      const RandomPanel panel(rows, columns);
-      const Eigen::Matrix4Xd start = Eigen::Matrix4Xd::Random(4, rows + 1);
-      Eigen::Matrix4Xd forward = start, backward = start;
-      substituteFourForward(rows, columns, panel.stored.data(), rows + 1, forward.data());
-      substituteFourBackward(rows, columns, panel.stored.data(), rows + 1, backward.data());
-      for (int k = 0; k < 4; ++k) {
-        Eigen::VectorXd x = start.row(k);
-        substituteForward(rows, columns, panel.stored.data(), rows + 1, x.data());
-        EXPECT_LT((forward.row(k).transpose() - x).cwiseAbs().maxCoeff(), 1e-14);
-        x = start.row(k);
-        substituteBackward(rows, columns, panel.stored.data(), rows + 1, x.data());
-        EXPECT_LT((backward.row(k).transpose() - x).cwiseAbs().maxCoeff(), 1e-14);
-      }
-    }
-  }
-}
-
 TEST(Elimination, SupernodesPartitionTheColumnsAndHoldTheWholePattern) {
   const SymmetricBlockMatrix pattern = randomDefinite(square(9), 1.0);
   const Elimination elimination = analyse(pattern);
@@ -248,25 +228,6 @@ TEST(BlockCholesky, SolvesToRoundingOnEveryShapeOfPattern) {
     cholesky.solve(x);
     const Eigen::VectorXd exact = dense(matrix).llt().solve(stacked(rhs));
     EXPECT_LT((stacked(x) - exact).norm(), 1e-11 * exact.norm());
-  }
-}
-
-TEST(BlockCholesky, SolvesForSeveralRightHandSidesLikeForEachAlone) {
-  const SymmetricBlockMatrix matrix = randomDefinite(square(9), 40.0);
-  for (bool several : {false, true}) {
-    BlockCholesky cholesky(matrix, several);
-    ASSERT_TRUE(cholesky.factorise(matrix));
-    for (int count = 0; count <= 9; ++count) {
-      std::vector<BlockVector> x, exact;
-      for (int k = 0; k <= count; ++k) x.push_back(BlockVector::Random(3, matrix.size()));
-      exact = x;  // the last one must stay as it is
-      cholesky.solve(x.data(), count);
-      for (int k = 0; k < count; ++k) cholesky.solve(exact[k]);
-      EXPECT_EQ(x[count], exact[count]);
-      for (int k = 0; k < count; ++k) {
-        EXPECT_LT((x[k] - exact[k]).norm(), 1e-14 * exact[k].norm()) << k << " of " << count;
-      }
-    }
   }
 }
 

@@ -20,8 +20,7 @@ class CondensedStiffnessTest : public testing::Test {
         patch_(mesh_,
                cutAndRefine(mesh_, topology_, trianglesAround(mesh_, {0.02, 0.02}, 0.01),
                             nothingAttached(mesh_), 2),
-               fabric_, {true, Vector3d::Zero()}, law_),
-        stiffness_(patch_.particleCount()) {
+               fabric_, {true, Vector3d::Zero()}, law_) {
     motion_.receive(mesh_.initial_positions, 0.02);
     patch_.start(motion_);
     tips_[0] = pressing(law_, kSmallSampleMiddle, 3e-4);

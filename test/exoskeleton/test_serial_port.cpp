@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
@@ -72,8 +73,8 @@ class AsNobody {
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
-    char name[] = "/tmp/haptex_serial_XXXXXX";
-    if (::mkdtemp(name) == nullptr) throw std::runtime_error("no temporary directory");
+    std::string name = std::filesystem::temp_directory_path() / "haptex_serial_XXXXXX";
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
     path_ = name;
   }
   ~TemporaryDirectory() { EXPECT_EQ(::rmdir(path_.c_str()), 0) << "not empty"; }

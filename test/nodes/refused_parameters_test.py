@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """A node ends with an error that names what is wrong with its parameters or files."""
+import os
 import pathlib
 import subprocess
 import tempfile
@@ -8,6 +9,8 @@ import unittest
 import roslib.packages
 import rostest
 
+# Of the emulator's port: a place where one could be made.
+LINK = '_link:=' + os.path.join(tempfile.gettempdir(), 'haptex_refused')
 
 
 class RefusedParameters(unittest.TestCase):
@@ -92,22 +95,21 @@ class RefusedParameters(unittest.TestCase):
             self.refused_emulator(f'_link:={file.name}', says=[file.name])
 
     def test_emulator_robot_descriptions(self):
-        self.refused('_link:=/tmp/haptex_refused', node='exoskeleton_emulator',
+        self.refused(LINK, node='exoskeleton_emulator',
                      says=['parameter robot_description is not set', 'URDF'])
-        self.refused('_link:=/tmp/haptex_refused', '_robot_description:=a robot',
+        self.refused(LINK, '_robot_description:=a robot',
                      node='exoskeleton_emulator', says=['~robot_description'])
 
     def test_emulator_paths(self):
-        link = '_link:=/tmp/haptex_refused'
-        self.refused_emulator(link, '_path:=3', says=['~path', 'is not set to a string'])
-        self.refused_emulator(link, '_path:=dance', says=['~path', "there is no 'dance'", 'pinch'])
+        self.refused_emulator(LINK, '_path:=3', says=['~path', 'is not set to a string'])
+        self.refused_emulator(LINK, '_path:=dance', says=['~path', "there is no 'dance'", 'pinch'])
         with tempfile.NamedTemporaryFile('w', suffix='.yaml') as path:
             path.write('key_frames: [')
             path.flush()
-            self.refused_emulator(link, f'_path:={path.name}', says=[path.name])
+            self.refused_emulator(LINK, f'_path:={path.name}', says=[path.name])
 
     def test_emulator_markers_that_are_neither_true_nor_false(self):
-        self.refused_emulator('_link:=/tmp/haptex_refused', '_markers:=many',
+        self.refused_emulator(LINK, '_markers:=many',
                               says=['~markers', 'true or false'])
 
     def test_renderer_scenes(self):

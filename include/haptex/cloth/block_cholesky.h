@@ -13,9 +13,7 @@ namespace haptex::cloth {
 /// part and all memory belong to the constructor; factorise() and solve() allocate nothing.
 class BlockCholesky {
  public:
-  /// @param several whether solve() for several right-hand sides shall be fast, which takes another
-  ///   twelve doubles per block row
-  explicit BlockCholesky(const SymmetricBlockMatrix& pattern, bool several = false);
+  explicit BlockCholesky(const SymmetricBlockMatrix& pattern);
 
   /// Factorises a matrix with the constructor's pattern, or the leading part of a larger one that
   /// has the constructor's pattern there.
@@ -25,10 +23,6 @@ class BlockCholesky {
 
   /// Solves A x = b with the last factor, in place.
   void solve(BlockVector& x);
-
-  /// Solves A x = b for `count` right-hand sides, in place. With `several` in the constructor four
-  /// take about as long as two alone.
-  void solve(BlockVector* x, int count);
 
   /// Multiply-add operations of one factorisation.
   double cost() const { return cost_; }
@@ -46,7 +40,6 @@ class BlockCholesky {
     bool transposed;
   };
   void load(const SymmetricBlockMatrix& matrix, int target);
-  void solveFour(BlockVector* x, int count);
   void applyDescendant(int descendant, int target);
   bool factorisePanel(int target);
   Entry entryOf(int row, int column, int slot, bool transposed) const;
@@ -64,8 +57,6 @@ class BlockCholesky {
   std::vector<double> update_;
   std::vector<double> front_;  // of the unknowns that a panel couples, in its order
   BlockVector permuted_;
-  std::vector<double> four_fronts_;  // as front_, row by row for four right-hand sides
-  std::vector<double> four_permuted_;
 };
 
 }  // namespace haptex::cloth

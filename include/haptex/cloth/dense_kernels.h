@@ -28,8 +28,4 @@ void substituteForward(int rows, int columns, const double* l, int ldl, double* 
 /// x_top := L_top^-T (x_top - L_below^T x_below). @param columns a multiple of 3
 void substituteBackward(int rows, int columns, const double* l, int ldl, double* x);
 
-/// The same for four vectors at once: x[4 r + k] is row r of vector k.
-void substituteFourForward(int rows, int columns, const double* l, int ldl, double* x);
-void substituteFourBackward(int rows, int columns, const double* l, int ldl, double* x);
-
 }  // namespace haptex::cloth

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 
-#include "haptex/cloth/block_matrix.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/patch.h"
 
@@ -18,8 +17,7 @@ namespace haptex::contact {
 /// steps old, and is scaled down where the contact has become softer since.
 class CondensedStiffness {
  public:
-  /// @param most_particles of the patches to come
-  explicit CondensedStiffness(std::size_t most_particles);
+  CondensedStiffness() { clear(); }
 
   /// After a step of the patch.
   void update(Patch& patch, double h);
@@ -35,7 +33,6 @@ class CondensedStiffness {
   PerFingertip<Eigen::Vector3d> known_direct_;  // N/m, direct term's column norms when computed
   PerFingertip<Eigen::Matrix3d> direct_;        // sum of k now
   int next_ = 0;                                // 3 fingertip + direction
-  cloth::BlockVector column_;
 };
 
 }  // namespace haptex::contact

@@ -110,6 +110,9 @@ class HapticLayer {
   void startAgain();
   void fillContact(int fingertip, const std::vector<TouchedParticle>& touched,
                    const Particles& particles);
+  template <typename RestOf, typename LoadOf>
+  void sendBack(FingertipContact& contact, const std::vector<TouchedParticle>& touched,
+                const RestOf& rest_of, const LoadOf& load_of);
   Eigen::Vector3d aheadOf(const FingertipContact& contact, const Eigen::Matrix3d& stiffness) const;
 
   HapticSettings settings_;

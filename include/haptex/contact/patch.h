@@ -66,9 +66,10 @@ class Patch {
   const std::vector<Eigen::Vector3d>& velocities() const { return state_.velocities; }
   const std::vector<double>& areas() const { return areas_; }
 
-  /// Solves A x = b with the matrix of the last step, A = M - h D - h^2 K of the free particles.
-  /// @param x 3 x freeCount(), b on entry
-  void solve(cloth::BlockVector& x) { cholesky_.solve(x); }
+  /// A^-1 k e with the matrix A = M - h D - h^2 K of the last step: k are the contact stiffnesses
+  /// of the particles at a fingertip, e the unit vector of a direction (0 to 2).
+  /// @returns 3 x freeCount(), until the next call or step
+  const cloth::BlockVector& respond(int fingertip, int direction);
 
  private:
   void assemble(const LargeScaleMotion& motion, double h);
