@@ -6,6 +6,7 @@
 #include <string>
 
 #include "haptex/material/strain_stress_curve.h"
+#include "haptex/material/surface.h"
 
 namespace haptex::material {
 
@@ -46,10 +47,11 @@ struct Fabric {
   MembraneCurves weft;         ///< along the rest coordinate u
   MembraneCurves warp;         ///< along the rest coordinate v
   MembraneCurves shear;        ///< against U.V, without the factor 1/2
-  // What a scene without bending or contact does not need.
+  // What a scene without bending, contact or tactile rendering does not need.
   std::optional<BendingRigidity> bending;
   std::optional<Compression> compression;
   std::optional<double> friction;  ///< coefficient of kinetic friction against skin, KES MIU, > 0
+  std::optional<Surface> surface;
   std::map<std::string, Provenance> provenance;  ///< by key, for example "warp.elastic"
 };
 
