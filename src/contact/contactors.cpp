@@ -5,10 +5,14 @@
 
 namespace haptex::contact {
 
-std::array<double, kContactors> contactorForces(const FingertipContact& contact,
-                                                const Fingertip& fingertip,
-                                                const Eigen::Isometry3d& array) {
-  std::array<double, kContactors> forces{};
+using tactile::kContactorColumns;
+using tactile::kContactorRows;
+using tactile::kContactorSpacing;
+
+tactile::PerContactor<double> contactorForces(const FingertipContact& contact,
+                                              const Fingertip& fingertip,
+                                              const Eigen::Isometry3d& array) {
+  tactile::PerContactor<double> forces{};
   const Eigen::Isometry3d to_world =
       Eigen::Translation3d(fingertip.position) * fingertip.orientation * array;
   const Eigen::Isometry3d from_world = to_world.inverse();
@@ -27,6 +31,15 @@ std::array<double, kContactors> contactorForces(const FingertipContact& contact,
     }
   }
   return forces;
+}
+
+tactile::ArrayPlacement arrayOnFabric(const FingertipContact& contact, const Fingertip& fingertip,
+                                      const Eigen::Isometry3d& array) {
+  if (!contact.touching) return {Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
+  const Eigen::Vector3d middle = fingertip.position + fingertip.orientation * array.translation();
+  const Eigen::Matrix3d turn = fingertip.orientation * array.linear();
+  return {contact.fabric_position + contact.to_fabric * (middle - contact.centre),
+          contact.to_fabric * turn.leftCols<2>()};
 }
 
 }  // namespace haptex::contact

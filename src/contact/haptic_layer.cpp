@@ -30,14 +30,14 @@ bool allFinite(const std::vector<Vector3d>& vectors) {
                      [](const Vector3d& vector) { return vector.allFinite(); });
 }
 
-/// Sliding velocity in the fabric's own directions: dx = U du + V dv has the least-squares solution
-/// (du, dv) for the deformed directions U, V of the element.
-Eigen::Vector2d inFabric(const Vector3d& velocity, const Vector3d& weft, const Vector3d& warp) {
-  Eigen::Matrix2d metric;
-  metric << weft.dot(weft), weft.dot(warp), weft.dot(warp), warp.dot(warp);
-  const double determinant = metric.determinant();
-  if (!(std::abs(determinant) > 1e-12)) return Eigen::Vector2d::Zero();
-  return metric.inverse() * Eigen::Vector2d(weft.dot(velocity), warp.dot(velocity));
+/// What takes a displacement to the fabric's own directions: dx = U du + V dv has the least-squares
+/// solution (du, dv) for the deformed directions U, V of the element. Zero if those are parallel.
+Eigen::Matrix<double, 2, 3> toFabric(const Vector3d& weft, const Vector3d& warp) {
+  Eigen::Matrix<double, 2, 3> directions;
+  directions << weft.transpose(), warp.transpose();
+  const Eigen::Matrix2d metric = directions * directions.transpose();
+  if (!(std::abs(metric.determinant()) > 1e-12)) return Eigen::Matrix<double, 2, 3>::Zero();
+  return metric.inverse() * directions;
 }
 
 /// The part of a contact's normal force on a point; without force all points are alike.
@@ -239,7 +239,8 @@ void HapticLayer::sendBack(FingertipContact& contact, const std::vector<TouchedP
     warp += share * directions.second;
     if (loads_.size() < loads_.capacity()) loads_.push_back(load);
   }
-  contact.fabric_velocity = inFabric(contact.sliding_velocity, weft, warp);
+  contact.to_fabric = toFabric(weft, warp);
+  contact.fabric_velocity = contact.to_fabric * contact.sliding_velocity;
 }
 
 void HapticLayer::fillContact(int f, const std::vector<TouchedParticle>& touched,

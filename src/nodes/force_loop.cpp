@@ -217,6 +217,7 @@ void ForceLoop::step() {
     rendered.contact = layer_ && fingertip ? layer_->contacts()[index(finger)] : kNoContact;
     rendered.gain = liveness_.gain(finger);
     rendered.contactor_forces.fill(0.0);
+    rendered.array = {Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
     if (!fingertip) {
       rendered.contact.position = hand_.pose * inputs_[finger].pose.value().pose.translation();
       continue;
@@ -227,6 +228,7 @@ void ForceLoop::step() {
     if (array.known && rendered.contact.touching) {
       rendered.contactor_forces =
           contact::contactorForces(rendered.contact, *fingertip, array.pose);
+      rendered.array = contact::arrayOnFabric(rendered.contact, *fingertip, array.pose);
     }
   }
 }

@@ -205,7 +205,7 @@ void ForceRendererNode::work(Time now) {
     fillServoForce(rendered.contact, rendered.gain, loop_.hand(), stamp, topics.force_message);
     topics.force.publish(topics.force_message);
     if (topics.contact.getNumSubscribers() == 0) continue;
-    fillContact(rendered.contact, rendered.contactor_forces, rendered.gain, stamp,
+    fillContact(rendered.contact, rendered.contactor_forces, rendered.array, rendered.gain, stamp,
                 topics.contact_message);
     topics.contact.publish(topics.contact_message);
   }

@@ -104,8 +104,9 @@ void fillServoForce(const contact::FingertipContact& contact, double gain, const
 }
 
 void fillContact(const contact::FingertipContact& contact,
-                 const std::array<double, contact::kContactors>& contactor_forces, double gain,
-                 const ros::Time& stamp, haptex::Contact& message) {
+                 const tactile::PerContactor<double>& contactor_forces,
+                 const tactile::ArrayPlacement& array, double gain, const ros::Time& stamp,
+                 haptex::Contact& message) {
   setHeader(stamp, kFixedFrame, message.header);
   static const contact::FingertipContact kNone;
   const contact::FingertipContact& shown = gain > 0.0 ? contact : kNone;
@@ -121,6 +122,9 @@ void fillContact(const contact::FingertipContact& contact,
   for (int i = 0; i < 2; ++i) {
     message.fabric_position[i] = shown.fabric_position[i];
     message.fabric_velocity[i] = shown.fabric_velocity[i];
+    message.array_origin[i] = gain > 0.0 ? array.origin[i] : 0.0;
+    message.array_x[i] = gain > 0.0 ? array.axes(i, 0) : 0.0;
+    message.array_y[i] = gain > 0.0 ? array.axes(i, 1) : 0.0;
   }
   for (std::size_t i = 0; i < contactor_forces.size(); ++i) {
     message.contactor_forces[i] = gain * contactor_forces[i];

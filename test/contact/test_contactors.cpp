@@ -8,7 +8,11 @@
 namespace haptex::contact {
 namespace {
 
-using Forces = std::array<double, kContactors>;
+using tactile::ArrayPlacement;
+using tactile::kContactorColumns;
+using tactile::kContactorRows;
+using tactile::kContactors;
+using Forces = tactile::PerContactor<double>;
 
 // In the array's frame (m): where a contactor stands.
 Eigen::Vector3d contactorPosition(int row, int column) {
@@ -153,6 +157,51 @@ TEST(Contactors, TurnWithTheFingertip) {
   const Forces before = contactorForces(contact, fingertip, someArray());
   const Forces after = contactorForces(contact, fingertip, turned);
   for (int i = 0; i < kContactors; ++i) EXPECT_NEAR(after[i], before[23 - i], 1e-10) << i;
+}
+
+// A cloth that is stretched by 1.25 along weft, whose weft and warp are directions in space.
+FingertipContact contactOn(const Eigen::Vector3d& weft, const Eigen::Vector3d& warp) {
+  FingertipContact contact;
+  contact.touching = true;
+  contact.centre = {0.4, -0.1, 0.2};
+  contact.fabric_position = {0.05, 0.12};
+  contact.to_fabric << weft.transpose() / 1.25, warp.transpose();
+  return contact;
+}
+
+TEST(ArrayOnFabric, MapsEveryContactorToTheClothBelowIt) {
+  const Fingertip fingertip = someFingertip();
+  const Eigen::Matrix3d turn = (fingertip.orientation * someArray().linear()).matrix();
+  const FingertipContact contact = contactOn(turn.col(1), -turn.col(0));
+  const ArrayPlacement placement = arrayOnFabric(contact, fingertip, someArray());
+  for (int i = 0; i < kContactors; ++i) {
+    const Eigen::Vector3d local(tactile::contactorPlace(i).x(), tactile::contactorPlace(i).y(), 0);
+    const Eigen::Vector3d place =
+        fingertip.position + fingertip.orientation * (someArray() * local);
+    const Eigen::Vector2d expected =
+        contact.fabric_position + Eigen::Vector2d(turn.col(1).dot(place - contact.centre) / 1.25,
+                                                  -turn.col(0).dot(place - contact.centre));
+    EXPECT_NEAR((placement.placeOf(i) - expected).norm(), 0.0, 1e-15) << i;
+  }
+}
+
+TEST(ArrayOnFabric, IsMirroredOnTheOtherFaceOfTheCloth) {
+  // The same cloth touched from its other side: turned by half a turn about x, y goes backwards.
+  const Fingertip fingertip = someFingertip();
+  const Eigen::Matrix3d turn = (fingertip.orientation * someArray().linear()).matrix();
+  const FingertipContact contact = contactOn(turn.col(0), turn.col(1));
+  const Eigen::Isometry3d other = someArray() * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());
+  const ArrayPlacement one = arrayOnFabric(contact, fingertip, someArray());
+  const ArrayPlacement two = arrayOnFabric(contact, fingertip, other);
+  EXPECT_NEAR((two.axes.col(0) - one.axes.col(0)).norm(), 0.0, 1e-14);
+  EXPECT_NEAR((two.axes.col(1) + one.axes.col(1)).norm(), 0.0, 1e-14);
+  EXPECT_GT(one.axes.determinant(), 0.0);
+}
+
+TEST(ArrayOnFabric, IsZeroWithoutContact) {
+  const ArrayPlacement placement = arrayOnFabric({}, someFingertip(), someArray());
+  EXPECT_TRUE(placement.origin.isZero(0.0));
+  EXPECT_TRUE(placement.axes.isZero(0.0));
 }
 
 }  // namespace

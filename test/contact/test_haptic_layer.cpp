@@ -77,6 +77,9 @@ TEST_F(HapticLayerTest, TellsHowTheFingertipSlidesOverTheFabricInItsOwnDirection
   const FingertipContact& felt = layer_.contacts()[0];
   // The cloth moves a little too within the step.
   EXPECT_NEAR((felt.fabric_velocity - Eigen::Vector2d(0.03, -0.04)).norm(), 0.0, 0.005);
+  EXPECT_NEAR((felt.to_fabric * Vector3d(1.0, 2.0, 3.0) - Eigen::Vector2d(2.0, 3.0)).norm(), 0.0,
+              0.1)
+      << "the cloth is dented and a little stretched";
 }
 
 TEST_F(HapticLayerTest, ItsLoadsAreWhatTheClothAccepts) {

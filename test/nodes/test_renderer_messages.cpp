@@ -56,6 +56,13 @@ contact::FingertipContact someContact() {
   return contact;
 }
 
+tactile::ArrayPlacement someArray() {
+  tactile::ArrayPlacement array;
+  array.origin = {0.031, 0.041};
+  array.axes << 0.9, -0.1, 0.2, 0.8;
+  return array;
+}
+
 FrameMotion movingHand() {
   FrameMotion hand;
   hand.pose = Eigen::Translation3d(0.5, -0.4, 0.3) *
@@ -162,10 +169,10 @@ TEST(RendererMessages, GainScalesForceStiffnessAndDampingTogether) {
 
 TEST(RendererMessages, ContactForTheTactileRenderer) {
   const contact::FingertipContact contact = someContact();
-  std::array<double, contact::kContactors> contactors{};
+  tactile::PerContactor<double> contactors{};
   contactors[7] = 0.5;
   haptex::Contact message;
-  fillContact(contact, contactors, 0.5, kStamp, message);
+  fillContact(contact, contactors, someArray(), 0.5, kStamp, message);
   EXPECT_EQ(message.header.frame_id, "world");
   EXPECT_EQ(message.header.stamp, kStamp);
   EXPECT_TRUE(message.touching);
@@ -179,15 +186,19 @@ TEST(RendererMessages, ContactForTheTactileRenderer) {
   EXPECT_EQ(vector(message.sliding_velocity), contact.sliding_velocity);
   EXPECT_EQ(message.fabric_position[1], 0.04);
   EXPECT_EQ(message.fabric_velocity[0], 0.05);
+  EXPECT_EQ(message.array_origin[1], 0.041);
+  EXPECT_EQ(message.array_x[0], 0.9);
+  EXPECT_EQ(message.array_x[1], 0.2);
+  EXPECT_EQ(message.array_y[1], 0.8);
   EXPECT_EQ(message.contactor_forces[7], 0.25);
 }
 
 TEST(RendererMessages, NoContactWithoutAGain) {
-  std::array<double, contact::kContactors> contactors{};
+  tactile::PerContactor<double> contactors{};
   contactors[7] = 0.5;
   haptex::Contact message;
-  fillContact(someContact(), contactors, 0.5, kStamp, message);
-  fillContact(someContact(), contactors, 0.0, kStamp, message);
+  fillContact(someContact(), contactors, someArray(), 0.5, kStamp, message);
+  fillContact(someContact(), contactors, someArray(), 0.0, kStamp, message);
   haptex::Contact none;
   none.header = message.header;
   EXPECT_TRUE(message.touching == none.touching && message.slipping == none.slipping);
@@ -195,6 +206,8 @@ TEST(RendererMessages, NoContactWithoutAGain) {
                 vector(message.sliding_velocity).norm() + message.area + message.penetration +
                 message.normal_force,
             0.0);
+  EXPECT_EQ(message.array_origin[1], 0.0);
+  EXPECT_EQ(message.array_x[0], 0.0);
   EXPECT_EQ(message.contactor_forces[7], 0.0);
 }
 

@@ -46,6 +46,8 @@ struct FingertipContact {
   Eigen::Vector3d sliding_velocity = Eigen::Vector3d::Zero();  ///< m/s, fingertip over cloth
   Eigen::Vector2d fabric_position = Eigen::Vector2d::Zero();   ///< m, centre in (weft, warp)
   Eigen::Vector2d fabric_velocity = Eigen::Vector2d::Zero();   ///< m/s, sliding in (weft, warp)
+  /// How (weft, warp) change with the place along the cloth in the world frame, no unit.
+  Eigen::Matrix<double, 2, 3> to_fabric = Eigen::Matrix<double, 2, 3>::Zero();
   std::vector<ContactPoint> points;                            ///< at most kMostContactPoints
 };
 

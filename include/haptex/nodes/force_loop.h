@@ -92,7 +92,8 @@ class ForceLoop {
   /// What came of a tick for a finger.
   struct Rendered {
     contact::FingertipContact contact;
-    std::array<double, contact::kContactors> contactor_forces{};
+    tactile::PerContactor<double> contactor_forces{};  ///< N
+    tactile::ArrayPlacement array;                     ///< on the fabric, zero without contact
     double gain = 0.0;  ///< share of the contact's force that is to be rendered, 0 to 1
   };
 
@@ -106,7 +107,8 @@ class ForceLoop {
   void takeHandBase(const Eigen::Isometry3d& in_world, Time time, Time arrival, bool fixed);
   void takeHeartbeat(Time arrival);
   void takeState(const LargeScaleState& state, Time arrival);
-  /// Pose of the contactor array in the fingertip's frame; without it its forces are zero.
+  /// Pose of the contactor array in the fingertip's frame; without it what is of the array
+  /// is zero.
   void takeArray(Finger finger, const Eigen::Isometry3d& in_fingertip);
 
   // By the thread of layers and patches.

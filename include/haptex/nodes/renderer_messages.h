@@ -11,7 +11,6 @@
 #include <ros/time.h>
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
 #include "haptex/cloth/mesh.h"
@@ -48,8 +47,9 @@ void fillServoForce(const contact::FingertipContact& contact, double gain, const
 
 /// Likewise. All zero without a gain.
 void fillContact(const contact::FingertipContact& contact,
-                 const std::array<double, contact::kContactors>& contactor_forces, double gain,
-                 const ros::Time& stamp, haptex::Contact& message);
+                 const tactile::PerContactor<double>& contactor_forces,
+                 const tactile::ArrayPlacement& array, double gain, const ros::Time& stamp,
+                 haptex::Contact& message);
 
 /// What acts on the cloth; no points without a gain.
 void fillContactForces(const std::vector<cloth::PointLoad>& loads, double gain,
