@@ -106,12 +106,12 @@ double beginOf(const HandPath& path, const std::string& phase) {
   return 0.0;
 }
 
-TEST(ShippedPaths, DemoPinchesLiftsStretchesAndSlidesWithTheForcesThatItSays) {
+TEST(ShippedPaths, DemoPinchesLiftsStretchesSlidesAndRubsWithTheForcesThatItSays) {
   const HandPath path = loadHandPath(kDemo);
   EXPECT_EQ(path.phases(), (std::vector<std::string>{"", "approach", "pinch", "lift", "stretch",
-                                                     "slide", "release", "retreat", "end"}));
-  EXPECT_GT(path.duration(), 25.0);
-  EXPECT_LT(path.duration(), 30.0);
+                                                     "slide", "release", "rub", "retreat", "end"}));
+  EXPECT_GT(path.duration(), 30.0);
+  EXPECT_LT(path.duration(), 40.0);
   const FingerMechanics person;
   const double yields = 1.0 / person.fingertip_stiffness + 1.0 / person.pulp_stiffness;
   constexpr double kPulp = 8e6;  // Pa/m, PulpSettings::stiffness: F = pi R kPulp depth^2
@@ -121,10 +121,9 @@ TEST(ShippedPaths, DemoPinchesLiftsStretchesAndSlidesWithTheForcesThatItSays) {
   const struct {
     const char* before_phase;
     double force, y, z;  // N, m
-  } holds[] = {{"lift", 1.0, 0.0, -0.19},
-               {"stretch", 1.0, 0.0, -0.16},
-               {"slide", 2.2, 0.0, -0.1918},
-               {"release", 0.3, 0.025, -0.19}};
+  } holds[] = {{"lift", 1.0, 0.0, -0.19},    {"stretch", 1.0, 0.0, -0.16},
+               {"slide", 2.2, 0.0, -0.1918}, {"release", 0.3, 0.025, -0.19},
+               {"rub", 0.5, 0.0, -0.1},      {"retreat", 0.5, 0.0, -0.16}};
   for (const auto& hold : holds) {
     const HandPlace place = path.at(beginOf(path, hold.before_phase) - 1e-3);
     const Vector3d index = inWorld(place, Finger::kIndex), thumb = inWorld(place, Finger::kThumb);
