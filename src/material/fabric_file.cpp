@@ -9,6 +9,7 @@
 
 #include "haptex/material/compression.h"
 #include "haptex/material/strain_measures.h"
+#include "haptex/material/surface_file.h"
 #include "haptex/material/yaml_reader.h"
 
 namespace haptex::material {
@@ -244,12 +245,25 @@ MembraneCurves readDirection(const YamlValue& fabric_value, const std::string& k
   return curves;
 }
 
+// Reads the surface, if there is one, and its provenance into the fabric, after the friction.
+void readSurfaceInto(const YamlValue& file, Fabric& fabric) {
+  if (!file.has("surface")) return;
+  if (!fabric.friction) {
+    file.refuseBecause("the key 'friction' is missing, required together with surface");
+  }
+  const YamlValue value = file.at("surface");
+  fabric.surface = readSurface(value, *fabric.friction);
+  for (const std::string key : {"kes", "weave", "heights"}) {
+    if (value.has(key)) fabric.provenance["surface." + key] = readProvenance(value.at(key));
+  }
+}
+
 }  // namespace
 
 Fabric loadFabric(const std::string& path) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"name", "areal_density", "weft", "warp", "shear"},
-                   {"description", "bending", "compression", "friction"});
+                   {"description", "bending", "compression", "friction", "surface"});
   Fabric fabric;
   fabric.name = file.at("name").text();
   if (file.has("description")) fabric.description = file.at("description").text();
@@ -264,6 +278,7 @@ Fabric loadFabric(const std::string& path) {
   for (const std::string key : {"bending", "compression", "friction"}) {
     if (file.has(key)) fabric.provenance[key] = readProvenance(file.at(key));
   }
+  readSurfaceInto(file, fabric);
   return fabric;
 }
 

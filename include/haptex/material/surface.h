@@ -6,35 +6,51 @@
 
 namespace haptex::material {
 
+// Samples of 0.1 mm show yarns from two samples on; a piece of a few millimetres holds a repeat of
+// yarns up to the largest spacing.
+constexpr double kSmallestYarnSpacing = 2e-4;  ///< m
+constexpr double kLargestYarnSpacing = 3e-3;   ///< m
+constexpr double kLargestYarnHeight = 3e-3;    ///< m
+constexpr double kLargestIrregularity = 0.5;
+constexpr double kLargestSampleSpacing = 1e-3;  ///< m
+constexpr double kLargestFieldHeight = 1e-2;    ///< m
+constexpr double kLargestRoughness = 1e-3;      ///< m
+
 /// How warp and weft yarns interlace. The number of a twill is what a warp yarn passes over and
 /// under, of a satin its repeat, of a rib the weft yarns that lie together.
 enum class WeaveKind { kPlain, kTwill22, kTwill31, kSatin5, kRib2 };
 
 /// One of the two systems of parallel yarns.
 struct Yarns {
-  double spacing;  ///< m, from yarn to yarn, > 0
-  double height;   ///< m, of their crowns above the middle of the fabric, >= 0
+  double spacing;  ///< m, from yarn to yarn, kSmallestYarnSpacing to kLargestYarnSpacing
+  /// m, of their crowns above the middle of the fabric, 0 to kLargestYarnHeight
+  double height;
 };
 
-/// A woven relief.
+/// A woven relief. One of the two heights is > 0.
 struct Weave {
   WeaveKind kind;
   Yarns weft;
   Yarns warp;
-  double irregularity;  ///< coefficient of variation of the yarns along their length, 0 to 0.5
+  /// Coefficient of variation of the yarns along their length, 0 to kLargestIrregularity.
+  double irregularity;
 };
 
 /// A measured relief in a file.
 struct HeightFile {
   std::string path;
-  double spacing;  ///< m, between neighbouring samples, > 0
-  double height;   ///< m, of the largest value of a sample above the smallest, > 0
-  bool periodic;   ///< whether the field continues at its opposite edge
+  /// m, between neighbouring samples, > 0, at most kLargestSampleSpacing
+  double spacing;
+  /// m, of the largest value of a sample above the smallest, > 0, at most kLargestFieldHeight
+  double height;
+  bool periodic;  ///< whether the field continues at its opposite edge
 };
 
 struct Surface {
-  double roughness;           ///< m, KES SMD: mean deviation of the height, > 0
-  double friction_deviation;  ///< KES MMD: mean deviation of the coefficient of friction, >= 0
+  /// m, KES SMD: mean deviation of the height, > 0, at most kLargestRoughness
+  double roughness;
+  /// KES MMD: mean deviation of the coefficient of friction, 0 to 1 and at most that coefficient
+  double friction_deviation;
   std::variant<Weave, HeightFile> relief;
 };
 

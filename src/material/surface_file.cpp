@@ -1,0 +1,96 @@
+#include "haptex/material/surface_file.h"
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+namespace haptex::material {
+namespace {
+
+std::string written(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
+double readFromTo(const YamlValue& value, double least, double most, const std::string& unit = "") {
+  const double number = value.number();
+  if (number < least || number > most) {
+    value.refuse("must be from " + written(least) + " to " + written(most) + unit);
+  }
+  return number;
+}
+
+double readPositiveUpTo(const YamlValue& value, double most) {
+  const double number = value.number();
+  if (number <= 0.0 || number > most) {
+    value.refuse("must be > 0 and at most " + written(most) + " m");
+  }
+  return number;
+}
+
+Yarns readYarns(const YamlValue& value) {
+  value.requireKeys({"spacing", "height"});
+  return {readFromTo(value.at("spacing"), kSmallestYarnSpacing, kLargestYarnSpacing, " m"),
+          readFromTo(value.at("height"), 0.0, kLargestYarnHeight, " m")};
+}
+
+WeaveKind readWeaveKind(const YamlValue& value) {
+  const std::string kind = value.oneOf({"plain", "twill_2_2", "twill_3_1", "satin_5", "rib_2"});
+  if (kind == "plain") return WeaveKind::kPlain;
+  if (kind == "twill_2_2") return WeaveKind::kTwill22;
+  if (kind == "twill_3_1") return WeaveKind::kTwill31;
+  if (kind == "satin_5") return WeaveKind::kSatin5;
+  return WeaveKind::kRib2;
+}
+
+Weave readWeave(const YamlValue& value) {
+  value.requireKeys({"unit", "provenance", "source", "kind", "weft", "warp", "irregularity"});
+  value.at("unit").oneOf({"m"});
+  const Weave weave{readWeaveKind(value.at("kind")), readYarns(value.at("weft")),
+                    readYarns(value.at("warp")),
+                    readFromTo(value.at("irregularity"), 0.0, kLargestIrregularity)};
+  if (weave.weft.height == 0.0 && weave.warp.height == 0.0) {
+    value.refuseBecause("the height of weft or warp must be > 0: the relief is flat");
+  }
+  return weave;
+}
+
+HeightFile readHeightFile(const YamlValue& value) {
+  value.requireKeys({"unit", "provenance", "source", "file", "spacing", "height", "periodic"});
+  value.at("unit").oneOf({"m"});
+  const std::filesystem::path file = value.at("file").text();
+  if (file.extension() != ".png" && file.extension() != ".raw") {
+    value.at("file").refuse("must end in .png or .raw");
+  }
+  return {(std::filesystem::path(value.file()).parent_path() / file).string(),
+          readPositiveUpTo(value.at("spacing"), kLargestSampleSpacing),
+          readPositiveUpTo(value.at("height"), kLargestFieldHeight),
+          value.at("periodic").oneOf({"true", "false"}) == "true"};
+}
+
+}  // namespace
+
+Surface readSurface(const YamlValue& value, double friction) {
+  value.requireKeys({"kes"}, {"weave", "heights"});
+  if (value.has("weave") == value.has("heights")) {
+    value.refuseBecause("must have exactly one of weave, heights");
+  }
+  const YamlValue kes = value.at("kes");
+  kes.requireKeys({"unit", "provenance", "source", "SMD", "MMD"});
+  kes.at("unit").oneOf({"m"});
+  Surface surface;
+  surface.roughness = readPositiveUpTo(kes.at("SMD"), kLargestRoughness);
+  surface.friction_deviation = readFromTo(kes.at("MMD"), 0.0, 1.0);
+  if (surface.friction_deviation > friction) {
+    kes.at("MMD").refuse("must be at most the coefficient of friction, " + written(friction));
+  }
+  if (value.has("weave")) {
+    surface.relief = readWeave(value.at("weave"));
+  } else {
+    surface.relief = readHeightFile(value.at("heights"));
+  }
+  return surface;
+}
+
+}  // namespace haptex::material
