@@ -1,6 +1,8 @@
 #include "haptex/tactile/height_field.h"
 
+#include <Eigen/Dense>
 #include <cmath>
+#include <cstddef>
 #include <sstream>
 #include <stdexcept>
 
@@ -43,6 +45,29 @@ void requireSound(const HeightField& field) {
     message << "heights[" << i << "] of the height field is " << field.heights[i]
             << ": it must be finite";
     throw std::invalid_argument(message.str());
+  }
+}
+
+void removePlane(HeightField& field) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  const auto basis = [&](int column, int row) {
+    return Eigen::Vector3d(1.0, 2.0 * column / (field.columns - 1) - 1.0,
+                           2.0 * row / (field.rows - 1) - 1.0);
+  };
+  for (int row = 0; row < field.rows; ++row) {
+    for (int column = 0; column < field.columns; ++column) {
+      const Eigen::Vector3d place = basis(column, row);
+      normal += place * place.transpose();
+      right += field.at(column, row) * place;
+    }
+  }
+  const Eigen::Vector3d plane = normal.ldlt().solve(right);
+  for (int row = 0; row < field.rows; ++row) {
+    for (int column = 0; column < field.columns; ++column) {
+      field.heights[static_cast<std::size_t>(field.columns) * row + column] -=
+          plane.dot(basis(column, row));
+    }
   }
 }
 

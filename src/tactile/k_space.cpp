@@ -1,6 +1,5 @@
 #include "haptex/tactile/k_space.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -44,30 +43,6 @@ double variance(const std::vector<double>& heights) {
   double sum = 0.0;
   for (const double height : heights) sum += (height - mean) * (height - mean);
   return sum / heights.size();
-}
-
-/// Takes off the least-squares plane.
-void removePlane(HeightField& field) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  const auto basis = [&](int column, int row) {
-    return Eigen::Vector3d(1.0, 2.0 * column / (field.columns - 1) - 1.0,
-                           2.0 * row / (field.rows - 1) - 1.0);
-  };
-  for (int row = 0; row < field.rows; ++row) {
-    for (int column = 0; column < field.columns; ++column) {
-      const Eigen::Vector3d place = basis(column, row);
-      normal += place * place.transpose();
-      right += field.at(column, row) * place;
-    }
-  }
-  const Eigen::Vector3d plane = normal.ldlt().solve(right);
-  for (int row = 0; row < field.rows; ++row) {
-    for (int column = 0; column < field.columns; ++column) {
-      field.heights[static_cast<std::size_t>(field.columns) * row + column] -=
-          plane.dot(basis(column, row));
-    }
-  }
 }
 
 /// Hann window of a sample among `count`, without zeros at the ends.

@@ -20,4 +20,8 @@ struct HeightField {
 void requireSound(const HeightField& field);
 constexpr int kMostSamples = 4096;
 
+/// Takes off the least-squares plane.
+/// @param field sound, see above
+void removePlane(HeightField& field);
+
 }  // namespace haptex::tactile

@@ -1,0 +1,267 @@
+#include "haptex/tactile/weave_relief.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace haptex::tactile {
+namespace {
+
+using material::Weave;
+using material::WeaveKind;
+
+constexpr double kSampleSpacing = 1e-4;  // m, aimed at
+constexpr int kFewestSamples = 4;        // across a yarn: its shape needs them
+constexpr int kMostTileSamples = 128;    // along a side
+constexpr double kLeastSpacing = 2e-4, kLargestSpacing = 3e-3;  // m, of yarns
+constexpr double kLargestIrregularity = 0.5;
+constexpr double kFibreLength = 0.04;  // m
+constexpr int kMapCells = 80;          // along a side: two fibres, see yarnNoise()
+constexpr std::uint64_t kSeed = 6;     // any
+
+[[noreturn]] void refuse(const char* name, double value, const char* allowed) {
+  std::ostringstream message;
+  message << "the " << name << " of the weave is " << value << ": allowed are " << allowed;
+  throw std::invalid_argument(message.str());
+}
+
+void requireSound(const Weave& weave) {
+  const auto require_spacing = [](const char* name, double value) {
+    // Written so that it refuses NaN.
+    if (value >= kLeastSpacing && value <= kLargestSpacing) return;
+    refuse(name, value, "0.0002 to 0.003 m");
+  };
+  const auto require_height = [](const char* name, double value) {
+    if (!std::isfinite(value) || value < 0.0) refuse(name, value, "finite numbers >= 0 m");
+  };
+  require_spacing("weft.spacing", weave.weft.spacing);
+  require_spacing("warp.spacing", weave.warp.spacing);
+  require_height("weft.height", weave.weft.height);
+  require_height("warp.height", weave.warp.height);
+  if (!(weave.weft.height > 0.0 || weave.warp.height > 0.0)) {
+    refuse("weft.height and warp.height", 0.0, "numbers of which one is > 0 m");
+  }
+  if (!(weave.irregularity >= 0.0 && weave.irregularity <= kLargestIrregularity)) {
+    refuse("irregularity", weave.irregularity, "0 to 0.5");
+  }
+}
+
+int modulo(int value, int count) { return (value % count + count) % count; }
+
+/// Yarns along each side of a repeat; yarns that lie together count as one.
+int repeatOf(WeaveKind kind) {
+  switch (kind) {
+    case WeaveKind::kTwill22:
+    case WeaveKind::kTwill31:
+      return 4;
+    case WeaveKind::kSatin5:
+      return 5;
+    default:
+      return 2;
+  }
+}
+
+bool warpIsOnTop(WeaveKind kind, int warp, int weft) {
+  switch (kind) {
+    case WeaveKind::kTwill22:
+      return modulo(warp - weft, 4) < 2;
+    case WeaveKind::kTwill31:
+      return modulo(warp - weft, 4) < 3;
+    case WeaveKind::kSatin5:
+      return modulo(weft - 2 * warp, 5) != 0;
+    default:
+      return modulo(warp + weft, 2) == 0;
+  }
+}
+
+/// The weave with the weft yarns that lie together in one as wide as they are.
+Weave withJoinedYarns(Weave weave) {
+  if (weave.kind == WeaveKind::kRib2) weave.weft.spacing *= 2.0;
+  return weave;
+}
+
+/// Numbers of a standard normal distribution, the same on every platform: the standard fixes what
+/// the generator gives, but not what its own normal distribution makes of it.
+class NormalNumbers {
+ public:
+  double next() {
+    const double radius = std::sqrt(-2.0 * std::log1p(-uniform()));
+    return radius * std::cos(2.0 * M_PI * uniform());
+  }
+
+ private:
+  double uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }  // below 1
+
+  std::mt19937_64 generator_{kSeed};
+};
+
+/// A closed yarn's deviation at evenly spaced places: mean 0, variance 1, and the correlation
+///   1 - d/kFibreLength
+/// of places d apart (the shorter way round), that of fibres strewn at random (Martindale 1945, J.
+/// Text. Inst. 36:T35). The moving sum of white noise over half of the way round has the
+/// correlation 1 - 2 d/length; a deviation of the whole yarn makes up for the rest.
+/// @param length m, at most two fibres
+std::vector<double> yarnNoise(NormalNumbers& numbers, int places, double length) {
+  const double changing = length / (2.0 * kFibreLength);
+  const double lasting = std::sqrt(std::max(0.0, 1.0 - changing)) * numbers.next();
+  std::vector<double> white(places);
+  for (double& value : white) value = numbers.next();
+  const int half = std::max(1, places / 2);
+  std::vector<double> noise(places, lasting);
+  for (int i = 0; i < places; ++i) {
+    double sum = 0.0;
+    for (int k = 0; k < half; ++k) sum += white[(i + k) % places];
+    noise[i] += std::sqrt(changing / half) * sum;
+  }
+  return noise;
+}
+
+/// A log-normal factor, so that no crown is negative: mean 1, coefficient of variation as given.
+double variation(double noise, double irregularity) {
+  const double variance = std::log1p(irregularity * irregularity);
+  return std::exp(std::sqrt(variance) * noise - 0.5 * variance);
+}
+
+/// The samples along a side of the tile, across the yarns that it is measured in.
+struct Side {
+  int yarns;
+  int per_yarn;
+  double yarn_spacing;  // m
+  // Of a yarn, by the sample's number after the yarn's middle.
+  std::vector<double> across;  // height towards the next yarn
+  std::vector<double> rise;    // share of the height at the next yarn
+
+  int samples() const { return yarns * per_yarn; }
+  double length() const { return yarns * yarn_spacing; }
+  int before(int sample) const { return sample / per_yarn; }
+  int after(int sample) const { return (before(sample) + 1) % yarns; }
+  int nearest(int sample) const {
+    return 2 * (sample % per_yarn) < per_yarn ? before(sample) : after(sample);
+  }
+};
+
+Side sideAcross(const material::Yarns& yarns, int repeat) {
+  Side side;
+  side.per_yarn = std::clamp(static_cast<int>(std::lround(yarns.spacing / kSampleSpacing)),
+                             kFewestSamples, kMostTileSamples / repeat);
+  side.yarns = repeat * (kMostTileSamples / (repeat * side.per_yarn));
+  side.yarn_spacing = yarns.spacing;
+  for (int i = 0; i < side.per_yarn; ++i) {
+    const double cosine = std::cos(M_PI * i / side.per_yarn);
+    side.across.push_back(cosine * cosine);
+    side.rise.push_back(0.5 * (1.0 - cosine));
+  }
+  return side;
+}
+
+/// Heights of one system's yarns at the crossings: index crossings yarn + crossing, zero where a
+/// yarn goes under.
+template <typename F>
+std::vector<double> crowns(NormalNumbers& numbers, const Side& across, const Side& along,
+                           double height, double irregularity, F is_on_top) {
+  std::vector<double> heights;
+  heights.reserve(static_cast<std::size_t>(across.yarns) * along.yarns);
+  for (int yarn = 0; yarn < across.yarns; ++yarn) {
+    const std::vector<double> noise = yarnNoise(numbers, along.yarns, along.length());
+    for (int crossing = 0; crossing < along.yarns; ++crossing) {
+      heights.push_back(
+          is_on_top(yarn, crossing) ? height * variation(noise[crossing], irregularity) : 0.0);
+    }
+  }
+  return heights;
+}
+
+/// Height of one system of yarns at a place, given by the samples across and along them.
+double yarnHeight(const std::vector<double>& crowns, const Side& across, int sample_across,
+                  const Side& along, int sample_along) {
+  const double* const yarn = crowns.data() + along.yarns * across.nearest(sample_across);
+  const double before = yarn[along.before(sample_along)];
+  const double after = yarn[along.after(sample_along)];
+  const double middle = before + along.rise[sample_along % along.per_yarn] * (after - before);
+  return across.across[sample_across % across.per_yarn] * middle;
+}
+
+/// Mean square factor of the yarns in every cell of the map: index kMapCells across + along.
+std::vector<double> cellPowers(NormalNumbers& numbers, double spacing, double irregularity) {
+  const double length = kMapCells * AmplitudeMap::kSpacing;
+  const int yarns = static_cast<int>(std::lround(length / spacing));
+  const double width = static_cast<double>(kMapCells) / yarns;  // in cells
+  std::vector<double> powers(static_cast<std::size_t>(kMapCells) * kMapCells);
+  for (int yarn = 0; yarn < yarns; ++yarn) {
+    const std::vector<double> noise = yarnNoise(numbers, kMapCells, length);
+    const double begin = yarn * width, end = begin + width;
+    for (int cell = static_cast<int>(begin); cell < std::min(end, 1.0 * kMapCells); ++cell) {
+      const double share = std::min(end, cell + 1.0) - std::max<double>(begin, cell);
+      for (int along = 0; along < kMapCells; ++along) {
+        const double factor = variation(noise[along], irregularity);
+        powers[static_cast<std::size_t>(kMapCells) * cell + along] += share * factor * factor;
+      }
+    }
+  }
+  return powers;
+}
+
+}  // namespace
+
+HeightField weaveRelief(const material::Weave& asked) {
+  requireSound(asked);
+  const Weave weave = withJoinedYarns(asked);
+  // Warp yarns lie side by side along weft, and the other way round.
+  const Side along_weft = sideAcross(weave.warp, repeatOf(weave.kind));
+  const Side along_warp = sideAcross(weave.weft, repeatOf(weave.kind));
+  NormalNumbers numbers;
+  const std::vector<double> warp =
+      crowns(numbers, along_weft, along_warp, weave.warp.height, weave.irregularity,
+             [&](int yarn, int crossing) { return warpIsOnTop(weave.kind, yarn, crossing); });
+  const std::vector<double> weft =
+      crowns(numbers, along_warp, along_weft, weave.weft.height, weave.irregularity,
+             [&](int yarn, int crossing) { return !warpIsOnTop(weave.kind, crossing, yarn); });
+  HeightField field;
+  field.columns = along_weft.samples();
+  field.rows = along_warp.samples();
+  field.weft_spacing = along_weft.yarn_spacing / along_weft.per_yarn;
+  field.warp_spacing = along_warp.yarn_spacing / along_warp.per_yarn;
+  field.heights.reserve(static_cast<std::size_t>(field.columns) * field.rows);
+  for (int row = 0; row < field.rows; ++row) {
+    for (int column = 0; column < field.columns; ++column) {
+      field.heights.push_back(yarnHeight(warp, along_weft, column, along_warp, row) +
+                              yarnHeight(weft, along_warp, row, along_weft, column));
+    }
+  }
+  return field;
+}
+
+AmplitudeMap weaveUnevenness(const material::Weave& asked) {
+  requireSound(asked);
+  if (!(asked.irregularity > 0.0)) return {};
+  const Weave weave = withJoinedYarns(asked);
+  NormalNumbers numbers;
+  const std::vector<double> warp = cellPowers(numbers, weave.warp.spacing, weave.irregularity);
+  const std::vector<double> weft = cellPowers(numbers, weave.weft.spacing, weave.irregularity);
+  const double weft_share = 1.0 / (1.0 + std::pow(weave.warp.height / weave.weft.height, 2));
+  std::vector<double> powers;
+  double mean = 0.0;
+  for (int row = 0; row < kMapCells; ++row) {
+    for (int column = 0; column < kMapCells; ++column) {
+      const double of_warp = warp[static_cast<std::size_t>(kMapCells) * column + row];
+      const double of_weft = weft[static_cast<std::size_t>(kMapCells) * row + column];
+      powers.push_back(of_warp + weft_share * (of_weft - of_warp));
+      mean += powers.back() / (kMapCells * kMapCells);
+    }
+  }
+  std::vector<PerChannel<double>> values;
+  values.reserve(powers.size());
+  for (const double power : powers) {
+    const double amplitude = std::sqrt(power / mean);
+    values.push_back({amplitude, amplitude});
+  }
+  return AmplitudeMap(kMapCells, kMapCells, std::move(values));
+}
+
+}  // namespace haptex::tactile
