@@ -24,17 +24,18 @@ Complex highPass(double frequency) {
 class Tester {
  public:
   Tester(int samples, double spacing)
-      : profile_(samples),
+      : spacing_(spacing),
+        profile_(samples),
         spectrum_(samples),
+        filtered_(samples),
         there_(samples),
         slope_(samples),
         to_spectrum_(samples, false),
         to_profile_(samples, true) {
     for (int i = 0; i < samples; ++i) {
       const int wave = 2 * i <= samples ? i : i - samples;
-      const double per_metre = wave / (samples * spacing);
-      there_[i] = highPass(per_metre * kTestSpeed);
-      slope_[i] = {0.0, 2.0 * M_PI * per_metre};
+      there_[i] = highPass(wave / (samples * spacing) * kTestSpeed);
+      slope_[i] = {0.0, 2.0 * M_PI * wave / samples};
       // The highest wave of an even number of samples is its own opposite: its real part counts,
       // and its slope is zero at every sample.
       if (2 * i == samples) there_[i] = there_[i].real();
@@ -54,14 +55,14 @@ class Tester {
   }
 
  private:
-  /// Height and slope are real, so one transform brings both, as real and imaginary part.
+  /// Height and slope are real, so one transform brings both, as real and imaginary part; the slope
+  /// per sample, as large as the height, so that neither loses digits to the other.
   template <typename F>
   KesSurface deviations(F along_stroke) {
     const int samples = static_cast<int>(profile_.size());
     for (int i = 0; i < samples; ++i) {
       profile_[i] = spectrum_[i] * along_stroke(there_[i]) * (1.0 + Complex(0.0, 1.0) * slope_[i]);
     }
-    filtered_.resize(samples);
     to_profile_.transform(profile_.data(), filtered_.data());
     KesSurface sum{0.0, 0.0};
     for (const Complex& value : filtered_) {
@@ -69,11 +70,12 @@ class Tester {
       sum.slope_deviation += std::abs(value.imag());
     }
     const double scale = 1.0 / (static_cast<double>(samples) * samples);
-    return {sum.roughness * scale, sum.slope_deviation * scale};
+    return {sum.roughness * scale, sum.slope_deviation * scale / spacing_};
   }
 
+  double spacing_;
   std::vector<Complex> profile_, spectrum_, filtered_;
-  std::vector<Complex> there_, slope_;
+  std::vector<Complex> there_, slope_;  // responses; that of the slope per sample
   kissfft<double> to_spectrum_, to_profile_;
 };
 

@@ -18,7 +18,7 @@ namespace {
 constexpr int kMostPieceSamples = 128;       // along a side, as a weave's relief
 constexpr double kShortestMap = 1e-2;        // m, side of a field that shows a large scale
 constexpr double kCoarsestSpacing = 2.5e-4;  // m, for 4 x 4 samples in a cell of the map
-constexpr double kFlat = 1e-12;              // of the span of heights; what rounding leaves is less
+constexpr double kFlat = 1e-12;  // of the farthest height: what rounding leaves of it is less
 
 /// Begins of pieces that cover `samples` and overlap by half, so that the fading at their edges
 /// leaves nothing out (Welch 1967, IEEE Trans. Audio Electroacoust. 15:70).
@@ -140,34 +140,35 @@ AmplitudeMap unevenness(const HeightField& field) {
 /// A relief before it is scaled.
 struct Relief {
   HeightField field;
-  double span;  ///< m, from the lowest to the highest, any tilt included
+  double farthest;  ///< m, of all heights from zero, any tilt included
   KSpace waves;
   AmplitudeMap large_scale;
 };
 
-double spanOf(const HeightField& field) {
-  const auto [low, high] = std::minmax_element(field.heights.begin(), field.heights.end());
-  return *high - *low;
+double farthestOf(const HeightField& field) {
+  double farthest = 0.0;
+  for (const double height : field.heights) farthest = std::max(farthest, std::abs(height));
+  return farthest;
 }
 
 Relief reliefOf(const material::Weave& weave) {
   HeightField field = weaveRelief(weave);
   KSpace waves = kSpaceOfPeriodic(field);
-  const double span = spanOf(field);
-  return {std::move(field), span, std::move(waves), weaveUnevenness(weave)};
+  const double farthest = farthestOf(field);
+  return {std::move(field), farthest, std::move(waves), weaveUnevenness(weave)};
 }
 
 Relief reliefOf(const material::HeightFile& file) {
   HeightField field = loadHeights(file);
-  const double span = spanOf(field);
+  const double farthest = farthestOf(field);
   if (!file.periodic) removePlane(field);
   KSpace waves = kSpaceOf(field, file.periodic);
   AmplitudeMap large_scale = unevenness(field);
-  return {std::move(field), span, std::move(waves), std::move(large_scale)};
+  return {std::move(field), farthest, std::move(waves), std::move(large_scale)};
 }
 
 bool isFlat(const Relief& relief, const KesSurface& tested) {
-  const double little = kFlat * relief.span;
+  const double little = kFlat * relief.farthest;
   const double spacing = std::max(relief.field.weft_spacing, relief.field.warp_spacing);
   return !(tested.roughness > little && tested.slope_deviation * spacing > little);
 }
