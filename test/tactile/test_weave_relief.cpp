@@ -306,6 +306,24 @@ TEST(WeaveUnevenness, FollowsTheYarnsThatAreHighAndCloses) {
   EXPECT_GT(along, across / 80.0);
 }
 
+TEST(WeaveUnevenness, VariesAsItsYarnsDoAndForgetsThemHalfWayRound) {
+  // Only the warp counts, one yarn in every cell: 80 yarns, each worth about three independent
+  // values. Amplitudes are their heights over the root mean square.
+  const double irregularity = 0.2;
+  const AmplitudeMap map =
+      weaveUnevenness({WeaveKind::kPlain, {1e-3, 0.0}, {1e-3, 5e-5}, irregularity});
+  double mean = 0.0, product = 0.0;
+  for (int row = 0; row < 80; ++row) {
+    for (int column = 0; column < 80; ++column) {
+      mean += cell(map, column, row) / 6400.0;
+      product += cell(map, column, row) * cell(map, column, (row + 40) % 80) / 6400.0;
+    }
+  }
+  const double variance = varianceOf(map);
+  EXPECT_NEAR(std::sqrt(variance) / mean, irregularity, 0.15 * irregularity);
+  EXPECT_NEAR((product - mean * mean) / variance, 0.0, 0.3);
+}
+
 TEST(WeaveUnevenness, IsTheSameAtEveryCall) {
   const AmplitudeMap one = weaveUnevenness(weaveOf(WeaveKind::kSatin5, 0.2));
   const AmplitudeMap other = weaveUnevenness(weaveOf(WeaveKind::kSatin5, 0.2));
