@@ -19,11 +19,9 @@ using material::WeaveKind;
 constexpr double kSampleSpacing = 1e-4;  // m, aimed at
 constexpr int kFewestSamples = 4;        // across a yarn: its shape needs them
 constexpr int kMostTileSamples = 128;    // along a side
-constexpr double kLeastSpacing = 2e-4, kLargestSpacing = 3e-3;  // m, of yarns
-constexpr double kLargestIrregularity = 0.5;
-constexpr double kFibreLength = 0.04;  // m
-constexpr int kMapCells = 80;          // along a side: two fibres, see yarnNoise()
-constexpr std::uint64_t kSeed = 6;     // any
+constexpr double kFibreLength = 0.04;    // m
+constexpr int kMapCells = 80;            // along a side: two fibres, see yarnNoise()
+constexpr std::uint64_t kSeed = 6;       // any
 
 [[noreturn]] void refuse(const char* name, double value, const char* allowed) {
   std::ostringstream message;
@@ -34,7 +32,7 @@ constexpr std::uint64_t kSeed = 6;     // any
 void requireSound(const Weave& weave) {
   const auto require_spacing = [](const char* name, double value) {
     // Written so that it refuses NaN.
-    if (value >= kLeastSpacing && value <= kLargestSpacing) return;
+    if (value >= material::kSmallestYarnSpacing && value <= material::kLargestYarnSpacing) return;
     refuse(name, value, "0.0002 to 0.003 m");
   };
   const auto require_height = [](const char* name, double value) {
@@ -47,7 +45,7 @@ void requireSound(const Weave& weave) {
   if (!(weave.weft.height > 0.0 || weave.warp.height > 0.0)) {
     refuse("weft.height and warp.height", 0.0, "numbers of which one is > 0 m");
   }
-  if (!(weave.irregularity >= 0.0 && weave.irregularity <= kLargestIrregularity)) {
+  if (!(weave.irregularity >= 0.0 && weave.irregularity <= material::kLargestIrregularity)) {
     refuse("irregularity", weave.irregularity, "0 to 0.5");
   }
 }
