@@ -6,9 +6,8 @@ namespace haptex::tactile {
 
 double gain(Channel channel, double frequency) {
   const double ratio = frequency / kChannelFrequencies[channel];
-  // 1/(1 + (r - 1/r)^2) without the division by r, which may be zero.
-  const double squared = ratio * ratio;
-  const double once = squared / (squared + (squared - 1.0) * (squared - 1.0));
+  const double detuning = ratio - 1.0 / ratio;  // infinite at 0 Hz, where the gain so is 0
+  const double once = 1.0 / (1.0 + detuning * detuning);
   return channel == k40 ? std::sqrt(once) : once;
 }
 

@@ -1,5 +1,6 @@
 #include "haptex/tactile/contactor_array.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -18,10 +19,12 @@ bool isPositive(double value) { return std::isfinite(value) && value > 0.0; }
 
 bool isSound(const TouchedFabric& touched) {
   return touched.stroke.velocity.allFinite() && std::isfinite(touched.stroke.normal_force) &&
-         touched.placement.origin.allFinite() && touched.placement.axes.allFinite();
+         touched.placement.origin.allFinite() && touched.placement.axes.allFinite() &&
+         std::all_of(touched.forces.begin(), touched.forces.end(),
+                     [](double force) { return std::isfinite(force); });
 }
 
-/// Share of the vibration that a contactor takes on. None for a force that is not a number.
+/// Share of the vibration that a contactor takes on. Nothing pulls: less than 0 is none.
 double shareOf(double force) { return force > 0.0 ? force / (force + kHalfForce) : 0.0; }
 
 }  // namespace
@@ -43,7 +46,7 @@ ArrayAmplitudes arrayAmplitudes(const Surface& surface, const TouchedFabric& tou
   const PerChannel<double> of_stroke = strokeAmplitudes(surface.small_scale, touched.stroke);
   for (int i = 0; i < kContactors; ++i) {
     const double share = shareOf(touched.forces[i]);
-    if (!(share > 0.0)) continue;
+    if (share == 0.0) continue;
     const PerChannel<double> local = surface.large_scale.at(touched.placement.placeOf(i));
     double sum = 0.0;
     for (const Channel channel : {k40, k320}) {

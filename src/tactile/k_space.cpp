@@ -38,6 +38,15 @@ std::vector<Complex> transform(const HeightField& field) {
 /// The signed wave number of a discrete frequency.
 int waveNumber(int index, int count) { return index <= count / 2 ? index : index - count; }
 
+/// Whether a discrete frequency is as well its own negative: half of an even count.
+bool isFolded(int index, int count) { return 2 * index == count; }
+
+void add(KSpace& waves, double weft, double warp, double power) {
+  waves.weft.push_back(weft);
+  waves.warp.push_back(warp);
+  waves.power.push_back(power);
+}
+
 double variance(const std::vector<double>& heights) {
   const double mean = std::accumulate(heights.begin(), heights.end(), 0.0) / heights.size();
   double sum = 0.0;
@@ -59,6 +68,8 @@ KSpace kSpaceOfPeriodic(const HeightField& field) {
   requireSound(field);
   const std::vector<Complex> values = transform(field);
   const double samples = static_cast<double>(values.size());
+  const double step_weft = 2.0 * M_PI / (field.columns * field.weft_spacing);
+  const double step_warp = 2.0 * M_PI / (field.rows * field.warp_spacing);
   KSpace result;
   for (int row = 0; row < field.rows; ++row) {
     for (int column = 0; column < field.columns; ++column) {
@@ -72,11 +83,17 @@ KSpace kSpaceOfPeriodic(const HeightField& field) {
       const double once = std::norm(values[index] / samples);
       const double power = opposite == index ? once : 2.0 * once;
       if (!(power > 0.0)) continue;
-      const double step_weft = 2.0 * M_PI / (field.columns * field.weft_spacing);
-      const double step_warp = 2.0 * M_PI / (field.rows * field.warp_spacing);
-      result.weft.push_back(step_weft * waveNumber(column, field.columns));
-      result.warp.push_back(step_warp * waveNumber(row, field.rows));
-      result.power.push_back(power);
+      const double weft = step_weft * waveNumber(column, field.columns);
+      const double warp = step_warp * waveNumber(row, field.rows);
+      if ((isFolded(column, field.columns) && row != 0) ||
+          (isFolded(row, field.rows) && column != 0)) {
+        // The samples do not tell the wave from its mirror image. Either alone would give
+        // symmetric surfaces a slant.
+        add(result, weft, warp, 0.5 * power);
+        add(result, -weft, warp, 0.5 * power);
+      } else {
+        add(result, weft, warp, power);
+      }
     }
   }
   return result;

@@ -44,6 +44,8 @@ PerChannel<double> strokeAmplitudes(const SmallScale& surface, const Stroke& str
     sum_40 += power * once_40;
     sum_320 += power * once_320 * once_320;
   }
+  // Numbers too large for a square.
+  if (!std::isfinite(sum_40) || !std::isfinite(sum_320)) return {};
   return {std::sqrt(2.0 * sum_40), std::sqrt(2.0 * sum_320)};
 }
 

@@ -51,7 +51,7 @@ class PowerSum {
         rows_(rows),
         weft_step_(2.0 * M_PI / (columns * weft_spacing)),
         warp_step_(2.0 * M_PI / (rows * warp_spacing)),
-        powers_(static_cast<std::size_t>(columns) * rows) {}
+        powers_(static_cast<std::size_t>(columns + 1) * (rows + 1)) {}
 
   void add(const KSpace& waves) {
     for (std::size_t i = 0; i < waves.size(); ++i) {
@@ -63,8 +63,8 @@ class PowerSum {
   }
   KSpace mean() const {
     KSpace result;
-    for (int row = -(rows_ - 1) / 2; row <= rows_ / 2; ++row) {
-      for (int column = -(columns_ - 1) / 2; column <= columns_ / 2; ++column) {
+    for (int row = -rows_ / 2; row <= rows_ / 2; ++row) {
+      for (int column = -columns_ / 2; column <= columns_ / 2; ++column) {
         const double power = powers_[indexOf(column, row)] / count_;
         if (!(power > 0.0)) continue;
         result.weft.push_back(weft_step_ * column);
@@ -76,9 +76,9 @@ class PowerSum {
   }
 
  private:
+  /// Of signed wave numbers: both of half an even size have their own place, see k_space.h.
   std::size_t indexOf(int column, int row) const {
-    return static_cast<std::size_t>(columns_) * ((row + rows_) % rows_) +
-           (column + columns_) % columns_;
+    return static_cast<std::size_t>(columns_ + 1) * (row + rows_ / 2) + column + columns_ / 2;
   }
 
   int columns_, rows_;

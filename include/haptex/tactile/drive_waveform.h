@@ -8,7 +8,10 @@
 namespace haptex::tactile {
 
 /// Amplitudes are given for every step of the tactile renderer.
-constexpr double kTactileStep = 0.025;  ///< s
+constexpr double kTactileRate = 40.0;                ///< Hz
+constexpr double kTactileStep = 1.0 / kTactileRate;  ///< s
+
+constexpr double kHighestSampleRate = 1e6;  ///< Hz
 
 /// Displacements of the contactors of one array,
 ///   z_i(t) = a40_i(t) sin(2 pi 40 t) + a320_i(t) sin(2 pi 320 t),
@@ -17,12 +20,13 @@ constexpr double kTactileStep = 0.025;  ///< s
 class DriveWaveform {
  public:
   /// @param sample_rate Hz
-  /// @throws std::invalid_argument naming the rate unless it is finite and more than twice the
-  ///   highest channel's frequency
+  /// @throws std::invalid_argument naming the rate unless it is more than twice the highest
+  ///   channel's frequency and at most kHighestSampleRate
   explicit DriveWaveform(double sample_rate);
 
   /// The samples until the next step, in which the amplitudes reach `next`. The number of samples
-  /// varies by one where a step is no whole number of them.
+  /// varies by one where a step is no whole number of them; n steps have ceil(n rate/kTactileRate).
+  /// @param next m, finite
   /// @returns displacements (m), one per sample and contactor; valid until the next call. Allocates
   ///   nothing.
   const std::vector<PerContactor<double>>& step(const ArrayAmplitudes& next);

@@ -22,6 +22,7 @@ struct KSpace {
 /// The discrete Fourier transform of a field that continues at its opposite edge:
 ///   H(m, n) = 1/(M N) sum_(c, r) h(c, r) exp(-2 pi i (m c/M + n r/N)),
 ///   k = 2 pi (m/(M weft_spacing), n/(N warp_spacing)), power 2 |H|^2 for k and -k together.
+/// At half of an even M or N samples do not tell a wave from its mirror image: each gets half.
 /// Waves without power are left out.
 /// @throws what requireSound() throws
 KSpace kSpaceOfPeriodic(const HeightField& field);

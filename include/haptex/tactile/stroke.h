@@ -35,7 +35,8 @@ constexpr double kSkinCorner = 100.0;      ///< Hz
 ///   A_c^2 = 2 sum G_c(f)^2 power (1 + (s F kappa/|Z(f)|)^2),
 /// with s = friction_per_slope, F the normal force, kappa = |k.v|/|v| and |Z| the skin's stiffness
 /// above. A wave of amplitude a at the frequency of a channel so gives a there. Allocates nothing.
-/// Zero for a stroke without movement.
+/// Zero for a stroke without movement, and for one that is not finite or so large that its
+/// squares are not.
 PerChannel<double> strokeAmplitudes(const SmallScale& surface, const Stroke& stroke);
 
 /// A line of the temporal spectrum.

@@ -1,0 +1,34 @@
+// A surface of one wave, and how calls refuse.
+#pragma once
+
+#include <string>
+
+#include "haptex/evaluation/known_surfaces.h"
+#include "haptex/tactile/stroke.h"
+
+namespace haptex::tactile {
+
+using evaluation::addGrating;
+using evaluation::direction;
+using evaluation::flatField;
+using evaluation::variance;
+using evaluation::whiteNoise;
+
+/// One wave of amplitude `amplitude` (m) and wave vector `k` (rad/m).
+inline SmallScale singleWave(const Eigen::Vector2d& k, double amplitude,
+                             double friction_per_slope = 0.0) {
+  return {{{k.x()}, {k.y()}, {0.5 * amplitude * amplitude}}, friction_per_slope};
+}
+
+/// What a call refuses with, or nothing.
+template <typename Exception, typename Call>
+std::string refusal(const Call& call) {
+  try {
+    call();
+  } catch (const Exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace haptex::tactile
