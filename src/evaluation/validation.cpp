@@ -7,11 +7,10 @@
 namespace haptex::evaluation {
 
 const std::vector<Validation>& validations() {
-  static const std::vector<Validation> all = {{"material", validateMaterial},
-                                              {"cloth", validateCloth},
-                                              {"proximity", validateProximity},
-                                              {"contact", validateContact},
-                                              {"exoskeleton", validateExoskeleton}};
+  static const std::vector<Validation> all = {
+      {"material", validateMaterial},       {"cloth", validateCloth},
+      {"proximity", validateProximity},     {"contact", validateContact},
+      {"exoskeleton", validateExoskeleton}, {"tactile", validateTactile}};
   return all;
 }
 

@@ -40,6 +40,11 @@ void validateContact(const std::string& config_directory, const Sink& sink);
 /// @throws std::invalid_argument naming the file if it cannot be read, and as FingerKinematics
 void validateExoskeleton(const std::string& config_directory, const Sink& sink);
 
+/// Gratings, symmetries, k-space against the spectra of heights along strokes, and the fabrics with
+/// a surface: whether they feel as rough as they are, and whether weaves differ.
+/// @throws what loadFabric() and buildSurface() throw
+void validateTactile(const std::string& config_directory, const Sink& sink);
+
 /// The [strain, stress] samples of a fabric file as they stand in it, as Green-Lagrange strain and
 /// second Piola-Kirchhoff stress. @param curve for example "warp.elastic"
 /// @throws what loadFabric() throws for a bad file, std::invalid_argument if the curve has no
