@@ -1,6 +1,5 @@
 // The services of ClothNode. Each checks its request, changes the simulation between two steps, and
 // answers what was done or why nothing was.
-#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -8,6 +7,7 @@
 #include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/cloth_node.h"
 #include "haptex/nodes/config_files.h"
+#include "haptex/nodes/service_answer.h"
 
 namespace haptex::nodes {
 namespace {
@@ -16,20 +16,6 @@ constexpr std::uint32_t kMostSteps = 100000;
 
 std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
-/// Runs `action`, which returns the message of success; what it throws is the refusal.
-template <typename Response, typename Action>
-bool answer(const char* service, Response& response, const Action& action) {
-  try {
-    response.message = action();
-    response.success = true;
-  } catch (const std::exception& error) {
-    response.message = error.what();
-    response.success = false;
-    ROS_WARN("%s refused: %s", service, error.what());
-  }
-  return true;
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "haptex/nodes/colour_map.h"
 #include "haptex/nodes/marker_shapes.h"
+#include "haptex/nodes/rate_meter.h"
 
 namespace haptex::nodes {
 namespace {
@@ -29,34 +29,9 @@ constexpr double kTextHeight = 0.009;      // m, of a line
 constexpr double kTextSide = -0.17;        // m, y: beside a sample of 0.2 m
 constexpr double kTextPlace = -0.04;       // m, z
 
-std::string rateLine(const char* name, double rate) {
-  char line[64];
-  if (std::isfinite(rate)) {
-    std::snprintf(line, sizeof(line), "%s %.0f Hz\n", name, rate);
-  } else {
-    std::snprintf(line, sizeof(line), "%s ...\n", name);
-  }
-  return line;
-}
-
 Eigen::Vector3f forceColour(double force) { return viridis(contactForceFraction(force)); }
 
 }  // namespace
-
-double RateMeter::update(std::uint64_t count, exoskeleton::Time now) {
-  if (!begin_) {
-    begin_ = now;
-    count_ = count;
-  }
-  const double elapsed = exoskeleton::seconds(now - *begin_);
-  if (elapsed >= 1.0) {
-    rate_ = static_cast<double>(count - count_) / elapsed;
-    known_ = true;
-    begin_ = now;
-    count_ = count;
-  }
-  return known_ ? rate_ : std::numeric_limits<double>::quiet_NaN();
-}
 
 double arrowLength(double force) { return kArrowScale * std::log10(1.0 + force / kArrowForce); }
 
@@ -65,9 +40,9 @@ double contactForceFraction(double force) {
 }
 
 std::string rateText(const LoopRates& rates, const exoskeleton::PerFinger<double>& forces) {
-  std::string text = rateLine("force loop", rates.force) + rateLine("cloth", rates.cloth) +
-                     rateLine("proximity", rates.proximity) +
-                     rateLine("exoskeleton", rates.exoskeleton) + "tactile absent";
+  std::string text = rateLine("force loop", rates.force) + "\n" + rateLine("cloth", rates.cloth) +
+                     "\n" + rateLine("proximity", rates.proximity) + "\n" +
+                     rateLine("exoskeleton", rates.exoskeleton);
   for (const Finger finger : kFingers) {
     char line[64];
     std::snprintf(line, sizeof(line), "\n%s %.3f N", exoskeleton::name(finger), forces[finger]);

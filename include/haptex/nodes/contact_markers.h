@@ -4,27 +4,12 @@
 #include <ros/time.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <cstdint>
-#include <optional>
 #include <string>
 
-#include "haptex/exoskeleton/clock.h"
+#include "haptex/exoskeleton/finger.h"
 #include "haptex/nodes/force_loop.h"
 
 namespace haptex::nodes {
-
-/// Events per second of a count, over the last second or so.
-class RateMeter {
- public:
-  /// @returns Hz; NaN within the first second
-  double update(std::uint64_t count, exoskeleton::Time now);
-
- private:
-  std::optional<exoskeleton::Time> begin_;
-  std::uint64_t count_ = 0;
-  double rate_ = 0.0;
-  bool known_ = false;
-};
 
 /// Hz, NaN where it is not known yet.
 struct LoopRates {

@@ -30,6 +30,7 @@
 #include "haptex/nodes/loop_diagnostics.h"
 #include "haptex/nodes/patch_supplier.h"
 #include "haptex/nodes/periodic_thread.h"
+#include "haptex/nodes/rate_meter.h"
 
 namespace haptex::nodes {
 

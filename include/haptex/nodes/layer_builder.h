@@ -9,7 +9,6 @@
 #include "haptex/cloth/cloth.h"
 #include "haptex/contact/haptic_layer.h"
 #include "haptex/contact/haptic_settings.h"
-#include "haptex/material/fabric.h"
 
 namespace haptex::nodes {
 
@@ -22,13 +21,11 @@ class LayerBuilder {
 
   const contact::HapticSettings& settings() const { return settings_; }
 
-  /// The fabric is the scene's if it has the message's name, otherwise the package's of that name.
+  /// The fabric is that of fabricOfCloth().
   /// @throws std::exception naming what was wrong with the mesh or the fabric
   std::unique_ptr<contact::HapticLayer> build(const haptex::ClothMesh& message) const;
 
  private:
-  material::Fabric fabricOf(const std::string& name) const;
-
   contact::HapticSettings settings_;
   cloth::ModelledEffects effects_;
   std::string fabric_path_;
