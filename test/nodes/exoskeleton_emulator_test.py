@@ -1,19 +1,18 @@
 #!/usr/bin/python3
 """exoskeleton_emulator without a driver: targets, faults by name, tf and ground truth."""
 import math
-import unittest
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point, PointStamped, Pose, PoseStamped, Quaternion, WrenchStamped
 from haptex.srv import InjectFault
+from ros_fixtures import WAIT, NodeTest, await_connections
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit, MarkerArray
 
-WAIT = 20.0  # s
 NAN = float('nan')
 REST = {'index': (0.094, 0.022, -0.051), 'thumb': (0.052, 0.033, -0.101)}  # config/paths/rest.yaml
 
@@ -22,7 +21,7 @@ def close(point, expected, tolerance=1e-6):
     return math.dist((point.x, point.y, point.z), expected) < tolerance
 
 
-class ExoskeletonEmulator(unittest.TestCase):
+class ExoskeletonEmulator(NodeTest):
     @classmethod
     def setUpClass(cls):
         for name in ('inject_fault', 'power_cycle'):
@@ -38,9 +37,7 @@ class ExoskeletonEmulator(unittest.TestCase):
         cls.poses = rospy.Publisher('hand_base/target', PoseStamped, queue_size=10)
         cls.dragging = rospy.Publisher('emulator/interactive_markers/feedback',
                                        InteractiveMarkerFeedback, queue_size=10)
-        for publisher in (*cls.points.values(), cls.poses, cls.dragging):
-            while publisher.get_num_connections() == 0:
-                rospy.sleep(0.05)
+        await_connections(*cls.points.values(), cls.poses, cls.dragging)
 
     @classmethod
     def take_diagnostics(cls, array):
@@ -57,12 +54,6 @@ class ExoskeletonEmulator(unittest.TestCase):
         for transform in message.transforms:
             if (transform.header.frame_id, transform.child_frame_id) == ('world', 'hand_base'):
                 cls.hand = transform.transform
-
-    def eventually(self, happens, what):
-        end = rospy.get_time() + WAIT
-        while not happens():
-            self.assertLess(rospy.get_time(), end, what)
-            rospy.sleep(0.02)
 
     def eventually_refused(self, publisher, message, says):
         self.eventually(lambda: self.values, 'diagnostics')

@@ -7,21 +7,19 @@ import subprocess
 import sys
 import threading
 import time
-import unittest
 import xmlrpc.client
 
 import rosgraph
 import rospy
 import rostest
 import tf2_ros
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TwistStamped, Vector3, WrenchStamped
 from haptex.msg import OperatingState, ServoForce
 from haptex.srv import InjectFault
+from ros_fixtures import WAIT, Diagnostics, NodeTest
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-WAIT = 20.0  # s
 LINK, LOOP = 'exoskeleton link', 'exoskeleton loop'  # names in the diagnostics
 FORCE = 'exoskeleton force of the index'
 NAN, INFINITY = float('nan'), float('inf')
@@ -74,7 +72,7 @@ class Listener:
         self.subscriber.unregister()
 
 
-class Exoskeleton(unittest.TestCase):
+class Exoskeleton(NodeTest):
     @classmethod
     def setUpClass(cls):
         cls.ask = {}
@@ -86,15 +84,9 @@ class Exoskeleton(unittest.TestCase):
         cls.inject = staticmethod(rospy.ServiceProxy('emulator/inject_fault', InjectFault))
         cls.cycle_power = staticmethod(rospy.ServiceProxy('emulator/power_cycle', Trigger))
         cls.state = Listener('exoskeleton/operating_state', OperatingState)
-        cls.diagnostics = {}
-        rospy.Subscriber('/diagnostics', DiagnosticArray, cls.take_diagnostics)
+        cls.diagnostics = Diagnostics()
         cls.commander = rospy.Publisher('index/servo_cf', ServoForce, queue_size=10,
                                         tcp_nodelay=True)
-
-    @classmethod
-    def take_diagnostics(cls, array):
-        for status in array.status:
-            cls.diagnostics[status.name.split(': ', 1)[-1]] = status
 
     def setUp(self):
         self.measured = Listener('index/measured_cf', WrenchStamped)
@@ -104,12 +96,6 @@ class Exoskeleton(unittest.TestCase):
         self.driven = Listener('emulator/index/motor_force', WrenchStamped, NO_FORCE)
         self.addCleanup(self.driven.close)
         self.recover()
-
-    def eventually(self, happens, what, wait=WAIT):
-        end = time.monotonic() + wait
-        while not happens():
-            self.assertLess(time.monotonic(), end, what() if callable(what) else what)
-            time.sleep(0.005)
 
     def granted(self, name):
         """Asks until it is granted: the device may not be there yet, or a driver has just ended."""
@@ -164,7 +150,7 @@ class Exoskeleton(unittest.TestCase):
                 self.recover()
             return difference(self.measured.force, HELD) < CLOSE
 
-        self.eventually(held, lambda: 'the force held: ' + self.diagnostics[FORCE].message)
+        self.eventually(held, lambda: 'the force held: ' + self.diagnostics.last[FORCE].message)
 
     def await_no_force(self, killed, who, also=()):
         """Within a second, which is generous: how long it took is printed."""
@@ -176,12 +162,6 @@ class Exoskeleton(unittest.TestCase):
         for listener, what in ((self.driven, 'motor force'), (self.felt, 'force on the finger')):
             took = 1e3 * (listener.last_felt - killed).to_sec()
             print(f'{what} below {listener.close_to_none} N {took:.1f} ms after the {who} was killed')
-
-    def values(self, status):
-        """Those of the next diagnostics of the driver."""
-        self.diagnostics.pop(status, None)
-        self.eventually(lambda: status in self.diagnostics, f'diagnostics of {status}')
-        return {item.key: item.value for item in self.diagnostics[status].values}
 
     @staticmethod
     def process(node):
@@ -229,7 +209,7 @@ class Exoskeleton(unittest.TestCase):
         killed = rospy.Time.now()
         commander.send_signal(signal.SIGKILL)
         self.await_no_force(killed, 'commander', [self.measured])
-        self.assertGreater(int(self.values(FORCE)['watchdog trips']), 0)
+        self.assertGreater(int(self.diagnostics.values(FORCE)['watchdog trips']), 0)
 
     def test_no_force_after_the_driver_was_killed_and_works_when_it_is_back(self):
         self.hold()
@@ -253,14 +233,14 @@ class Exoskeleton(unittest.TestCase):
                'from the future': lambda: [command(HELD, age=-1.0)],
                'out of order': lambda: [command(), command(HELD, age=0.01)]}
         self.eventually(lambda: self.commander.get_num_connections() > 0, 'a connection')
-        before = self.values(FORCE)
+        before = self.diagnostics.values(FORCE)
         self.measured.largest = 0.0
         for messages in bad.values():
             for _ in range(20):
                 for message in messages():
                     self.commander.publish(message)
                     time.sleep(0.002)
-        after = self.values(FORCE)
+        after = self.diagnostics.values(FORCE)
         for reason in bad:
             key = f'commands dropped: {reason}'
             self.assertGreater(int(after[key]), int(before[key]), reason)
@@ -269,15 +249,15 @@ class Exoskeleton(unittest.TestCase):
 
     def test_says_why_there_is_no_force(self):
         key = 'why there is no force'
-        self.eventually(lambda: 'command' in self.values(FORCE)[key], 'nobody commands')
+        self.eventually(lambda: 'command' in self.diagnostics.values(FORCE)[key], 'nobody commands')
         self.assertTrue(self.ask['pause']().success)
-        self.eventually(lambda: 'paused' in self.values(FORCE)[key], 'paused')
+        self.eventually(lambda: 'paused' in self.diagnostics.values(FORCE)[key], 'paused')
         self.assertTrue(self.ask['disable']().success)
-        self.eventually(lambda: 'disabled' in self.values(FORCE)[key], 'disabled')
+        self.eventually(lambda: 'disabled' in self.diagnostics.values(FORCE)[key], 'disabled')
         self.assertEqual(self.state.last.state, 'DISABLED')
 
     def test_diagnoses_link_and_loop(self):
-        link, loop = self.values(LINK), self.values(LOOP)
+        link, loop = self.diagnostics.values(LINK), self.diagnostics.values(LOOP)
         self.assertGreater(float(link['states received (1/s)']), 0.0)
         for key in ('states lost', 'corrupt frames', 'bytes of garbage', 'timeouts'):
             self.assertGreaterEqual(int(link[key]), 0)

@@ -9,20 +9,18 @@ import signal
 import statistics
 import tempfile
 import time
-import unittest
 import xmlrpc.client
 
 import rosgraph
 import roslib.packages
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from haptex.msg import ClothState, Contact, ContactForces, OperatingState, ServoForce
 from haptex.srv import SetFabric
+from ros_fixtures import WAIT, Diagnostics, NodeTest
 from std_srvs.srv import Trigger
 
-WAIT = 30.0  # s
 NAN = float('nan')
 FELT = 0.05  # N
 REPEATS = 3  # of a death
@@ -73,7 +71,7 @@ class Forces:
         return 1e3 * (felt[-1] - time_of_death), 1e3 * still
 
 
-class ForceRenderer(unittest.TestCase):
+class ForceRenderer(NodeTest):
     @classmethod
     def setUpClass(cls):
         cls.ask = {}
@@ -82,28 +80,16 @@ class ForceRenderer(unittest.TestCase):
             cls.ask[name] = rospy.ServiceProxy(f'exoskeleton/{name}', Trigger)
         cls.state = None
         rospy.Subscriber('exoskeleton/operating_state', OperatingState, cls.take_state)
-        cls.diagnostics = {}
-        rospy.Subscriber('/diagnostics', DiagnosticArray, cls.take_diagnostics)
+        cls.diagnostics = Diagnostics()
         cls.commanded = {finger: Forces(f'{finger}/servo_cf', ServoForce) for finger in FINGERS}
 
     @classmethod
     def take_state(cls, state):
         cls.state = state
 
-    @classmethod
-    def take_diagnostics(cls, array):
-        for status in array.status:
-            cls.diagnostics[status.name.split(': ', 1)[-1]] = status
-
     def setUp(self):
         self.recover()
         self.await_contact()
-
-    def eventually(self, happens, what, wait=WAIT):
-        end = time.monotonic() + wait
-        while not happens():
-            self.assertLess(time.monotonic(), end, what() if callable(what) else what)
-            time.sleep(0.01)
 
     def recover(self):
         """Homed and enabled, whatever was before."""
@@ -134,13 +120,8 @@ class ForceRenderer(unittest.TestCase):
             return all(forces.size > FELT and forces.age() < 0.1
                        for forces in self.commanded.values())
 
-        self.eventually(felt, lambda: 'contact: ' + self.diagnostics[SOURCES].message, 2 * WAIT)
-
-    def values(self, status):
-        """Those of the next diagnostics."""
-        self.diagnostics.pop(status, None)
-        self.eventually(lambda: status in self.diagnostics, f'diagnostics of {status}')
-        return {item.key: item.value for item in self.diagnostics[status].values}
+        self.eventually(felt, lambda: 'contact: ' + self.diagnostics.last[SOURCES].message,
+                        2 * WAIT)
 
     @staticmethod
     def process(node):
@@ -180,7 +161,7 @@ class ForceRenderer(unittest.TestCase):
         self.assertGreater(begin, 0)
         rate = (len(stamps) - 1) / (stamps[-1] - stamps[0])
         print(f'rate of commands {rate:.0f} Hz')
-        values = self.values(LOOP)
+        values = self.diagnostics.values(LOOP)
         for key in ('computing time p99 since the start (us)',
                     'wake-up jitter p99 since the start (us)', 'periods missed', 'SCHED_FIFO'):
             print(f'{key}: {values[key]}')
@@ -192,7 +173,7 @@ class ForceRenderer(unittest.TestCase):
         states = rospy.Publisher('cloth/state', ClothState, queue_size=10)
         self.eventually(lambda: poses.get_num_connections() and states.get_num_connections(),
                         'connections')
-        before = self.values('contact force of the index')
+        before = self.diagnostics.values('contact force of the index')
         largest = max(size for _, size in list(self.commanded['index'].series)[-1000:])
         self.commanded['index'].series.clear()
         for i in range(200):
@@ -211,11 +192,11 @@ class ForceRenderer(unittest.TestCase):
         sizes = [size for _, size in list(self.commanded['index'].series)]
         self.assertTrue(all(math.isfinite(size) for size in sizes))
         self.assertLess(max(sizes), 2.0 * largest + 0.1)
-        after = self.values('contact force of the index')
+        after = self.diagnostics.values('contact force of the index')
         self.assertGreater(int(after['poses and velocities dropped']),
                            int(before['poses and velocities dropped']) + 100)
         self.assertTrue(after['why the last one was dropped'])
-        self.assertGreater(int(self.values(SOURCES)['states dropped']), 100)
+        self.assertGreater(int(self.diagnostics.values(SOURCES)['states dropped']), 100)
         self.assertEqual([self.process(node) for node in NODES], processes)
         self.await_contact()
 
@@ -229,7 +210,8 @@ class ForceRenderer(unittest.TestCase):
         self.assertTrue(response.success, response.message)
         self.eventually(lambda: all(forces.size == 0.0 for forces in self.commanded.values()),
                         'zero force')
-        self.eventually(lambda: "'felt'" in self.values(SOURCES)['why there is no layer'],
+        why = 'why there is no layer'
+        self.eventually(lambda: "'felt'" in self.diagnostics.values(SOURCES)[why],
                         'diagnostics that name the fabric')
         self.assertTrue(set_fabric('cotton_knit').success)
         self.await_contact()

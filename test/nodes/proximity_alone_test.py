@@ -1,18 +1,16 @@
 #!/usr/bin/python3
 """proximity without a cloth, with one that sends nonsense, and with one that dies."""
 import subprocess
-import unittest
 
 import roslib.packages
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point
 from haptex.msg import ClothMesh, ClothState
 from haptex.srv import QueryProximity, QueryProximityRequest
+from ros_fixtures import WAIT, Diagnostics, NodeTest, await_connections
 from std_msgs.msg import Header
 
-WAIT = 20.0  # s
 NAN = float('nan')
 CORNERS = [(0.0, 0.0), (0.1, 0.0), (0.0, 0.1), (0.1, 0.1)]
 POINT = QueryProximityRequest(header=Header(frame_id='world'), distance=0.1,
@@ -31,7 +29,7 @@ def state(step, frame='world', corners=tuple(CORNERS)):
                       positions=[Point(0.0, u, v) for u, v in corners])
 
 
-class ProximityAlone(unittest.TestCase):
+class ProximityAlone(NodeTest):
     @classmethod
     def setUpClass(cls):
         rospy.wait_for_service('proximity/query', WAIT)
@@ -39,16 +37,8 @@ class ProximityAlone(unittest.TestCase):
         cls.before_any_cloth = cls.query(POINT)
         cls.meshes = rospy.Publisher('cloth/mesh', ClothMesh, queue_size=10)
         cls.states = rospy.Publisher('cloth/state', ClothState, queue_size=10)
-        for publisher in (cls.meshes, cls.states):
-            while publisher.get_num_connections() == 0:
-                rospy.sleep(0.05)
-
-    def eventually(self, happens, what, meanwhile=lambda: None):
-        end = rospy.get_time() + WAIT
-        while not happens():
-            self.assertLess(rospy.get_time(), end, what)
-            meanwhile()
-            rospy.sleep(0.05)
+        await_connections(cls.meshes, cls.states)
+        cls.diagnostics = Diagnostics()
 
     def answer(self):
         """The first answer that is none of another test's cloth, which has more triangles."""
@@ -58,7 +48,7 @@ class ProximityAlone(unittest.TestCase):
             answers.append(self.query(POINT))
             return answers[-1].success and len(answers[-1].elements) == 2
 
-        self.eventually(answered, 'an answer', self.send_cloth)
+        self.eventually(answered, 'an answer', meanwhile=self.send_cloth)
         return answers[-1]
 
     def eventually_says(self, text):
@@ -69,18 +59,7 @@ class ProximityAlone(unittest.TestCase):
         self.states.publish(state(1))
 
     def dropped(self):
-        reasons = []
-
-        def take(array):
-            for status in array.status:
-                if status.name.endswith('proximity queries'):
-                    values = {item.key: item.value for item in status.values}
-                    reasons.append(values['why the last message was dropped'])
-
-        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, take)
-        self.eventually(lambda: reasons, 'diagnostics of the node')
-        subscriber.unregister()
-        return reasons[0]
+        return self.diagnostics.values('proximity queries')['why the last message was dropped']
 
     def test_refuses_before_there_is_a_cloth(self):
         self.assertFalse(self.before_any_cloth.success)
@@ -99,7 +78,7 @@ class ProximityAlone(unittest.TestCase):
                 (lambda: self.meshes.publish(mesh(triangles=[])), 'triangles has 0 elements'),
                 (lambda: self.meshes.publish(mesh(corners=[(NAN, 0.0)] * 4)),
                  'rest coordinates of particle 0 = (nan, 0)')):
-            self.eventually(lambda: says in self.dropped(), says, send)
+            self.eventually(lambda: says in self.dropped(), says, meanwhile=send)
             response = self.answer()
             self.assertAlmostEqual(response.distance, 0.01, delta=1e-15)
             self.assertEqual(response.step, 1)

@@ -3,25 +3,24 @@
 import math
 import os
 import signal
-import unittest
 import xmlrpc.client
 
 import dynamic_reconfigure.client
 import rosgraph
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point, Quaternion, Transform, TransformStamped, Vector3
 from haptex.msg import ClothState
 from haptex.srv import QueryProximity
 from haptex.srv import QueryProximityRequest as Request
+from ros_fixtures import WAIT, Diagnostics, NodeTest
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
-WAIT = 20.0  # s
 NAN, INFINITY = float('nan'), float('inf')
+QUERIES = 'proximity queries'  # name in the diagnostics
 # The wool sample hangs in the plane x = 0, from z = 0 to -0.2 m.
 BEFORE_THE_MIDDLE = Point(0.01, 0.0, -0.1)
 HALF = math.sqrt(0.5)
@@ -43,7 +42,7 @@ def transform(parent, child, stamp, x):
                                                 rotation=Quaternion(0.0, 0.0, HALF, HALF)))
 
 
-class Proximity(unittest.TestCase):
+class Proximity(NodeTest):
     @classmethod
     def setUpClass(cls):
         for name in ('proximity/query', 'cloth/pause', 'cloth/reset'):
@@ -51,6 +50,7 @@ class Proximity(unittest.TestCase):
         cls.query = staticmethod(rospy.ServiceProxy('proximity/query', QueryProximity))
         cls.pause = staticmethod(rospy.ServiceProxy('cloth/pause', SetBool))
         cls.reset = staticmethod(rospy.ServiceProxy('cloth/reset', Trigger))
+        cls.diagnostics = Diagnostics()
         cls.start = rospy.Time.now()
         cls.static_transforms = rospy.Publisher('/tf_static', TFMessage, latch=True, queue_size=1)
         cls.static_transforms.publish([transform('world', 'finger', cls.start, 0.1),
@@ -68,12 +68,6 @@ class Proximity(unittest.TestCase):
             return response.success and response.step == 0
 
         self.eventually(answers_from_the_start, 'an answer from the start')
-
-    def eventually(self, happens, what):
-        end = rospy.get_time() + WAIT
-        while not happens():
-            self.assertLess(rospy.get_time(), end, what)
-            rospy.sleep(0.05)
 
     def accepted(self, asked, query=None):
         """The answer, as soon as the node has the cloth and the transforms."""
@@ -220,29 +214,18 @@ class Proximity(unittest.TestCase):
             self.eventually(lambda: not self.query(sphere()).success, 'a refusal')
             self.refused(sphere(), 'the cloth is stale', 'allowed are 5 s',
                          'is cloth_simulation running?')
-            self.eventually(lambda: 'stale' in self.diagnostics().message, 'an error')
+            self.eventually(lambda: 'stale' in self.diagnostics.next(QUERIES).message, 'an error')
         finally:
             os.kill(process, signal.SIGCONT)
         self.accepted(sphere())
 
-    def diagnostics(self):
-        """The next status of the node. Others publish on the topic too."""
-        statuses = []
-
-        def take(array):
-            statuses.extend(s for s in array.status if s.name.endswith('proximity queries'))
-
-        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, take)
-        self.eventually(lambda: statuses, 'diagnostics of the node')
-        subscriber.unregister()
-        return statuses[0]
-
     def test_diagnostics_tell_what_was_answered_and_refused(self):
         self.accepted(sphere())
         self.refused(sphere(frame=''), 'header.frame_id')
-        self.eventually(lambda: 'header.frame_id' in self.values()['why the last query was refused'],
+        why = 'why the last query was refused'
+        self.eventually(lambda: 'header.frame_id' in self.diagnostics.values(QUERIES)[why],
                         'the refusal')
-        values = self.values()
+        values = self.diagnostics.values(QUERIES)
         self.assertEqual(int(values['triangles']), 2048)
         self.assertEqual(int(values['hierarchies built']), 1)
         self.assertEqual(int(values['messages dropped']), 0)
@@ -250,9 +233,6 @@ class Proximity(unittest.TestCase):
                      'computing time of the last refit (ms)',
                      'computing time of the last answer (ms)'):
             self.assertGreater(float(values[name]), 0.0, name)
-
-    def values(self):
-        return {item.key: item.value for item in self.diagnostics().values}
 
     def test_markers_show_the_answer_the_volumes_and_the_obstacles(self):
         seen = {}  # by namespace and id
