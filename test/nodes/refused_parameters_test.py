@@ -51,13 +51,14 @@ class RefusedParameters(unittest.TestCase):
                 self.refused('_scene:=wool_sample', f'_{name}:={value}',
                              says=[f'~{name}'])
 
-    def test_proximity_scenes(self):
-        self.refused('_scene:=3', node='proximity', says=['~scene', 'is not set to a string'])
-        self.refused('_scene:=velvet', node='proximity', says=["there is no 'velvet'"])
-        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
-            scene.write('fabric: [')
-            scene.flush()
-            self.refused(f'_scene:={scene.name}', node='proximity', says=[scene.name])
+    def test_scenes_of_nodes_that_can_do_without(self):
+        for node in ('proximity', 'tactile_renderer'):
+            self.refused('_scene:=3', node=node, says=['~scene', 'is not set to a string'])
+            self.refused('_scene:=velvet', node=node, says=["there is no 'velvet'"])
+            with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
+                scene.write('fabric: [')
+                scene.flush()
+                self.refused(f'_scene:={scene.name}', node=node, says=[scene.name])
 
     def test_proximity_ages_that_are_not_positive_numbers(self):
         for value in ('0', '-1', 'old'):
@@ -121,6 +122,13 @@ class RefusedParameters(unittest.TestCase):
             for value in ('0', '-1', 'thick', '0.2'):
                 self.refused('_scene:=wool_sample', f'_{name}:={value}', node='force_renderer',
                              says=[f'~{name}'])
+
+    def test_tactile_limits_that_no_array_has(self):
+        for name in ('lowest_frequency', 'highest_frequency', 'largest_displacement'):
+            for value in ('0', '-1', 'many'):
+                self.refused(f'_{name}:={value}', node='tactile_renderer', says=[f'~{name}'])
+        self.refused('_lowest_frequency:=300', '_highest_frequency:=100', node='tactile_renderer',
+                     says=['~highest_frequency', '100', 'above the lowest'])
 
 
 if __name__ == '__main__':

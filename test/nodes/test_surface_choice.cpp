@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "haptex/nodes/surface_choice.h"
+
+namespace haptex::nodes {
+namespace {
+
+const std::string kFabrics = std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/fabrics/";
+const std::string kWool = kFabrics + "wool.yaml";      // has a surface
+const std::string kLinear = kFabrics + "linear.yaml";  // has none
+
+std::string refusal(SurfaceChoice& choice, const std::string& fabric) {
+  try {
+    choice.ask(fabric);
+    return "";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+TEST(SurfaceChoice, BeginsWithTheScenesFabric) {
+  const SurfaceChoice choice(kWool);
+  ASSERT_NE(choice.surface(), nullptr);
+  EXPECT_GT(choice.surface()->small_scale.waves.size(), 0u);
+  EXPECT_EQ(choice.fabric(), "wool");
+  EXPECT_EQ(choice.path(), kWool);
+  EXPECT_EQ(choice.trouble(), "");
+  ASSERT_TRUE(choice.values());
+  EXPECT_GT(choice.values()->roughness, 0.0);
+}
+
+TEST(SurfaceChoice, FollowsTheFabricOfTheCloth) {
+  SurfaceChoice choice(kWool);
+  EXPECT_FALSE(choice.takeCloth("wool"));
+  EXPECT_TRUE(choice.takeCloth("denim"));
+  ASSERT_NE(choice.surface(), nullptr);
+  EXPECT_EQ(choice.fabric(), "denim");
+}
+
+TEST(SurfaceChoice, WithoutASceneTakesThatOfTheFirstCloth) {
+  SurfaceChoice choice("");
+  EXPECT_EQ(choice.surface(), nullptr);
+  EXPECT_NE(choice.trouble().find("cloth/mesh"), std::string::npos);
+  EXPECT_TRUE(choice.takeCloth("wool"));
+  EXPECT_NE(choice.surface(), nullptr);
+  EXPECT_EQ(choice.trouble(), "");
+}
+
+TEST(SurfaceChoice, NamesTheKeyThatAFabricLacks) {
+  const SurfaceChoice choice(kLinear);
+  EXPECT_EQ(choice.surface(), nullptr);
+  EXPECT_FALSE(choice.values());
+  EXPECT_NE(choice.trouble().find("linear.yaml needs the key surface"), std::string::npos)
+      << choice.trouble();
+}
+
+TEST(SurfaceChoice, HasNoneForAClothThatCannotBeStroked) {
+  for (const std::string fabric : {"linear", "no_such_fabric", "../fabrics/wool", ""}) {
+    SurfaceChoice choice(kWool);
+    EXPECT_TRUE(choice.takeCloth(fabric));
+    EXPECT_EQ(choice.surface(), nullptr) << fabric;
+    EXPECT_NE(choice.trouble().find("'" + fabric + "'"), std::string::npos) << choice.trouble();
+  }
+}
+
+TEST(SurfaceChoice, KeepsWhatWasAskedForUntilTheClothChanges) {
+  SurfaceChoice choice(kWool);
+  choice.ask("denim");
+  EXPECT_EQ(choice.fabric(), "denim");
+  EXPECT_FALSE(choice.takeCloth("wool")) << "it is the cloth's fabric as before";
+  EXPECT_EQ(choice.fabric(), "denim");
+  EXPECT_TRUE(choice.takeCloth("linen"));
+  EXPECT_EQ(choice.fabric(), "linen");
+  choice.ask(kWool);
+  EXPECT_EQ(choice.path(), kWool);
+}
+
+TEST(SurfaceChoice, RefusesWhatCannotBeStrokedAndKeepsTheSurface) {
+  SurfaceChoice choice(kWool);
+  const tactile::Surface* before = choice.surface();
+  EXPECT_NE(refusal(choice, "linear").find("needs the key surface"), std::string::npos);
+  EXPECT_NE(refusal(choice, "velvet").find("'velvet'"), std::string::npos);
+  EXPECT_NE(refusal(choice, "/no/such.yaml").find("/no/such.yaml"), std::string::npos);
+  EXPECT_NE(refusal(choice, "").find("''"), std::string::npos);
+  EXPECT_EQ(choice.surface(), before);
+  EXPECT_EQ(choice.fabric(), "wool");
+  EXPECT_EQ(choice.trouble(), "");
+}
+
+TEST(SurfaceChoice, RefusesABrokenFabricAtTheStart) {
+  EXPECT_THROW(SurfaceChoice("/no/such.yaml"), std::exception);
+}
+
+}  // namespace
+}  // namespace haptex::nodes

@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include "haptex/nodes/tactile_loop.h"
+#include "tactile_fixtures.h"
+
+namespace haptex::nodes {
+namespace {
+
+using namespace std::chrono_literals;
+using exoskeleton::Finger;
+
+const ros::Time kStamp(1234, 5678);
+
+TEST(TactileLoop, AGratingStrokedAtTheFrequencyOfAChannelVibratesWithItsHeight) {
+  const tactile::Surface surface = grating();
+  TactileLoop loop(tactile::ArrayLimits{});
+  loop.take(Finger::kIndex, slidingContact(), 1ms);
+  loop.step(&surface, 25ms, kStamp);
+  const haptex::Tactile& index = loop.messages()[Finger::kIndex];
+  for (const double amplitude : index.amplitudes_40) {
+    EXPECT_NEAR(amplitude, 1e6 * kWaveHeight * kShareOfOne, 1e-9);
+  }
+  // What the channel of 320 Hz feels of 40 Hz: r - 1/r = 7.875 in G320 = 1/(1 + (r - 1/r)^2).
+  EXPECT_NEAR(index.amplitudes_320[0], index.amplitudes_40[0] / (1.0 + 7.875 * 7.875), 1e-9);
+  EXPECT_EQ(index.header.stamp, kStamp);
+  EXPECT_TRUE(loop.touching(Finger::kIndex));
+  EXPECT_FALSE(loop.touching(Finger::kThumb));
+  EXPECT_EQ(loop.messages()[Finger::kThumb].amplitudes_40[0], 0.0);
+}
+
+TEST(TactileLoop, IsZeroInTheFirstStepWithoutAMessage) {
+  const tactile::Surface surface = grating();
+  TactileLoop loop(tactile::ArrayLimits{});
+  loop.take(Finger::kThumb, slidingContact(), 1ms);
+  loop.step(&surface, 25ms, kStamp);
+  EXPECT_GT(loop.messages()[Finger::kThumb].amplitudes_40[0], 0.0);
+  loop.step(&surface, 50ms, kStamp);
+  haptex::Tactile silent = tactileMessage(Finger::kThumb);
+  silent.header.stamp = kStamp;
+  silent.step_time = 0.025;
+  EXPECT_EQ(loop.messages()[Finger::kThumb], silent);
+}
+
+TEST(TactileLoop, ComputesNothingWithoutContactOrSurface) {
+  const tactile::Surface surface = grating();
+  TactileLoop loop(tactile::ArrayLimits{});
+  loop.step(&surface, 25ms, kStamp);
+  loop.take(Finger::kIndex, noContact(), 30ms);
+  loop.step(&surface, 50ms, kStamp);
+  loop.take(Finger::kIndex, slidingContact(), 60ms);
+  loop.step(nullptr, 75ms, kStamp);
+  EXPECT_EQ(loop.messages()[Finger::kIndex].amplitudes_40[0], 0.0);
+  EXPECT_GT(loop.messages()[Finger::kIndex].normal_force, 0.0);
+  EXPECT_EQ(loop.computed(), 0u);
+  EXPECT_EQ(loop.steps(), 3u);
+  loop.take(Finger::kIndex, slidingContact(), 80ms);
+  loop.step(&surface, 100ms, kStamp);
+  EXPECT_EQ(loop.computed(), 1u);
+}
+
+TEST(TactileLoop, TellsTheTimeSinceTheStepBefore) {
+  TactileLoop loop(tactile::ArrayLimits{});
+  loop.step(nullptr, 10s, kStamp);
+  EXPECT_EQ(loop.messages()[Finger::kIndex].step_time, 0.025) << "the first has none before it";
+  loop.step(nullptr, 10s + 31ms, kStamp);
+  EXPECT_DOUBLE_EQ(loop.messages()[Finger::kIndex].step_time, 0.031);
+}
+
+TEST(TactileLoop, KeepsToTheLimitsOfTheArray) {
+  const tactile::Surface surface = grating();
+  tactile::ArrayLimits limits;
+  limits.lowest_frequency = 50.0;
+  TactileLoop loop(limits);
+  loop.take(Finger::kIndex, slidingContact(), 1ms);
+  loop.step(&surface, 25ms, kStamp);
+  EXPECT_EQ(loop.messages()[Finger::kIndex].amplitudes_40[0], 0.0);
+  EXPECT_GT(loop.messages()[Finger::kIndex].amplitudes_320[0], 0.0);
+  limits.largest_displacement = -1.0;
+  EXPECT_THROW(TactileLoop{limits}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace haptex::nodes
