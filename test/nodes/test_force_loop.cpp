@@ -161,7 +161,8 @@ TEST(ForceLoop, ContactorsCarryTheForceOfTheContactOnceTheirPlaceIsKnown) {
   const double normal_force = sheet->loop().rendered(Finger::kIndex).contact.normal_force;
   EXPECT_GT(sum(), 0.5 * normal_force);
   EXPECT_LE(sum(), normal_force * (1.0 + 1e-12));
-  // The array's middle is above the middle of the contact; the sheet is dented by a fraction of a mm.
+  // The array's middle is above the middle of the contact; the sheet is dented by a fraction of a
+  // mm.
   const ForceLoop::Rendered& rendered = sheet->loop().rendered(Finger::kIndex);
   EXPECT_LT((rendered.array.origin - rendered.contact.fabric_position).norm(), 1e-3);
   EXPECT_NEAR(std::abs(rendered.array.axes.determinant()), 1.0, 0.1);

@@ -48,7 +48,7 @@ struct FingertipContact {
   Eigen::Vector2d fabric_velocity = Eigen::Vector2d::Zero();   ///< m/s, sliding in (weft, warp)
   /// How (weft, warp) change with the place along the cloth in the world frame, no unit.
   Eigen::Matrix<double, 2, 3> to_fabric = Eigen::Matrix<double, 2, 3>::Zero();
-  std::vector<ContactPoint> points;                            ///< at most kMostContactPoints
+  std::vector<ContactPoint> points;  ///< at most kMostContactPoints
 };
 
 /// The cloth around the fingertips, refined and stepped at 1 kHz between the states of the

@@ -29,10 +29,9 @@ class TactileInput {
 
   /// Ends a step and begins the next. Allocates nothing.
   /// @returns means over the step: of the forces over all of its messages, so that a contact of
-  /// half
-  ///   a step counts half, but of the velocity over those that touch, because half of a velocity
-  ///   would be a vibration of half the frequency; and the last placement. Nothing if none touches,
-  ///   or none came.
+  ///   half a step counts half, but of the velocity over those that touch, because half of a
+  ///   velocity would be a vibration of half the frequency; and the last placement. Nothing if none
+  ///   touches, or none came.
   std::optional<tactile::TouchedFabric> endStep();
 
   const TactileInputStatus& status() const { return status_; }
