@@ -157,7 +157,7 @@ const visualization_msgs::MarkerArray& TactileMarkers::update(
           panelCaption(finger, channel, *std::max_element(amplitudes.begin(), amplitudes.end()));
     }
   }
-  markers[kRate].text = rateLine("tactile", rate);
+  markers[kRate].text = rateLine("tactile renderer", rate);
   for (int i = kPanels; i <= kRate; ++i) markers[i].header.stamp = stamp;
   return markers_;
 }

@@ -111,7 +111,7 @@ TEST(TactileMarkers, CaptionsNameFingerChannelLargestAmplitudeAndScale) {
   const auto shown = markers.update(vibration(), 40.2, kStamp);
   EXPECT_EQ(find(shown, "tactile_captions", 0).text, "index 40 Hz\n0.0 um of 40");
   EXPECT_EQ(find(shown, "tactile_captions", 3).text, "thumb 320 Hz\n5.0 um of 10");
-  EXPECT_EQ(find(shown, "tactile_captions", 4).text, "tactile 40 Hz");
+  EXPECT_EQ(find(shown, "tactile_captions", 4).text, "tactile renderer 40 Hz");
   EXPECT_EQ(find(shown, "tactile_captions", 3).header.stamp, kStamp);
 }
 
