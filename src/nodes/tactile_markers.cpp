@@ -26,6 +26,7 @@ constexpr int kPanels = 2;
 constexpr int kCaptions = 6;
 constexpr int kRate = 10;
 
+constexpr int kDecades = 2;            // that the colours span
 constexpr double kPadHeight = 0.0015;  // m, above the origin: the array drawn is 1.2 mm high there
 constexpr double kCellShare = 0.9;     // of a cell that is filled, along each edge
 constexpr double kPanelCell = 0.012;   // m
@@ -118,6 +119,10 @@ const haptex::Tactile::_amplitudes_40_type& amplitudesOf(const haptex::Tactile& 
 
 }  // namespace
 
+double amplitudeFraction(Channel channel, double amplitude) {
+  return amplitude > 0.0 ? 1.0 + std::log10(amplitude / kFullAmplitude[channel]) / kDecades : 0.0;
+}
+
 std::string panelCaption(Finger finger, Channel channel, double amplitude) {
   char text[64];
   std::snprintf(text, sizeof(text), "%s %.0f Hz\n%.1f um of %.0f", exoskeleton::name(finger),
@@ -148,7 +153,7 @@ const visualization_msgs::MarkerArray& TactileMarkers::update(
     for (const Channel channel : kBothChannels) {
       const auto& amplitudes = amplitudesOf(tactile[finger], channel);
       for (int i = 0; i < tactile::kContactors; ++i) {
-        const Eigen::Vector3f colour = viridis(amplitudes[i] / kFullAmplitude[channel]);
+        const Eigen::Vector3f colour = viridis(amplitudeFraction(channel, amplitudes[i]));
         paintRectangle(tactile::kChannels * i + channel, colour,
                        markers[kPads + static_cast<int>(finger)]);
         paintRectangle(i, colour, markers[kPanels + indexOf(finger, channel)]);

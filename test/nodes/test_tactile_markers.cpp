@@ -32,7 +32,7 @@ PerFinger<haptex::Tactile> vibration() {
   PerFinger<haptex::Tactile> tactile{
       {tactileMessage(Finger::kIndex), tactileMessage(Finger::kThumb)}};
   tactile[Finger::kThumb].amplitudes_40[5] = kFullAmplitude[tactile::k40];
-  tactile[Finger::kThumb].amplitudes_320[5] = 0.5 * kFullAmplitude[tactile::k320];
+  tactile[Finger::kThumb].amplitudes_320[5] = 0.1 * kFullAmplitude[tactile::k320];
   return tactile;
 }
 
@@ -110,7 +110,7 @@ TEST(TactileMarkers, CaptionsNameFingerChannelLargestAmplitudeAndScale) {
   TactileMarkers markers;
   const auto shown = markers.update(vibration(), 40.2, kStamp);
   EXPECT_EQ(find(shown, "tactile_captions", 0).text, "index 40 Hz\n0.0 um of 40");
-  EXPECT_EQ(find(shown, "tactile_captions", 3).text, "thumb 320 Hz\n5.0 um of 10");
+  EXPECT_EQ(find(shown, "tactile_captions", 3).text, "thumb 320 Hz\n1.0 um of 10");
   EXPECT_EQ(find(shown, "tactile_captions", 4).text, "tactile renderer 40 Hz");
   EXPECT_EQ(find(shown, "tactile_captions", 3).header.stamp, kStamp);
 }
