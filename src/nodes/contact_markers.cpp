@@ -26,7 +26,7 @@ constexpr double kFullForce = 0.1;     // N, on a particle, with the last colour
 constexpr int kForceDecades = 3;       // that the colours span
 constexpr double kPatchDistance = 0.0005;  // m, from the cloth
 constexpr double kTextHeight = 0.009;      // m, of a line
-constexpr double kTextSide = -0.17;        // m, y: beside a sample of 0.2 m
+constexpr double kTextSide = -0.18;        // m, y: beside a sample of 0.2 m
 constexpr double kTextPlace = -0.04;       // m, z
 
 Eigen::Vector3f forceColour(double force) { return viridis(contactForceFraction(force)); }
