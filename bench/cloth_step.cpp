@@ -9,8 +9,8 @@
 #include <map>
 #include <string>
 
-#include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
+#include "haptex/cloth/integrator.h"
 #include "haptex/material/fabric_file.h"
 #include "tab_lines.h"
 
@@ -56,7 +56,7 @@ void clothStep(benchmark::State& run, const std::string& name_of_case,
   cloth::StepSettings settings;
   settings.tolerance = kTolerance;
   settings.newton_iterations = solves;
-  cloth::BackwardEuler integrator(cloth, settings);
+  cloth::Integrator integrator(cloth, settings);
   const double bytes = static_cast<double>(allocatedBytes() - before);
 
   double assembly = 0.0, solve = 0.0, total = 0.0, direct = 0.0;

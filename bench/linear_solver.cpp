@@ -44,7 +44,8 @@ System makeSystem(int cells) {
     system.matrix.diagonal(i).diagonal().setConstant(cloth.masses()[i]);
     system.rhs.col(i) = 0.0125 * cloth.masses()[i] * effects.gravity;
   }
-  cloth.membrane().addStep(state.positions, state.velocities, 0.0125, system.matrix, system.rhs);
+  cloth.membrane().addStep(state.positions, state.velocities, 0.0125, 0.0125, system.matrix,
+                           system.rhs);
   return system;
 }
 
@@ -82,11 +83,11 @@ struct Patch {
       system.matrix.diagonal(i).diagonal().setConstant(cloth.masses()[i]);
     }
     system.rhs.setZero();
-    cloth.membrane().addStep(state.positions, state.velocities, kPatchStep, system.matrix,
-                             system.rhs);
+    cloth.membrane().addStep(state.positions, state.velocities, kPatchStep, kPatchStep,
+                             system.matrix, system.rhs);
     if (!cloth.bending()) return;
-    cloth.bending()->addStep(state.positions, state.velocities, kPatchStep, system.matrix,
-                             system.rhs);
+    cloth.bending()->addStep(state.positions, state.velocities, kPatchStep, kPatchStep,
+                             system.matrix, system.rhs);
   }
 
  private:

@@ -8,8 +8,8 @@
 #include <random>
 #include <string>
 
-#include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
+#include "haptex/cloth/integrator.h"
 #include "haptex/cloth/mesh.h"
 #include "haptex/evaluation/deformed_sheets.h"
 #include "haptex/evaluation/fcl_sheet.h"
@@ -257,7 +257,7 @@ double movedInSwing(const Case& c) {
     path.start = c.mesh.initial_positions[static_cast<std::size_t>(particle)];
     cloth.attach(particle, path);
   }
-  cloth::BackwardEuler integrator(cloth, {});
+  cloth::Integrator integrator(cloth, {});
   cloth::ClothState state = cloth.initialState();
   constexpr int kSteps = 160;
   std::size_t moved = 0;

@@ -72,7 +72,7 @@ class Swing {
 
   cloth::Cloth cloth_;
   cloth::ClothState state_;
-  cloth::BackwardEuler integrator_;
+  cloth::Integrator integrator_;
   std::vector<int> bar_;
   double time_step_;
   double elongation_ = 0.0;

@@ -179,37 +179,20 @@ double Bending::energy(const Positions& positions) const {
   return energy;
 }
 
-void Bending::addToMatrix(double h, SymmetricBlockMatrix& matrix) const {
+void Bending::addStep(const Positions& positions, const Velocities& velocities, double h,
+                      double ahead, SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
+  // F(x) + ahead K v = F(x + ahead v), because the forces are linear.
   for (const Coupling& coupling : couplings_) {
+    const Vector3d difference = positions[coupling.row] - positions[coupling.column] +
+                                ahead * (velocities[coupling.row] - velocities[coupling.column]);
+    const Vector3d impulse = h * coupling.stiffness * difference;
+    rhs.col(coupling.row) += impulse;
+    rhs.col(coupling.column) -= impulse;
     matrix.lower(coupling.slot).diagonal().array() += h * h * coupling.stiffness;
   }
   for (int i = 0; i < matrix.size(); ++i) {
     matrix.diagonal(i).diagonal().array() += h * h * diagonal_[i];
   }
-}
-
-void Bending::addStep(const Positions& positions, const Velocities& velocities, double h,
-                      SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
-  // F(x) + h K v = F(x + h v), because the forces are linear.
-  for (const Coupling& coupling : couplings_) {
-    const Vector3d difference = positions[coupling.row] - positions[coupling.column] +
-                                h * (velocities[coupling.row] - velocities[coupling.column]);
-    const Vector3d impulse = h * coupling.stiffness * difference;
-    rhs.col(coupling.row) += impulse;
-    rhs.col(coupling.column) -= impulse;
-  }
-  addToMatrix(h, matrix);
-}
-
-void Bending::addNewton(const Positions& positions, double h, SymmetricBlockMatrix& matrix,
-                        BlockVector& rhs) const {
-  for (const Coupling& coupling : couplings_) {
-    const Vector3d impulse =
-        h * coupling.stiffness * (positions[coupling.row] - positions[coupling.column]);
-    rhs.col(coupling.row) += impulse;
-    rhs.col(coupling.column) -= impulse;
-  }
-  addToMatrix(h, matrix);
 }
 
 }  // namespace haptex::cloth

@@ -51,6 +51,12 @@ Eigen::Vector3d AttachmentPath::position(double time) const {
   return start + s * s * s * (10.0 + s * (-15.0 + 6.0 * s)) * displacement;
 }
 
+Eigen::Vector3d AttachmentPath::velocity(double time) const {
+  if (time < start_time || time >= start_time + duration) return Eigen::Vector3d::Zero();
+  const double s = (time - start_time) / duration;
+  return 30.0 * s * s * (1.0 - s) * (1.0 - s) / duration * displacement;
+}
+
 Cloth::Cloth(ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects)
     : mesh_(std::move(mesh)),
       fabric_(std::move(fabric)),

@@ -192,33 +192,33 @@ double Membrane::elasticEnergy(const Positions& positions) const {
 }
 
 void Membrane::addStep(const Positions& positions, const Velocities& velocities, double h,
-                       SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
+                       double ahead, SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
   if (!batches_.empty()) {
     kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
-                     {positions.data()->data(), velocities.data()->data(), h, &elastic_,
+                     {positions.data()->data(), velocities.data()->data(), h, ahead, &elastic_,
                       viscosity_ ? &viscous_ : nullptr, matrix.diagonal(0).data(),
                       matrix.lower(0).data(), rhs.data()});
   }
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     if (viscosity_) {
-      addStepOf<true>(elements_[t], positions, velocities, h, matrix, rhs);
+      addStepOf<true>(elements_[t], positions, velocities, h, ahead, matrix, rhs);
     } else {
-      addStepOf<false>(elements_[t], positions, velocities, h, matrix, rhs);
+      addStepOf<false>(elements_[t], positions, velocities, h, ahead, matrix, rhs);
     }
   }
 }
 
 template <bool kViscous>
 void Membrane::addStepOf(const MembraneElement& element, const Positions& positions,
-                         const Velocities& velocities, double h, SymmetricBlockMatrix& matrix,
-                         BlockVector& rhs) const {
+                         const Velocities& velocities, double h, double ahead,
+                         SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
   const Frame at = frame(element, positions);
   const Frame derivative = frame(element, velocities);
   const MembraneStrain rate = at.rate(derivative);
   const Response elastic = respond(elastic_, at.strain());
   Vector3d stress = elastic.stress;
   Vector3d slope = clampedToNonNegative(elastic.slope);
-  const Vector3d stress_increment = h * slope.cwiseProduct(rate);
+  const Vector3d stress_increment = ahead * slope.cwiseProduct(rate);
   if constexpr (kViscous) {
     const Response viscous = respond(viscous_, rate);
     stress += viscous.stress;
@@ -229,7 +229,7 @@ void Membrane::addStepOf(const MembraneElement& element, const Positions& positi
 
   const double factor = -element.area * h;
   const Vector3d end = factor * (stress + stress_increment);
-  const Vector3d turning = factor * h * geometric;
+  const Vector3d turning = factor * ahead * geometric;
   addScattered(element,
                end[0] * at.weft + end[2] * at.warp + turning[0] * derivative.weft +
                    turning[2] * derivative.warp,
@@ -281,6 +281,15 @@ void Membrane::computeStrains(const Positions& positions,
   strains.resize(elements_.size());
   for (std::size_t t = 0; t < elements_.size(); ++t) {
     strains[t] = frame(elements_[t], positions).strain();
+  }
+}
+
+void Membrane::computeStrainsBefore(const Positions& positions, const Velocities& velocities,
+                                    double interval, std::vector<MembraneStrain>& strains) const {
+  strains.resize(elements_.size());
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const Frame at = frame(elements_[t], positions);
+    strains[t] = at.strain() - interval * at.rate(frame(elements_[t], velocities));
   }
 }
 

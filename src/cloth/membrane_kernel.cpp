@@ -215,11 +215,13 @@ HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep&
   const __m256d rate[3] = {dot(weft, weft_rate), dot(warp, warp_rate),
                            dot(weft_rate, warp) + dot(weft, warp_rate)};
   const __m256d h = _mm256_set1_pd(step.time_step);
+  const __m256d ahead = _mm256_set1_pd(step.ahead);
+  const __m256d turn = _mm256_set1_pd(-step.ahead / step.time_step);
   const __m256d load = -at.area * h;  // N.s/m per N/m of stress
   const __m256d stiffness = -load * h;
   Response response = respond(*step.elastic, strain);
   __m256d end[3];
-  for (int m = 0; m < 3; ++m) end[m] = h * response.slope[m] * rate[m];
+  for (int m = 0; m < 3; ++m) end[m] = ahead * response.slope[m] * rate[m];
   if (step.viscous) {
     const Response viscous = respond(*step.viscous, rate);
     const __m256d frequency = 1.0 / h;
@@ -234,7 +236,7 @@ HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep&
     end[m] = load * (response.stress[m] + end[m]);
     response.slope[m] *= stiffness;
     geometric[m] *= stiffness;
-    turning[m] = -geometric[m];
+    turning[m] = turn * geometric[m];
   }
   const Vector weft_traction =
       combine(end[0], weft, end[2], warp) + combine(turning[0], weft_rate, turning[2], warp_rate);

@@ -120,6 +120,16 @@ double readTimeStep(const YamlValue& value) {
   return time_step;
 }
 
+IntegrationMethod readIntegrator(const YamlValue& value) {
+  const std::string name =
+      value.oneOf({"backward_euler", "backward_midpoint", "bdf2", "tr_bdf2", "explicit_euler",
+                   "midpoint", "runge_kutta_4", "two_step_euler"});
+  for (const NamedIntegrationMethod& named : kIntegrationMethods) {
+    if (name == named.name) return named.method;
+  }
+  throw std::logic_error("the integrator " + name + " has no method");
+}
+
 LinearSolverMethod readMethod(const YamlValue& value) {
   const std::string method = value.oneOf({"automatic", "conjugate_gradient", "cholesky"});
   if (method == "automatic") return LinearSolverMethod::kAutomatic;
@@ -127,9 +137,8 @@ LinearSolverMethod readMethod(const YamlValue& value) {
                               : LinearSolverMethod::kConjugateGradient;
 }
 
-StepSettings readSolver(const YamlValue& value) {
+void readSolver(const YamlValue& value, StepSettings& settings) {
   value.requireKeys({}, {"method", "tolerance", "newton_iterations"});
-  StepSettings settings;
   if (value.has("method")) settings.solver = readMethod(value.at("method"));
   if (value.has("tolerance")) {
     settings.tolerance = value.at("tolerance").number();
@@ -143,6 +152,17 @@ StepSettings readSolver(const YamlValue& value) {
       value.at("newton_iterations").refuse("must be an integer from 1 to 1000");
     }
   }
+}
+
+StepSettings readStep(const YamlValue& scene) {
+  StepSettings settings;
+  if (scene.has("integrator")) settings.method = readIntegrator(scene.at("integrator"));
+  if (!scene.has("solver")) return settings;
+  if (!isImplicit(settings.method)) {
+    scene.at("solver").refuseBecause("is allowed only with an implicit integrator, which " +
+                                     scene.at("integrator").text() + " is not");
+  }
+  readSolver(scene.at("solver"), settings);
   return settings;
 }
 
@@ -151,14 +171,14 @@ StepSettings readSolver(const YamlValue& value) {
 Scene loadScene(const std::string& path) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"fabric", "attach", "model", "time_step"},
-                   {"sheet", "mesh", "gravity", "solver", "obstacles", "haptics"});
+                   {"sheet", "mesh", "gravity", "integrator", "solver", "obstacles", "haptics"});
   Scene scene;
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.mesh = readMesh(file);
   scene.attached_particles = readAttachedParticles(file.at("attach"), scene.mesh);
   scene.effects = readEffects(file);
   scene.time_step = readTimeStep(file.at("time_step"));
-  if (file.has("solver")) scene.step = readSolver(file.at("solver"));
+  scene.step = readStep(file);
   if (file.has("obstacles")) scene.obstacles = readObstacles(file.at("obstacles"));
   return scene;
 }

@@ -4,13 +4,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
+#include "haptex/cloth/integrator.h"
 
 namespace haptex::evaluation {
 
-using cloth::BackwardEuler;
 using cloth::Cloth;
+using cloth::Integrator;
 using material::StrainStressCurve;
 
 double exactElongation(const HangingStrip& strip) {
@@ -51,7 +51,7 @@ double simulatedElongation(const HangingStrip& strip, int cells, double time_ste
     place.start = state.positions[particle];
     cloth.attach(particle, place);
   }
-  BackwardEuler integrator(cloth, {});
+  Integrator integrator(cloth, {});
   constexpr double kTimeConstants = 30.0;  // e^-30 is below rounding
   while (state.time * slowest < kTimeConstants || state.time < 10.0 * time_step) {
     integrator.step(cloth, state, time_step);

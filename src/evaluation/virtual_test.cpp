@@ -5,8 +5,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
+#include "haptex/cloth/integrator.h"
 #include "haptex/evaluation/quantity.h"
 #include "haptex/material/strain_measures.h"
 
@@ -88,7 +88,7 @@ class Tester {
 
   Cloth cloth_;
   ClothState state_;
-  cloth::BackwardEuler integrator_;
+  cloth::Integrator integrator_;
   std::vector<Vector3d> forces_;
   std::mt19937 random_{1};
 };

@@ -59,7 +59,7 @@ void SimulatedCloth::reset() {
 
 void SimulatedCloth::setFabric(material::Fabric fabric) {
   cloth_.setFabric(std::move(fabric));
-  if (cloth_.bending()) integrator_ = cloth::BackwardEuler(cloth_, step_settings_);
+  if (cloth_.bending()) integrator_ = cloth::Integrator(cloth_, step_settings_);
 }
 
 void SimulatedCloth::setPointLoads(const std::vector<cloth::PointLoad>& loads) {

@@ -5,7 +5,7 @@
 
 #include "../malloc_counter.h"
 #include "fixtures.h"
-#include "haptex/cloth/backward_euler.h"
+#include "haptex/cloth/integrator.h"
 
 namespace haptex::cloth {
 namespace {
@@ -31,7 +31,7 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
     StepSettings settings;
     settings.solver = GetParam();
     settings.newton_iterations = newton_iterations;
-    BackwardEuler integrator(cloth, settings);
+    Integrator integrator(cloth, settings);
     ClothState state = randomState(cloth, 1e-4, 0.1);
     std::vector<Eigen::Vector3d> forces;
     cloth.computeForces(state, forces);

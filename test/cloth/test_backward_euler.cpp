@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "fixtures.h"
-#include "haptex/cloth/backward_euler.h"
+#include "haptex/cloth/integrator.h"
 
 namespace haptex::cloth {
 namespace {
@@ -27,7 +27,7 @@ void attachTop(Cloth& cloth) {
 TEST(BackwardEuler, FreeFallIsThatOfBackwardEulerForNonUniformSteps) {
   Cloth cloth(square(4), linearFabric(), gravity(10.0));
   ClothState state = cloth.initialState();
-  BackwardEuler integrator(cloth, {});
+  Integrator integrator(cloth, {});
   double speed = 0.0, height = 0.0;
   for (double h : {0.001, 0.04, 1e-6, 0.5, 0.0125}) {
     integrator.step(cloth, state, h);
@@ -69,7 +69,7 @@ TEST(BackwardEuler, SolvesTheSystemOfTheDesign) {
   StepSettings settings;
   settings.tolerance = 1e-12;
   ClothState end = state;
-  BackwardEuler(cloth, settings).step(cloth, end, h);
+  Integrator(cloth, settings).step(cloth, end, h);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     EXPECT_LT((end.velocities[i] - state.velocities[i] - change.segment<3>(3 * i)).norm(),
               1e-9 * change.norm());
@@ -87,7 +87,7 @@ TEST(BackwardEuler, AttachedParticlesAreExactlyAtTheirPlaceAfterEveryStep) {
   path.duration = 0.5;
   cloth.attach(0, path);
   ClothState state = cloth.initialState();
-  BackwardEuler integrator(cloth, {});
+  Integrator integrator(cloth, {});
   while (state.time < 0.8) {
     integrator.step(cloth, state, 0.0125);
     EXPECT_EQ(state.positions[0], path.position(state.time));
@@ -109,7 +109,7 @@ TEST(BackwardEuler, EnergyNeverGrowsWithoutWork) {
     }
     StepSettings settings;
     settings.newton_iterations = 30;
-    BackwardEuler integrator(cloth, settings);
+    Integrator integrator(cloth, settings);
     double energy = cloth.potentialEnergy(state) + cloth.kineticEnergy(state);
     for (int i = 0; i < 100; ++i) {
       integrator.step(cloth, state, h);
@@ -124,7 +124,7 @@ TEST(BackwardEuler, ComesToRestWhereForcesVanish) {
   Cloth cloth(square(5), stiffeningFabric(), gravity());
   attachTop(cloth);
   ClothState state = cloth.initialState();
-  BackwardEuler integrator(cloth, {});
+  Integrator integrator(cloth, {});
   for (int i = 0; i < 400; ++i) integrator.step(cloth, state, 0.04);
   std::vector<Vector3d> forces;
   cloth.computeForces(state, forces);
@@ -150,7 +150,7 @@ TEST(BackwardEuler, NewtonReachesItsToleranceWhereOneSolveDoesNot) {
   settings.newton_tolerance = 1e-12;
   settings.tolerance = 1e-8;
   ClothState state = start;
-  BackwardEuler integrator(cloth, settings);
+  Integrator integrator(cloth, settings);
   const StepReport report = integrator.step(cloth, state, 0.01);
   EXPECT_TRUE(report.accepted);
   EXPECT_TRUE(report.newton_converged);
@@ -185,7 +185,7 @@ TEST(BackwardEuler, ANewtonIterationNeverRaisesTheIncrementalPotential) {
       StepSettings settings;
       settings.newton_iterations = iterations;
       ClothState state = start;
-      BackwardEuler(cloth, settings).step(cloth, state, h);
+      Integrator(cloth, settings).step(cloth, state, h);
       double potential = cloth.membrane().incrementalPotential(state.positions, begin, h);
       for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
         potential +=
@@ -205,7 +205,7 @@ TEST(BackwardEuler, DoesNotCallAFailedSolveConverged) {
   state.velocities[5].x() = std::numeric_limits<double>::infinity();
   StepSettings settings;
   settings.newton_iterations = 5;
-  const StepReport report = BackwardEuler(cloth, settings).step(cloth, state, 0.01);
+  const StepReport report = Integrator(cloth, settings).step(cloth, state, 0.01);
   EXPECT_FALSE(report.accepted);
   EXPECT_FALSE(report.linear_converged);
   EXPECT_FALSE(report.newton_converged);
@@ -220,7 +220,7 @@ TEST(BackwardEuler, BothSolversGiveTheSameMotion) {
     StepSettings settings;
     settings.solver = method;
     settings.tolerance = 1e-11;
-    BackwardEuler integrator(cloth, settings);
+    Integrator integrator(cloth, settings);
     ClothState state = cloth.initialState();
     for (int i = 0; i < 40; ++i) {
       const StepReport report = integrator.step(cloth, state, 0.0125);
@@ -239,7 +239,7 @@ TEST(BackwardEuler, AStateThatIsNotFiniteIsNotAcceptedAndNotTouched) {
   ClothState state = cloth.initialState();
   state.velocities[5].x() = std::numeric_limits<double>::infinity();
   const ClothState before = state;
-  BackwardEuler integrator(cloth, {});
+  Integrator integrator(cloth, {});
   EXPECT_FALSE(integrator.step(cloth, state, 0.01).accepted);
   EXPECT_EQ(state.positions, before.positions);
   EXPECT_EQ(state.velocities, before.velocities);
@@ -251,7 +251,7 @@ TEST(BackwardEuler, AStateThatIsNotFiniteIsNotAcceptedAndNotTouched) {
 TEST(BackwardEuler, RefusesBadStepsAndSettings) {
   Cloth cloth(square(2), linearFabric(), {});
   ClothState state = cloth.initialState();
-  BackwardEuler integrator(cloth, {});
+  Integrator integrator(cloth, {});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (double h : {0.0, -0.1, nan, std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(integrator.step(cloth, state, h), std::invalid_argument);
@@ -262,22 +262,23 @@ TEST(BackwardEuler, RefusesBadStepsAndSettings) {
   StepSettings settings;
   for (double tolerance : {0.0, 1.0, -1.0, nan}) {
     settings.tolerance = tolerance;
-    EXPECT_THROW(BackwardEuler(cloth, settings), std::invalid_argument);
+    EXPECT_THROW(Integrator(cloth, settings), std::invalid_argument);
   }
   settings = {};
   settings.newton_tolerance = nan;
-  EXPECT_THROW(BackwardEuler(cloth, settings), std::invalid_argument);
+  EXPECT_THROW(Integrator(cloth, settings), std::invalid_argument);
   const Cloth coarser(makeRectangle(0.1, 0.1, 2, 1, Triangulation::kOneWay), linearFabric(), {});
-  BackwardEuler other_integrator(coarser, {});
+  Integrator other_integrator(coarser, {});
   EXPECT_THROW(other_integrator.step(cloth, state, 0.01), std::invalid_argument);
   settings = {};
   settings.newton_iterations = 0;
-  EXPECT_THROW(BackwardEuler(cloth, settings), std::invalid_argument);
+  EXPECT_THROW(Integrator(cloth, settings), std::invalid_argument);
   EXPECT_EQ(state.time, 0.0);
 }
 
 TEST(BackwardEuler, DocumentedDefaultsHold) {
   const StepSettings settings;
+  EXPECT_EQ(settings.method, IntegrationMethod::kBackwardEuler);
   EXPECT_EQ(settings.solver, LinearSolverMethod::kAutomatic);
   EXPECT_EQ(settings.tolerance, 1e-6);
   EXPECT_EQ(settings.newton_iterations, 1);

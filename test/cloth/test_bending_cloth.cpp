@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fixtures.h"
-#include "haptex/cloth/backward_euler.h"
+#include "haptex/cloth/integrator.h"
 
 namespace haptex::cloth {
 namespace {
@@ -76,7 +76,7 @@ TEST(BendingCloth, AShortStripDropsAsABeamDoes) {
   }
   StepSettings settings;
   settings.newton_iterations = 10;
-  BackwardEuler integrator(cloth, settings);
+  Integrator integrator(cloth, settings);
   for (int step = 0; step < 60; ++step) {
     ASSERT_TRUE(integrator.step(cloth, state, 1.0).accepted);
   }
@@ -104,7 +104,7 @@ TEST(BendingCloth, RefusesAFabricWithoutRigidity) {
 TEST(BendingCloth, AnIntegratorOfAnotherPatternIsRefused) {
   const Cloth bending(square(4), stiffFabric(), bendingAnd(Vector3d::Zero()));
   const Cloth limp(square(4), stiffFabric(), ModelledEffects());
-  BackwardEuler integrator(limp, StepSettings());
+  Integrator integrator(limp, StepSettings());
   ClothState state = bending.initialState();
   EXPECT_THROW(integrator.step(bending, state, 0.01), std::invalid_argument);
 }

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "fixtures.h"
-#include "haptex/cloth/backward_euler.h"
+#include "haptex/cloth/integrator.h"
 
 namespace haptex::cloth {
 namespace {
@@ -64,7 +64,7 @@ TEST(PointLoads, WithoutStiffnessAreExternalForcesOnTheCorners) {
     settings.newton_iterations = newton_iterations;
     settings.tolerance = 1e-12;
     ClothState a = loaded.initialState(), b = pushed.initialState();
-    BackwardEuler stepper_a(loaded, settings), stepper_b(pushed, settings);
+    Integrator stepper_a(loaded, settings), stepper_b(pushed, settings);
     for (int i = 0; i < 20; ++i) {
       stepper_a.step(loaded, a, 0.01);
       stepper_b.step(pushed, b, 0.01);
@@ -146,7 +146,7 @@ TEST(PointLoads, HoldAClothWhereTheirForceIsItsWeight) {
   }
   cloth.setPointLoads(loads);
   ClothState state = cloth.initialState();
-  BackwardEuler integrator(cloth, {});
+  Integrator integrator(cloth, {});
   for (int i = 0; i < 3000; ++i) integrator.step(cloth, state, 0.04);
   Vector3d sum = Vector3d::Zero();
   for (const PointLoad& hold : loads) {
@@ -170,7 +170,7 @@ TEST(PointLoads, StayStableHoweverStiffTheyAre) {
     press.force = {0.02, 0.0, 0.0};
     cloth.setPointLoads({press});
     ClothState state = cloth.initialState();
-    BackwardEuler integrator(cloth, {});
+    Integrator integrator(cloth, {});
     double fastest = 0.0;
     for (int i = 0; i < 800; ++i) {
       const StepReport report = integrator.step(cloth, state, h);
@@ -220,7 +220,7 @@ TEST(PointLoads, TheStepIsTheLinearisationOfTheLoad) {
     settings.tolerance = 1e-12;
     settings.newton_iterations = newton_iterations;
     ClothState end = begin;
-    const StepReport report = BackwardEuler(cloth, settings).step(cloth, end, h);
+    const StepReport report = Integrator(cloth, settings).step(cloth, end, h);
     EXPECT_TRUE(report.newton_converged);
     for (int i = 0; i < 4; ++i) {
       EXPECT_LT((end.velocities[i] - begin.velocities[i] - change.segment<3>(3 * i)).norm(),
@@ -240,7 +240,7 @@ TEST(PointLoads, NewtonFindsTheMinimumWithThem) {
   StepSettings settings;
   settings.newton_iterations = 100;
   settings.tolerance = 1e-10;
-  const StepReport report = BackwardEuler(cloth, settings).step(cloth, state, 0.01);
+  const StepReport report = Integrator(cloth, settings).step(cloth, state, 0.01);
   EXPECT_TRUE(report.newton_converged);
   EXPECT_LE(report.newton_residual, 1e-8);
 }
@@ -253,7 +253,7 @@ TEST(PointLoads, DoNotMoveAttachedParticles) {
   pull.weights = {0.0, 0.0, 1.0};
   cloth.setPointLoads({pull});
   ClothState state = cloth.initialState();
-  BackwardEuler(cloth, {}).step(cloth, state, 0.01);
+  Integrator(cloth, {}).step(cloth, state, 0.01);
   EXPECT_EQ(state.positions[particle], cloth.mesh().initial_positions[particle]);
 }
 
@@ -318,7 +318,7 @@ TEST(PointLoads, KeepTheSystemDefiniteWithinTheTolerancesOfTheirStiffness) {
   ClothState state = cloth.initialState();
   StepSettings settings;
   settings.solver = LinearSolverMethod::kCholesky;
-  EXPECT_TRUE(BackwardEuler(cloth, settings).step(cloth, state, 0.04).accepted);
+  EXPECT_TRUE(Integrator(cloth, settings).step(cloth, state, 0.04).accepted);
 }
 
 }  // namespace

@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"UnknownKey", "fabric: silk", "fabric: silk\nwind: 3",
                 "wind: unknown key, allowed here: fabric, attach, model, time_step, sheet, mesh, "
-                "gravity, solver, obstacles, haptics"},
+                "gravity, integrator, solver, obstacles, haptics"},
         Refusal{"MissingModel", "model: [gravity, viscosity]\n", "",
                 "the key 'model' is missing, required here: fabric, attach, model, time_step"},
         Refusal{"MissingAttach", "attach: [top]\n", "",
@@ -301,6 +301,12 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"ZeroTimeStep", "0.0125", "0", "time_step: '0' must be from 1e-6 to 10 s"},
         Refusal{"TimeStepTooLong", "0.0125", "10.5", "time_step: '10.5' must be from 1e-6 to 10 s"},
         Refusal{"TimeStepNan", "0.0125", ".nan", "time_step: '.nan' must be a finite number"},
+        Refusal{"UnknownIntegrator", "attach:", "integrator: leapfrog\nattach:",
+                "integrator: 'leapfrog' must be one of backward_euler, backward_midpoint, bdf2, "
+                "tr_bdf2, explicit_euler, midpoint, runge_kutta_4, two_step_euler"},
+        Refusal{"SolverOfAnExplicitIntegrator",
+                "attach:", "integrator: runge_kutta_4\nsolver: {tolerance: 1e-9}\nattach:",
+                "solver: is allowed only with an implicit integrator, which runge_kutta_4 is not"},
         Refusal{"UnknownMethod", "attach:", "solver: {method: lu}\nattach:",
                 "solver.method: 'lu' must be one of automatic, conjugate_gradient, cholesky"},
         Refusal{"ZeroTolerance", "attach:", "solver: {tolerance: 0}\nattach:",

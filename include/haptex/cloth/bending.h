@@ -51,16 +51,13 @@ class Bending {
   void addForces(const Positions& positions, std::vector<Eigen::Vector3d>& forces) const;
   double energy(const Positions& positions) const;  ///< J
 
-  /// Adds what bending contributes to the linearised backward Euler step,
-  ///   matrix += -h^2 K,  rhs += h (F + h K v).
-  /// @param h time step, s, finite and > 0
-  void addStep(const Positions& positions, const Velocities& velocities, double h,
+  /// Adds what bending contributes to a linearised stage (Stage),
+  ///   matrix += -h^2 K,  rhs += h (F + ahead K v).
+  /// @param h     s, finite and > 0: the time step in backward Euler
+  /// @param ahead s: h where the stage moves the particles by h v from these positions before
+  ///   their velocities change, as in backward Euler; 0 where it has moved them already
+  void addStep(const Positions& positions, const Velocities& velocities, double h, double ahead,
                SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
-  /// Adds what bending contributes to a Newton iteration on the incremental potential,
-  ///   matrix += -h^2 K,  rhs += h F.
-  /// @param positions at the end of the step
-  void addNewton(const Positions& positions, double h, SymmetricBlockMatrix& matrix,
-                 BlockVector& rhs) const;
 
   /// The sum over all hinges of stiffness weights[i] weights[j]: force on `row`
   /// stiffness (P_row - P_column), and the opposite on `column`.
@@ -73,8 +70,6 @@ class Bending {
   const std::vector<Coupling>& couplings() const { return couplings_; }
 
  private:
-  void addToMatrix(double h, SymmetricBlockMatrix& matrix) const;
-
   std::vector<Hinge> hinges_;
   std::vector<Coupling> couplings_;
   std::vector<double> diagonal_;  // N/m, by particle

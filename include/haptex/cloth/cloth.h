@@ -40,6 +40,8 @@ struct AttachmentPath {
   double duration = 0.0;                                   ///< s, 0: at once
 
   Eigen::Vector3d position(double time) const;
+  /// m/s; zero in the moment of a jump, where `duration` is 0.
+  Eigen::Vector3d velocity(double time) const;
 };
 
 /// One block of the exact Jacobians of the internal forces.

@@ -61,12 +61,14 @@ class Membrane {
   /// Elastic energy (J).
   double elasticEnergy(const Positions& positions) const;
 
-  /// Adds what the membrane contributes to the linearised backward Euler step,
-  ///   matrix += -h D - h^2 K,  rhs += h (F + h K v),
+  /// Adds what the membrane contributes to a linearised stage (Stage),
+  ///   matrix += -h D - h^2 K,  rhs += h (F + ahead K v),
   /// with the exact projection: slopes of the curves clamped to >= 0 and the stress of the
   /// geometric part by projectStress(), the same K on both sides.
-  /// @param h time step, s, finite and > 0
-  void addStep(const Positions& positions, const Velocities& velocities, double h,
+  /// @param h     s, finite and > 0: the time step in backward Euler
+  /// @param ahead s: h where the stage moves the particles by h v from these positions before
+  ///   their velocities change, as in backward Euler; 0 where it has moved them already
+  void addStep(const Positions& positions, const Velocities& velocities, double h, double ahead,
                SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
 
   /// The Hessian of a Newton iteration: exact, for fast convergence near a minimum, or projected as
@@ -89,6 +91,10 @@ class Membrane {
 
   /// Strains of all elements. @param strains resized to the number of elements
   void computeStrains(const Positions& positions, std::vector<MembraneStrain>& strains) const;
+  /// What the strains would have been at their present rates `interval` seconds before.
+  /// @param strains resized to the number of elements
+  void computeStrainsBefore(const Positions& positions, const Velocities& velocities,
+                            double interval, std::vector<MembraneStrain>& strains) const;
 
   /// The exact Jacobians of the forces of one element: blocks [i][j] are dF_i/dP_j (N/m) and
   /// dF_i/dv_j (N.s/m) of its particles in the order of `particles`. With viscosity dF/dP is not
@@ -107,7 +113,7 @@ class Membrane {
   static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
   template <bool kViscous>
   void addStepOf(const MembraneElement& element, const Positions& positions,
-                 const Velocities& velocities, double h, SymmetricBlockMatrix& matrix,
+                 const Velocities& velocities, double h, double ahead, SymmetricBlockMatrix& matrix,
                  BlockVector& rhs) const;
   static Response respond(const Curves& curves, const MembraneStrain& strain);
 

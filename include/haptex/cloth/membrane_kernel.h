@@ -24,6 +24,7 @@ struct MembraneStep {
   const double* positions;
   const double* velocities;
   double time_step;                                           ///< s
+  double ahead;                                               ///< s, time_step or 0
   const std::array<material::StrainStressCurve, 3>* elastic;  ///< weft, warp, shear
   const std::array<material::StrainStressCurve, 3>* viscous;  ///< null: none
   double* diagonal;

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
 #include "haptex/cloth/mesh.h"
 #include "haptex/cloth/obstacle.h"
+#include "haptex/cloth/step.h"
 
 namespace haptex::cloth {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
+#include "haptex/cloth/integrator.h"
 #include "haptex/contact/haptic_layer.h"
 #include "haptex/contact/patch_selection.h"
 #include "haptex/proximity/kdop_hierarchy.h"
@@ -52,7 +52,7 @@ class HapticLoop {
   HapticLoopSettings settings_;
   cloth::Cloth cloth_;
   cloth::ClothState state_;
-  cloth::BackwardEuler integrator_;
+  cloth::Integrator integrator_;
   proximity::KdopHierarchy hierarchy_;
   contact::HapticLayer layer_;
   contact::PatchSelection selection_;

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptex/cloth/backward_euler.h"
 #include "haptex/cloth/cloth.h"
+#include "haptex/cloth/integrator.h"
 #include "haptex/cloth/scene.h"
 #include "haptex/material/fabric.h"
 
@@ -76,7 +76,7 @@ class SimulatedCloth {
   cloth::Cloth cloth_;
   cloth::ClothState state_;
   cloth::StepSettings step_settings_;
-  cloth::BackwardEuler integrator_;
+  cloth::Integrator integrator_;
   std::vector<int> initially_attached_;
   double time_step_;
   cloth::StepReport report_;

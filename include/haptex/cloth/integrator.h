@@ -1,0 +1,66 @@
+// Integration of a cloth in time with user-chosen, non-uniform time steps.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/explicit_step.h"
+#include "haptex/cloth/stage_solver.h"
+#include "haptex/cloth/step.h"
+
+namespace haptex::cloth {
+
+/// Advances a cloth by the method of its settings. Attached particles reach their place exactly at
+/// the end of each step. What each method computes: docs/mechanics.md, section Step.
+///
+/// BDF-2 remembers the step before. It starts anew, with a step of TR-BDF2, where it is given a
+/// state other than the one it left, or more than twice the time step before (it is stable up to
+/// 1 + sqrt 2).
+///
+/// A step allocates nothing: all buffers are made by the constructor, and only those that the
+/// method needs.
+class Integrator {
+ public:
+  /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1) or
+  ///   newton_iterations is less than 1
+  Integrator(const Cloth& cloth, const StepSettings& settings);
+
+  /// Advances `state` by `time_step` seconds; steps need not be uniform.
+  /// @param cloth that of the constructor; its fabric, loads and attachments may have changed,
+  ///   but not Cloth::pattern()
+  /// @throws std::invalid_argument if the time step is not finite and > 0, or state and cloth
+  ///   differ in size from each other or from the constructor's; the state is then as before
+  StepReport step(const Cloth& cloth, ClothState& state, double time_step);
+
+ private:
+  /// What BDF-2 needs of the past.
+  struct History {
+    ClothState before;       // one step before `last`
+    ClothState last;         // as step() left it
+    double time_step = 0.0;  // s, between the two; 0: nothing has been
+  };
+
+  void advance(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
+  void takeMidpoint(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
+  double attachmentWork(const Cloth& cloth, const ClothState& begin);
+  void extrapolate(const Cloth& cloth, const ClothState& begin, double theta);
+  void takeTrBdf2(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
+  void takeBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,
+                double first, double second, StepReport& report);
+  bool continuesHistory(const ClothState& begin, double h) const;
+  void keep(ClothState& state, double h);
+
+  StepSettings settings_;
+  std::size_t element_count_;
+  std::size_t coupling_count_;  // of bending
+  ClothState end_;              // the step's result before it is accepted
+  std::optional<StageSolver> stages_;
+  std::optional<ExplicitStep> explicit_step_;
+  ClothState base_;                      // of a stage that does not start at the beginning
+  std::vector<Eigen::Vector3d> forces_;  // N
+  std::optional<History> history_;
+};
+
+}  // namespace haptex::cloth

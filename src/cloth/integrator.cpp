@@ -1,0 +1,236 @@
+#include "haptex/cloth/integrator.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace haptex::cloth {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Eigen::Vector3d;
+
+constexpr double kMostStepGrowth = 2.0;  // of BDF-2 from step to step
+
+void requireFraction(const char* name, double value) {
+  if (!std::isfinite(value) || value <= 0.0 || value >= 1.0) {
+    std::ostringstream message;
+    message << name << " is " << value << "; it must lie between 0 and 1, both excluded";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+const StepSettings& requireSound(const StepSettings& settings) {
+  requireFraction("tolerance", settings.tolerance);
+  requireFraction("newton_tolerance", settings.newton_tolerance);
+  if (settings.newton_iterations < 1) {
+    std::ostringstream message;
+    message << "newton_iterations is " << settings.newton_iterations << "; it must be at least 1";
+    throw std::invalid_argument(message.str());
+  }
+  return settings;
+}
+
+bool allFinite(const std::vector<Vector3d>& vectors) {
+  return std::all_of(vectors.begin(), vectors.end(),
+                     [](const Vector3d& vector) { return vector.allFinite(); });
+}
+
+std::size_t couplingCount(const Cloth& cloth) {
+  return cloth.bending() ? cloth.bending()->couplings().size() : 0;
+}
+
+/// How the free particles' velocities change over a step.
+struct VelocityChange {
+  double energy = 0.0;   // J, gained
+  double squared = 0.0;  // J, sum of m |v1 - v0|^2
+};
+
+VelocityChange velocityChange(const Cloth& cloth, const ClothState& begin, const ClothState& end) {
+  VelocityChange change;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (cloth.attachments()[i]) continue;
+    const Vector3d difference = end.velocities[i] - begin.velocities[i];
+    const Vector3d sum = end.velocities[i] + begin.velocities[i];
+    change.energy += 0.5 * cloth.masses()[i] * difference.dot(sum);
+    change.squared += cloth.masses()[i] * difference.squaredNorm();
+  }
+  return change;
+}
+
+}  // namespace
+
+Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
+    : settings_(requireSound(settings)),
+      element_count_(cloth.membrane().elements().size()),
+      coupling_count_(couplingCount(cloth)),
+      end_(cloth.initialState()) {
+  const IntegrationMethod method = settings.method;
+  if (!isImplicit(method)) {
+    explicit_step_.emplace(cloth, method);
+    return;
+  }
+  stages_.emplace(cloth, settings);
+  if (method == IntegrationMethod::kBackwardEuler) return;
+  forces_.resize(cloth.particleCount());
+  if (method != IntegrationMethod::kBackwardMidpoint) base_ = end_;
+  if (method == IntegrationMethod::kBdf2) history_ = History{end_, end_};
+}
+
+StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_step) {
+  if (!std::isfinite(time_step) || time_step <= 0.0) {
+    std::ostringstream message;
+    message << "the time step is " << time_step << " s; it must be finite and greater than 0";
+    throw std::invalid_argument(message.str());
+  }
+  if (state.positions.size() != cloth.particleCount() ||
+      state.velocities.size() != cloth.particleCount() ||
+      end_.positions.size() != cloth.particleCount() ||
+      cloth.membrane().elements().size() != element_count_ ||
+      couplingCount(cloth) != coupling_count_) {
+    throw std::invalid_argument("the state, the cloth and the integrator differ in size");
+  }
+  StepReport report;
+  const Clock::time_point start = Clock::now();
+  end_.time = state.time + time_step;
+  advance(cloth, state, time_step, report);
+  report.accepted = std::isfinite(report.linear_residual) && std::isfinite(end_.time) &&
+                    allFinite(end_.positions) && allFinite(end_.velocities);
+  if (report.accepted) {
+    keep(state, time_step);
+  } else if (stages_) {
+    stages_->forget();
+  }
+  report.total_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return report;
+}
+
+void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
+                         StepReport& report) {
+  if (explicit_step_) return explicit_step_->advance(cloth, begin, h, end_);
+  switch (settings_.method) {
+    case IntegrationMethod::kBackwardMidpoint:
+      return takeMidpoint(cloth, begin, h, report);
+    case IntegrationMethod::kTrBdf2:
+      return takeTrBdf2(cloth, begin, h, report);
+    case IntegrationMethod::kBdf2:
+      if (!continuesHistory(begin, h)) return takeTrBdf2(cloth, begin, h, report);
+      return takeBdf2(cloth, history_->before, begin, history_->time_step, h, report);
+    default:
+      return stages_->solve(cloth, {begin, h, end_.time, 1.0}, StageSolver::Guess::kBase, end_,
+                            report);
+  }
+}
+
+/// Takes the state over from end_.
+void Integrator::keep(ClothState& state, double h) {
+  if (history_) std::swap(history_->before, state);
+  std::swap(state.positions, end_.positions);
+  std::swap(state.velocities, end_.velocities);
+  state.time = end_.time;
+  if (!history_) return;
+  history_->last = state;
+  history_->time_step = h;
+}
+
+bool Integrator::continuesHistory(const ClothState& begin, double h) const {
+  return history_->time_step > 0.0 && h <= kMostStepGrowth * history_->time_step &&
+         begin.time == history_->last.time && begin.positions == history_->last.positions &&
+         begin.velocities == history_->last.velocities;
+}
+
+/// A stage at theta = 1/2 + blend of the step, and on from there in a straight line:
+///   x1 = x0 + (x - x0) / theta,  v1 = v0 + (v - v0) / theta.
+/// For linear forces the energy then changes by what the attachments do minus
+/// blend (|v1 - v0|_M^2 + |x1 - x0|_K^2), so that the first term tells how much blend removes what
+/// the nonlinear forces add at the midpoint. Twice that is taken, and four times as much again
+/// while it does not suffice.
+void Integrator::takeMidpoint(const Cloth& cloth, const ClothState& begin, double h,
+                              StepReport& report) {
+  constexpr double kRounding = 1e-13;
+  constexpr double kMostBlend = 0.5;
+  const double potential_begin = cloth.potentialEnergy(begin);
+  while (true) {
+    const double theta = 0.5 + report.blend;
+    end_.velocities = begin.velocities;
+    stages_->solve(cloth, {begin, theta * h, end_.time, theta}, StageSolver::Guess::kAhead, end_,
+                   report);
+    const double work = attachmentWork(cloth, begin);
+    extrapolate(cloth, begin, theta);
+    if (report.blend >= kMostBlend) return;
+    const VelocityChange change = velocityChange(cloth, begin, end_);
+    const double potential = cloth.potentialEnergy(end_);
+    const double excess = change.energy + potential - potential_begin - work;
+    const double allowed = settings_.tolerance * change.squared +
+                           kRounding * (std::abs(potential) + std::abs(potential_begin));
+    if (!(excess > allowed)) return;
+    report.blend = std::min(
+        kMostBlend, std::max(4.0 * report.blend, report.blend + 2.0 * excess / change.squared));
+  }
+}
+
+/// What the attachments do over the step (J) by the forces in the stage that end_ holds.
+double Integrator::attachmentWork(const Cloth& cloth, const ClothState& begin) {
+  double work = 0.0;
+  bool known = false;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    const auto& attachment = cloth.attachments()[i];
+    if (!attachment) continue;
+    const Vector3d way = attachment->position(end_.time) - begin.positions[i];
+    if (way.isZero(0.0)) continue;
+    if (!known) cloth.computeForces(end_, forces_);
+    known = true;
+    work -= forces_[i].dot(way);
+  }
+  return work;
+}
+
+void Integrator::extrapolate(const Cloth& cloth, const ClothState& begin, double theta) {
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (const auto& attachment = cloth.attachments()[i]) {
+      end_.positions[i] = attachment->position(end_.time);
+      end_.velocities[i] = attachment->velocity(end_.time);
+      continue;
+    }
+    end_.positions[i] = begin.positions[i] + (end_.positions[i] - begin.positions[i]) / theta;
+    end_.velocities[i] = begin.velocities[i] + (end_.velocities[i] - begin.velocities[i]) / theta;
+  }
+}
+
+/// The trapezoidal rule over gamma h, then BDF-2 over its beginning and end; with
+/// gamma = 2 - sqrt 2 both stages have the same a (Bank et al. 1985).
+void Integrator::takeTrBdf2(const Cloth& cloth, const ClothState& begin, double h,
+                            StepReport& report) {
+  const double first = (2.0 - std::sqrt(2.0)) * h;
+  const double a = 0.5 * first;
+  cloth.computeForces(begin, forces_);
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    base_.positions[i] = begin.positions[i] + a * begin.velocities[i];
+    base_.velocities[i] = begin.velocities[i] + a / cloth.masses()[i] * forces_[i];
+  }
+  end_.velocities = begin.velocities;
+  stages_->solve(cloth, {base_, a, begin.time + first, 1.0}, StageSolver::Guess::kAhead, end_,
+                 report);
+  takeBdf2(cloth, begin, end_, first, h - first, report);
+}
+
+/// From `before` by `first` seconds to `middle`, which may be end_, and by `second` to the end.
+void Integrator::takeBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,
+                          double first, double second, StepReport& report) {
+  const double ratio = second / first;
+  const double divisor = 1.0 + 2.0 * ratio;
+  const double of_before = ratio * ratio / divisor;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    base_.positions[i] =
+        middle.positions[i] + of_before * (middle.positions[i] - before.positions[i]);
+    base_.velocities[i] =
+        middle.velocities[i] + of_before * (middle.velocities[i] - before.velocities[i]);
+  }
+  if (&middle != &end_) end_.velocities = middle.velocities;
+  stages_->solve(cloth, {base_, second * (1.0 + ratio) / divisor, end_.time, 1.0},
+                 StageSolver::Guess::kAhead, end_, report);
+}
+
+}  // namespace haptex::cloth
