@@ -46,6 +46,7 @@ std::size_t couplingCount(const Cloth& cloth) {
 struct VelocityChange {
   double energy = 0.0;   // J, gained
   double squared = 0.0;  // J, sum of m |v1 - v0|^2
+  double kinetic = 0.0;  // J, sum of m |v1 + v0|^2 / 2, for the size of rounding
 };
 
 VelocityChange velocityChange(const Cloth& cloth, const ClothState& begin, const ClothState& end) {
@@ -56,6 +57,7 @@ VelocityChange velocityChange(const Cloth& cloth, const ClothState& begin, const
     const Vector3d sum = end.velocities[i] + begin.velocities[i];
     change.energy += 0.5 * cloth.masses()[i] * difference.dot(sum);
     change.squared += cloth.masses()[i] * difference.squaredNorm();
+    change.kinetic += 0.5 * cloth.masses()[i] * sum.squaredNorm();
   }
   return change;
 }
@@ -163,8 +165,9 @@ void Integrator::takeMidpoint(const Cloth& cloth, const ClothState& begin, doubl
     const VelocityChange change = velocityChange(cloth, begin, end_);
     const double potential = cloth.potentialEnergy(end_);
     const double excess = change.energy + potential - potential_begin - work;
-    const double allowed = settings_.tolerance * change.squared +
-                           kRounding * (std::abs(potential) + std::abs(potential_begin));
+    const double allowed =
+        settings_.tolerance * change.squared +
+        kRounding * (change.kinetic + std::abs(potential) + std::abs(potential_begin));
     if (!(excess > allowed)) return;
     report.blend = std::min(
         kMostBlend, std::max(4.0 * report.blend, report.blend + 2.0 * excess / change.squared));

@@ -43,14 +43,14 @@ const auto kNameOf = [](const testing::TestParamInfo<NamedIntegrationMethod>& in
 INSTANTIATE_TEST_SUITE_P(Methods, EveryIntegrator, testing::ValuesIn(kIntegrationMethods), kNameOf);
 
 // ---- The harmonic oscillator: every particle on a spring of its own, moving as one, so that the
-// membrane stays at rest. With y = omega x + i v it is y' = -i omega y.
+// membrane has nothing to resist. With y = omega x + i v it is y' = -i omega y.
 
 constexpr double kOmega = 2.0 * M_PI;  // 1 Hz
 
 class Oscillator {
  public:
   explicit Oscillator(Method method)
-      : cloth_(square(1), linearFabric(), {}),
+      : cloth_(square(1), limpFabric(), {}),
         state_(cloth_.initialState()),
         integrator_(cloth_, settingsOf(method)) {
     std::vector<PointLoad> springs;
@@ -79,6 +79,11 @@ class Oscillator {
 
  private:
   static constexpr double kAmplitude = 0.02;  // m
+  static material::Fabric limpFabric() {      // rounding must not make explicit steps unstable
+    material::Fabric fabric;
+    fabric.areal_density = 0.1;
+    return fabric;
+  }
   int triangleOf(int particle) const {
     for (std::size_t t = 0; t < cloth_.mesh().triangles.size(); ++t) {
       for (int corner : cloth_.mesh().triangles[t]) {
@@ -283,7 +288,7 @@ double orderOf(Method method) {
 // Over halvings of the steps below the measured orders change by less than the tolerance, which is
 // what terms of higher order still contribute there.
 constexpr int kSteps = 256;
-constexpr double kOrderTolerance = 0.1;
+constexpr double kOrderTolerance = 0.05;
 
 TEST_P(EveryIntegrator, ConvergesWithItsOrder) {
   const SmoothMotion motion(1.1);
@@ -315,7 +320,11 @@ TEST_P(EveryIntegrator, ConvergesWithItsOrderUnderNewtonIterations) {
 TEST_P(EveryIntegrator, PutsAttachedParticlesExactlyOnTheirPath) {
   ModelledEffects effects;
   effects.gravity = {0.0, 0.0, -9.81};
-  Cloth cloth(square(3), linearFabric(), effects);
+  effects.viscosity = true;
+  material::Fabric soft = linearFabric(0.002);  // stable in explicit steps
+  soft.weft.elastic = soft.warp.elastic = material::StrainStressCurve::linear(1.0);
+  soft.shear.elastic = material::StrainStressCurve::linear(0.5);
+  Cloth cloth(square(3), soft, effects);
   attachTop(cloth);
   AttachmentPath path;
   path.start = cloth.mesh().initial_positions[12];
