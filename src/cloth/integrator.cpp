@@ -121,8 +121,8 @@ void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
       if (!continuesHistory(begin, h)) return takeTrBdf2(cloth, begin, h, report);
       return takeBdf2(cloth, history_->before, begin, history_->time_step, h, report);
     default:
-      return stages_->solve(cloth, {begin, h, end_.time, 1.0}, StageSolver::Guess::kBase, end_,
-                            report);
+      return stages_->solve(cloth, {begin, h, end_.time, 1.0, Stage::Rates::kSinceBase},
+                            {begin.positions, begin.velocities, h}, end_, report);
   }
 }
 
@@ -156,9 +156,8 @@ void Integrator::takeMidpoint(const Cloth& cloth, const ClothState& begin, doubl
   const double potential_begin = cloth.potentialEnergy(begin);
   while (true) {
     const double theta = 0.5 + report.blend;
-    end_.velocities = begin.velocities;
-    stages_->solve(cloth, {begin, theta * h, end_.time, theta}, StageSolver::Guess::kAhead, end_,
-                   report);
+    stages_->solve(cloth, {begin, theta * h, end_.time, theta, Stage::Rates::kOfVelocities},
+                   {begin.positions, begin.velocities, theta * h}, end_, report);
     const double work = attachmentWork(cloth, begin);
     extrapolate(cloth, begin, theta);
     if (report.blend >= kMostBlend) return;
@@ -213,27 +212,28 @@ void Integrator::takeTrBdf2(const Cloth& cloth, const ClothState& begin, double 
     base_.positions[i] = begin.positions[i] + a * begin.velocities[i];
     base_.velocities[i] = begin.velocities[i] + a / cloth.masses()[i] * forces_[i];
   }
-  end_.velocities = begin.velocities;
-  stages_->solve(cloth, {base_, a, begin.time + first, 1.0}, StageSolver::Guess::kAhead, end_,
-                 report);
+  stages_->solve(cloth, {base_, a, begin.time + first, 1.0, Stage::Rates::kOfVelocities},
+                 {begin.positions, begin.velocities, first}, end_, report);
   takeBdf2(cloth, begin, end_, first, h - first, report);
 }
 
-/// From `before` by `first` seconds to `middle`, which may be end_, and by `second` to the end.
+/// From `before` by `first` seconds to `middle`, which may be end_, and by `second` to the end. The
+/// velocities of the guess are the mean ones between `before` and `middle`.
 void Integrator::takeBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,
                           double first, double second, StepReport& report) {
   const double ratio = second / first;
   const double divisor = 1.0 + 2.0 * ratio;
   const double of_before = ratio * ratio / divisor;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    base_.positions[i] =
-        middle.positions[i] + of_before * (middle.positions[i] - before.positions[i]);
+    const Vector3d way = middle.positions[i] - before.positions[i];
+    base_.positions[i] = middle.positions[i] + of_before * way;
     base_.velocities[i] =
         middle.velocities[i] + of_before * (middle.velocities[i] - before.velocities[i]);
+    end_.velocities[i] = way / first;
   }
-  if (&middle != &end_) end_.velocities = middle.velocities;
-  stages_->solve(cloth, {base_, second * (1.0 + ratio) / divisor, end_.time, 1.0},
-                 StageSolver::Guess::kAhead, end_, report);
+  const double a = second * (1.0 + ratio) / divisor;
+  stages_->solve(cloth, {base_, a, end_.time, 1.0, Stage::Rates::kOfVelocities},
+                 {middle.positions, end_.velocities, second}, end_, report);
 }
 
 }  // namespace haptex::cloth

@@ -33,24 +33,19 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
   }
 }
 
-void StageSolver::solve(const Cloth& cloth, const Stage& stage, Guess guess, ClothState& result,
-                        StepReport& report) {
+void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                        ClothState& result, StepReport& report) {
   const Clock::time_point start = Clock::now();
-  const bool at_base = guess == Guess::kBase;
-  const ClothState& about = at_base ? stage.base : result;
-  for (int i = 0; !at_base && i < matrix_.size(); ++i) {
-    result.positions[i] = stage.base.positions[i] + stage.a * result.velocities[i];
-  }
-  linearise(cloth, stage, about, at_base ? stage.a : 0.0);
+  linearise(cloth, stage, guess);
   report.assembly_seconds += seconds(Clock::now() - start);
   report.linear_converged = solveLinear(report) && report.linear_converged;
   for (int i = 0; i < matrix_.size(); ++i) {
-    result.velocities[i] = about.velocities[i] + solution_.col(i);
+    result.velocities[i] = guess.velocities[i] + solution_.col(i);
     result.positions[i] = fixed_[i] ? placeIn(stage, *cloth.attachments()[i], i)
                                     : stage.base.positions[i] + stage.a * result.velocities[i];
   }
   if (settings_.newton_iterations == 1) return;
-  if (at_base) {
+  if (stage.rates == Stage::Rates::kSinceBase) {
     cloth.membrane().computeStrains(stage.base.positions, base_strains_);
   } else {
     cloth.membrane().computeStrainsBefore(result.positions, result.velocities, stage.a,
@@ -60,31 +55,29 @@ void StageSolver::solve(const Cloth& cloth, const Stage& stage, Guess guess, Clo
 }
 
 /// Inertia and the external forces that are constant over the step.
-void StageSolver::addInertia(const Cloth& cloth, const Stage& stage, const ClothState& at) {
+void StageSolver::addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities) {
   matrix_.setZero();
   for (int i = 0; i < matrix_.size(); ++i) {
     const double mass = cloth.masses()[i];
     matrix_.diagonal(i).diagonal().setConstant(mass);
     rhs_.col(i) = stage.a * (cloth.externalForces()[i] + mass * cloth.effects().gravity) -
-                  mass * (at.velocities[i] - stage.base.velocities[i]);
+                  mass * (velocities[i] - stage.base.velocities[i]);
   }
 }
 
-/// @param ahead s: x* + a vg - xg is this times vg
-void StageSolver::linearise(const Cloth& cloth, const Stage& stage, const ClothState& guess,
-                            double ahead) {
-  const double a = stage.a;
-  addInertia(cloth, stage, guess);
-  cloth.membrane().addStep(guess.positions, guess.velocities, a, ahead, matrix_, rhs_);
+void StageSolver::linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
+  addInertia(cloth, stage, guess.velocities);
+  cloth.membrane().addStep(guess.positions, guess.velocities, stage.a, guess.ahead, matrix_, rhs_);
   if (cloth.bending()) {
-    cloth.bending()->addStep(guess.positions, guess.velocities, a, ahead, matrix_, rhs_);
+    cloth.bending()->addStep(guess.positions, guess.velocities, stage.a, guess.ahead, matrix_,
+                             rhs_);
   }
   addPointLoadStep(cloth.pointLoads(), cloth.mesh().triangles, cloth.membrane().elements(),
-                   guess.positions, guess.velocities, a, ahead, matrix_, rhs_);
+                   guess.positions, guess.velocities, stage.a, guess.ahead, matrix_, rhs_);
   prescribe(cloth, stage, guess);
 }
 
-void StageSolver::prescribe(const Cloth& cloth, const Stage& stage, const ClothState& guess) {
+void StageSolver::prescribe(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
   any_fixed_ = false;
   for (int i = 0; i < matrix_.size(); ++i) {
     const auto& attachment = cloth.attachments()[i];
@@ -133,7 +126,7 @@ double StageSolver::incrementalPotential(const Cloth& cloth, const Stage& stage,
 void StageSolver::assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at,
                                  Membrane::Hessian hessian, StepReport& report) {
   const Clock::time_point start = Clock::now();
-  addInertia(cloth, stage, at);
+  addInertia(cloth, stage, at.velocities);
   cloth.membrane().addNewton(at.positions, base_strains_, stage.a, hessian, matrix_, rhs_);
   if (cloth.bending()) {
     cloth.bending()->addStep(at.positions, at.velocities, stage.a, 0.0, matrix_, rhs_);

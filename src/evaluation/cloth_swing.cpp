@@ -1,0 +1,94 @@
+#include "haptex/evaluation/cloth_swing.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "haptex/cloth/integrator.h"
+
+namespace haptex::evaluation {
+namespace {
+
+using cloth::Cloth;
+using cloth::ClothState;
+using Eigen::Vector3d;
+
+constexpr double kGravity = 9.80665;       // m/s^2
+constexpr double kFrequency = 2.0 * M_PI;  // rad/s
+constexpr int kCellsInWidth = 2;
+
+double length() {
+  constexpr double kSlowest = 2.404825557695773 / 2.0;  // half of the first zero of J0
+  return kGravity * std::pow(kSlowest / kFrequency, 2);
+}
+
+Cloth hangingSheet(const material::Fabric& fabric, int cells) {
+  if (cells <= 0) {
+    throw std::invalid_argument("cells is " + std::to_string(cells) + "; it must be positive");
+  }
+  cloth::ModelledEffects effects;
+  effects.gravity = {0.0, 0.0, -kGravity};
+  Cloth cloth(cloth::makeRectangle(kCellsInWidth * length() / cells, length(), kCellsInWidth,
+                                   cells, cloth::Triangulation::kAlternating),
+              fabric, effects);
+  for (int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) {
+    cloth::AttachmentPath place;
+    place.start = cloth.mesh().initial_positions[particle];
+    cloth.attach(particle, place);
+  }
+  return cloth;
+}
+
+/// l with l s((l^2 - 1) / 2) = load (N/m), for a curve that rises.
+double stretchUnder(double load, const material::StrainStressCurve& curve) {
+  double low = 1.0, high = 2.0;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double l = 0.5 * (low + high);
+    (l * curve.evaluate(0.5 * (l * l - 1.0)).stress < load ? low : high) = l;
+  }
+  return low;
+}
+
+}  // namespace
+
+ClothSwing::ClothSwing(const material::Fabric& fabric, int cells, double amplitude)
+    : cloth_(hangingSheet(fabric, cells)), start_(cloth_.initialState()) {
+  const double cell = length() / cells;
+  const auto shape = [&](double height) {
+    return amplitude * std::cyl_bessel_j(0.0, 2.0 * kFrequency * std::sqrt(height / kGravity));
+  };
+  // Each row of elements carries the particles below it, half a row of them at the lower edge.
+  ClothState rest = start_;
+  double hanging = 0.0, swinging = 0.0;
+  for (int row = cells - 1; row >= 0; --row) {
+    const double load = fabric.areal_density * kGravity * cell * (row + 0.5);
+    const double rise = cell * stretchUnder(load, fabric.warp.elastic);
+    const double aside = shape(row * cell) - shape((row + 1) * cell);
+    hanging -= rise;
+    swinging -= std::sqrt(rise * rise - aside * aside);
+    for (int i = 0; i <= kCellsInWidth; ++i) {
+      const std::size_t particle = row * (kCellsInWidth + 1) + i;
+      rest.positions[particle].z() = hanging;
+      start_.positions[particle].z() = swinging;
+      start_.positions[particle].x() = shape(row * cell);
+    }
+  }
+  energy_at_rest_ = cloth_.potentialEnergy(rest);
+}
+
+double ClothSwing::energy(const ClothState& state) const {
+  return cloth_.potentialEnergy(state) + cloth_.kineticEnergy(state) - energy_at_rest_;
+}
+
+ClothSwing::Motion ClothSwing::swing(const cloth::StepSettings& settings, double duration,
+                                     int steps) const {
+  cloth::Integrator integrator(cloth_, settings);
+  Motion motion{start_, {energy(start_)}};
+  for (int i = 0; i < steps; ++i) {
+    motion.accepted =
+        integrator.step(cloth_, motion.end, duration / steps).accepted && motion.accepted;
+    motion.energies.push_back(energy(motion.end));
+  }
+  return motion;
+}
+
+}  // namespace haptex::evaluation
