@@ -44,7 +44,7 @@ System makeSystem(int cells) {
     system.matrix.diagonal(i).diagonal().setConstant(cloth.masses()[i]);
     system.rhs.col(i) = 0.0125 * cloth.masses()[i] * effects.gravity;
   }
-  cloth.membrane().addStep(state.positions, state.velocities, 0.0125, 0.0125, system.matrix,
+  cloth.membrane().addStep(state.positions, state.velocities, {0.0125, 0.0125}, system.matrix,
                            system.rhs);
   return system;
 }

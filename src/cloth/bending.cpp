@@ -179,19 +179,21 @@ double Bending::energy(const Positions& positions) const {
   return energy;
 }
 
-void Bending::addStep(const Positions& positions, const Velocities& velocities, double h,
-                      double ahead, SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
+void Bending::addStep(const Positions& positions, const Velocities& velocities,
+                      const StageTimes& times, SymmetricBlockMatrix& matrix,
+                      BlockVector& rhs) const {
   // F(x) + ahead K v = F(x + ahead v), because the forces are linear.
   for (const Coupling& coupling : couplings_) {
-    const Vector3d difference = positions[coupling.row] - positions[coupling.column] +
-                                ahead * (velocities[coupling.row] - velocities[coupling.column]);
-    const Vector3d impulse = h * coupling.stiffness * difference;
+    const Vector3d difference =
+        positions[coupling.row] - positions[coupling.column] +
+        times.ahead * (velocities[coupling.row] - velocities[coupling.column]);
+    const Vector3d impulse = times.a * coupling.stiffness * difference;
     rhs.col(coupling.row) += impulse;
     rhs.col(coupling.column) -= impulse;
-    matrix.lower(coupling.slot).diagonal().array() += h * h * coupling.stiffness;
+    matrix.lower(coupling.slot).diagonal().array() += times.a * times.a * coupling.stiffness;
   }
   for (int i = 0; i < matrix.size(); ++i) {
-    matrix.diagonal(i).diagonal().array() += h * h * diagonal_[i];
+    matrix.diagonal(i).diagonal().array() += times.a * times.a * diagonal_[i];
   }
 }
 

@@ -191,26 +191,27 @@ double Membrane::elasticEnergy(const Positions& positions) const {
   return energy;
 }
 
-void Membrane::addStep(const Positions& positions, const Velocities& velocities, double h,
-                       double ahead, SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
+void Membrane::addStep(const Positions& positions, const Velocities& velocities,
+                       const StageTimes& times, SymmetricBlockMatrix& matrix,
+                       BlockVector& rhs) const {
   if (!batches_.empty()) {
     kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
-                     {positions.data()->data(), velocities.data()->data(), h, ahead, &elastic_,
-                      viscosity_ ? &viscous_ : nullptr, matrix.diagonal(0).data(),
+                     {positions.data()->data(), velocities.data()->data(), times.a, times.ahead,
+                      &elastic_, viscosity_ ? &viscous_ : nullptr, matrix.diagonal(0).data(),
                       matrix.lower(0).data(), rhs.data()});
   }
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     if (viscosity_) {
-      addStepOf<true>(elements_[t], positions, velocities, h, ahead, matrix, rhs);
+      addStepOf<true>(elements_[t], positions, velocities, times, matrix, rhs);
     } else {
-      addStepOf<false>(elements_[t], positions, velocities, h, ahead, matrix, rhs);
+      addStepOf<false>(elements_[t], positions, velocities, times, matrix, rhs);
     }
   }
 }
 
 template <bool kViscous>
 void Membrane::addStepOf(const MembraneElement& element, const Positions& positions,
-                         const Velocities& velocities, double h, double ahead,
+                         const Velocities& velocities, const StageTimes& times,
                          SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
   const Frame at = frame(element, positions);
   const Frame derivative = frame(element, velocities);
@@ -218,18 +219,18 @@ void Membrane::addStepOf(const MembraneElement& element, const Positions& positi
   const Response elastic = respond(elastic_, at.strain());
   Vector3d stress = elastic.stress;
   Vector3d slope = clampedToNonNegative(elastic.slope);
-  const Vector3d stress_increment = ahead * slope.cwiseProduct(rate);
+  const Vector3d stress_increment = times.ahead * slope.cwiseProduct(rate);
   if constexpr (kViscous) {
     const Response viscous = respond(viscous_, rate);
     stress += viscous.stress;
-    slope += clampedToNonNegative(viscous.slope) / h;
+    slope += clampedToNonNegative(viscous.slope) / times.a;
   }
   const Vector3d geometric = projectStress(stress);
-  addTangent(element, at.weft, at.warp, slope, geometric, element.area * h * h, matrix);
+  addTangent(element, at.weft, at.warp, slope, geometric, element.area * times.a * times.a, matrix);
 
-  const double factor = -element.area * h;
+  const double factor = -element.area * times.a;
   const Vector3d end = factor * (stress + stress_increment);
-  const Vector3d turning = factor * ahead * geometric;
+  const Vector3d turning = factor * times.ahead * geometric;
   addScattered(element,
                end[0] * at.weft + end[2] * at.warp + turning[0] * derivative.weft +
                    turning[2] * derivative.warp,

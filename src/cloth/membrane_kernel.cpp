@@ -214,9 +214,9 @@ HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep&
                              dot(weft, warp)};
   const __m256d rate[3] = {dot(weft, weft_rate), dot(warp, warp_rate),
                            dot(weft_rate, warp) + dot(weft, warp_rate)};
-  const __m256d h = _mm256_set1_pd(step.time_step);
+  const __m256d h = _mm256_set1_pd(step.a);
   const __m256d ahead = _mm256_set1_pd(step.ahead);
-  const __m256d turn = _mm256_set1_pd(-step.ahead / step.time_step);
+  const __m256d turn = _mm256_set1_pd(-step.ahead / step.a);
   const __m256d load = -at.area * h;  // N.s/m per N/m of stress
   const __m256d stiffness = -load * h;
   Response response = respond(*step.elastic, strain);

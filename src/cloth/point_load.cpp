@@ -101,15 +101,15 @@ double pointLoadEnergy(const std::vector<PointLoad>& loads, const Triangles& tri
 
 void addPointLoadStep(const std::vector<PointLoad>& loads, const Triangles& triangles,
                       const std::vector<MembraneElement>& elements, const Positions& positions,
-                      const Velocities& velocities, double h, double ahead,
+                      const Velocities& velocities, const StageTimes& times,
                       SymmetricBlockMatrix& matrix, BlockVector& rhs) {
   for (const PointLoad& load : loads) {
     const MembraneElement& element = elements[load.triangle];
     const Vector3d weights = sortedWeights(load, triangles[load.triangle], element);
     const Vector3d impulse =
-        h * (pointForce(load, triangles, positions) -
-             ahead * load.stiffness * interpolated(load, triangles, velocities));
-    const Matrix3d stiffness = h * h * load.stiffness;
+        times.a * (pointForce(load, triangles, positions) -
+                   times.ahead * load.stiffness * interpolated(load, triangles, velocities));
+    const Matrix3d stiffness = times.a * times.a * load.stiffness;
     for (int i = 0; i < 3; ++i) {
       rhs.col(element.particles[i]) += weights[i] * impulse;
       matrix.diagonal(element.particles[i]) += weights[i] * weights[i] * stiffness;

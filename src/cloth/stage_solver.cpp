@@ -67,13 +67,14 @@ void StageSolver::addInertia(const Cloth& cloth, const Stage& stage, const Veloc
 
 void StageSolver::linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
   addInertia(cloth, stage, guess.velocities);
-  cloth.membrane().addStep(guess.positions, guess.velocities, stage.a, guess.ahead, matrix_, rhs_);
+  cloth.membrane().addStep(guess.positions, guess.velocities, {stage.a, guess.ahead}, matrix_,
+                           rhs_);
   if (cloth.bending()) {
-    cloth.bending()->addStep(guess.positions, guess.velocities, stage.a, guess.ahead, matrix_,
+    cloth.bending()->addStep(guess.positions, guess.velocities, {stage.a, guess.ahead}, matrix_,
                              rhs_);
   }
   addPointLoadStep(cloth.pointLoads(), cloth.mesh().triangles, cloth.membrane().elements(),
-                   guess.positions, guess.velocities, stage.a, guess.ahead, matrix_, rhs_);
+                   guess.positions, guess.velocities, {stage.a, guess.ahead}, matrix_, rhs_);
   prescribe(cloth, stage, guess);
 }
 
@@ -129,10 +130,10 @@ void StageSolver::assembleNewton(const Cloth& cloth, const Stage& stage, const C
   addInertia(cloth, stage, at.velocities);
   cloth.membrane().addNewton(at.positions, base_strains_, stage.a, hessian, matrix_, rhs_);
   if (cloth.bending()) {
-    cloth.bending()->addStep(at.positions, at.velocities, stage.a, 0.0, matrix_, rhs_);
+    cloth.bending()->addStep(at.positions, at.velocities, {stage.a, 0.0}, matrix_, rhs_);
   }
   addPointLoadStep(cloth.pointLoads(), cloth.mesh().triangles, cloth.membrane().elements(),
-                   at.positions, at.velocities, stage.a, 0.0, matrix_, rhs_);
+                   at.positions, at.velocities, {stage.a, 0.0}, matrix_, rhs_);
   if (any_fixed_) matrix_.eliminate(fixed_, prescribed_, rhs_);
   report.assembly_seconds += seconds(Clock::now() - start);
 }

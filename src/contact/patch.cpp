@@ -134,8 +134,8 @@ void Patch::assemble(const LargeScaleMotion& motion, double h) {
     const Vector3d end = placeOnCloth(i, motion) + detours_[i];
     state_.velocities[i] = (end - state_.positions[i]) / h;
   }
-  membrane_.addStep(state_.positions, state_.velocities, h, h, matrix_, rhs_);
-  bending_.addStep(state_.positions, state_.velocities, h, h, matrix_, rhs_);
+  membrane_.addStep(state_.positions, state_.velocities, {h, h}, matrix_, rhs_);
+  bending_.addStep(state_.positions, state_.velocities, {h, h}, matrix_, rhs_);
 }
 
 void Patch::addContact(const PerFingertip<const Fingertip*>& fingertips, double h) {

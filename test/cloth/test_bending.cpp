@@ -154,7 +154,7 @@ TEST(Bending, ForcesAreTheGradientAndTheStepIsTheirLinearisation) {
   }
   const double h = 0.01;
   BlockVector rhs = BlockVector::Zero(3, size);
-  bending.addStep(positions, velocities, h, h, matrix, rhs);
+  bending.addStep(positions, velocities, {h, h}, matrix, rhs);
   EXPECT_LT((dense(matrix) + h * h * jacobian).norm(), 1e-12 * h * h * jacobian.norm());
   Eigen::VectorXd exact(3 * size), velocity(3 * size);
   for (int i = 0; i < size; ++i) {
@@ -226,8 +226,8 @@ double dropOverReach(double gamma, Triangulation triangulation, bool along_warp)
       matrix.diagonal(i).diagonal().setConstant(0.1 * areas[i]);
       rhs(2, i) = -h * weight * areas[i];
     }
-    membrane.addStep(positions, still, h, h, matrix, rhs);
-    bending.addStep(positions, still, h, h, matrix, rhs);
+    membrane.addStep(positions, still, {h, h}, matrix, rhs);
+    bending.addStep(positions, still, {h, h}, matrix, rhs);
     matrix.eliminate(fixed, nothing, rhs);
     if (!cholesky.factorise(matrix)) return std::numeric_limits<double>::quiet_NaN();
     cholesky.solve(rhs);

@@ -132,7 +132,12 @@ TEST(AttachmentPath, StartsAndEndsAtRestAndIsThereInTime) {
   const double h = 1e-4;  // the path leaves its ends with the third power of time
   EXPECT_LT((path.position(3.0 + h) - path.start).norm(), 1e-12);
   EXPECT_LT((path.position(7.0 - h) - path.position(7.0)).norm(), 1e-12);
+  for (double time : {2.5, 3.1, 4.0, 5.0, 6.9, 7.5}) {  // a central difference of the position
+    const Eigen::Vector3d difference = (path.position(time + h) - path.position(time - h)) / (2 * h);
+    EXPECT_LT((path.velocity(time) - difference).norm(), 1e-7) << time;  // of h^2 times jerk
+  }
   path.duration = 0.0;
+  EXPECT_EQ(path.velocity(3.0), Eigen::Vector3d::Zero());
   EXPECT_EQ(path.position(2.9), path.start);
   EXPECT_EQ(path.position(3.0), Eigen::Vector3d(1.0, 2.0, 0.0));
 }

@@ -188,27 +188,27 @@ TEST_P(EveryIntegrator, KeepsOfTheEnergyOfA1HzOscillatorPerPeriodWhatItsTheorySa
 
 // ---- Orders of convergence.
 
-/// A soft viscous cloth in the middle of a motion, one corner of its bar moving, whose fastest
-/// vibration is resolved by the steps below.
+/// A soft cloth in the middle of a motion, one corner of its bar moving, whose fastest vibration is
+/// resolved by the steps below.
 class SmoothMotion {
  public:
-  explicit SmoothMotion(double stretch) : cloth_(square(2), fabric(), effects()) {
-    attachTop(cloth_);
-    AttachmentPath path;
-    path.start = cloth_.mesh().initial_positions[6];
-    path.displacement = {0.01, 0.01, 0.02};
-    path.start_time = -0.05;
-    path.duration = 0.2;
-    cloth_.attach(6, path);
+  /// @param stretch at the start, which lasts for a few hundredths of a second
+  SmoothMotion(double stretch, bool viscosity, double duration)
+      : cloth_(square(2), fabric(), effects(viscosity)), duration_(duration) {
     start_ = cloth_.initialState();
     for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
       Vector3d& position = start_.positions[i];
       const double y = position.y(), z = position.z();
       position = {0.2 * z * (1.0 + y), stretch * y, stretch * z};
       start_.velocities[i] = {2.0 * z - y, 3.0 * z * y, -z};
-      if (!cloth_.isAttached(static_cast<int>(i))) continue;
-      position = cloth_.attachments()[i]->position(0.0);
-      start_.velocities[i] = cloth_.attachments()[i]->velocity(0.0);
+    }
+    for (int particle : sideParticles(cloth_.mesh(), Side::kTop)) {
+      AttachmentPath path;
+      path.start = start_.positions[particle];
+      path.duration = 0.2;
+      if (particle == 6) path.displacement = {0.01, -0.01, 0.02};
+      cloth_.attach(particle, path);
+      start_.velocities[particle].setZero();
     }
   }
 
@@ -216,7 +216,7 @@ class SmoothMotion {
   ClothState after(const StepSettings& settings, int steps, double uneven = 0.0) const {
     Integrator integrator(cloth_, settings);
     ClothState state = start_;
-    const double h = kDuration / steps;
+    const double h = duration_ / steps;
     for (int i = 0; i < steps; ++i) {
       const StepReport report =
           integrator.step(cloth_, state, h * (i % 2 == 0 ? 1.0 + uneven : 1.0 - uneven));
@@ -250,8 +250,6 @@ class SmoothMotion {
   }
 
  private:
-  static constexpr double kDuration = 0.1;  // s
-
   static material::Fabric fabric() {
     using material::StrainStressCurve;
     material::Fabric fabric = linearFabric(0.02);
@@ -260,14 +258,15 @@ class SmoothMotion {
     fabric.shear.elastic = StrainStressCurve::linear(1.0);
     return fabric;
   }
-  static ModelledEffects effects() {
+  static ModelledEffects effects(bool viscosity) {
     ModelledEffects effects;
-    effects.viscosity = true;
+    effects.viscosity = viscosity;
     effects.gravity = {0.0, 0.0, -9.81};
     return effects;
   }
 
   Cloth cloth_;
+  double duration_;  // s
   ClothState start_;
   mutable ClothState exact_;
 };
@@ -290,27 +289,38 @@ double orderOf(Method method) {
 constexpr int kSteps = 256;
 constexpr double kOrderTolerance = 0.05;
 
-TEST_P(EveryIntegrator, ConvergesWithItsOrder) {
-  const SmoothMotion motion(1.1);
+TEST_P(EveryIntegrator, ConvergesWithItsOrderInOneSolvePerStageInElasticTension) {
+  const SmoothMotion motion(1.2, false, 0.005);
   const Method method = GetParam().method;
-  EXPECT_NEAR(motion.order(settingsOf(method), kSteps), orderOf(method), kOrderTolerance);
+  EXPECT_NEAR(motion.order(settingsOf(method), kSteps / 4), orderOf(method), kOrderTolerance);
 }
 
-TEST_P(EveryIntegrator, ConvergesWithItsOrderWhereTheMatrixIsProjected) {
-  const SmoothMotion motion(0.8);  // in compression, where tangents are not positive
+// What the projection and the derivative of the strain rate by the position would add to the linear
+// systems is left out of them, which is of the first order in one solve and of the second in two.
+class EveryIntegratorInTwoSolves : public EveryIntegrator {};
+INSTANTIATE_TEST_SUITE_P(Methods, EveryIntegratorInTwoSolves,
+                         testing::ValuesIn(kIntegrationMethods), kNameOf);
+
+TEST_P(EveryIntegratorInTwoSolves, ConvergesWithItsOrderUnderViscosity) {
+  const SmoothMotion motion(1.1, true, 0.1);
   const Method method = GetParam().method;
-  EXPECT_NEAR(motion.order(settingsOf(method), kSteps), orderOf(method), kOrderTolerance);
+  EXPECT_NEAR(motion.order(settingsOf(method, 2), kSteps), orderOf(method), kOrderTolerance);
 }
 
-TEST_P(EveryIntegrator, ConvergesWithItsOrderForUnevenSteps) {
-  const SmoothMotion motion(1.1);
+TEST_P(EveryIntegratorInTwoSolves, ConvergesWithItsOrderInCompression) {
+  const SmoothMotion motion(0.8, true, 0.1);
   const Method method = GetParam().method;
-  EXPECT_NEAR(motion.order(settingsOf(method), kSteps, 0.3), orderOf(method), kOrderTolerance);
+  EXPECT_NEAR(motion.order(settingsOf(method, 2), kSteps), orderOf(method), kOrderTolerance);
 }
 
-TEST_P(EveryIntegrator, ConvergesWithItsOrderUnderNewtonIterations) {
-  if (!isImplicit(GetParam().method)) GTEST_SKIP() << "solves nothing";
-  const SmoothMotion motion(1.1);
+TEST_P(EveryIntegratorInTwoSolves, ConvergesWithItsOrderForUnevenSteps) {
+  const SmoothMotion motion(1.1, true, 0.1);
+  const Method method = GetParam().method;
+  EXPECT_NEAR(motion.order(settingsOf(method, 2), kSteps, 0.3), orderOf(method), kOrderTolerance);
+}
+
+TEST_P(EveryIntegratorInTwoSolves, ConvergesWithItsOrderWhereMoreSolvesAreAllowed) {
+  const SmoothMotion motion(1.1, true, 0.1);
   const Method method = GetParam().method;
   EXPECT_NEAR(motion.order(settingsOf(method, 20), kSteps), orderOf(method), kOrderTolerance);
 }

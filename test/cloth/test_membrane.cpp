@@ -150,7 +150,7 @@ TEST(Membrane, StepMatrixIsPositiveSemidefiniteForEveryState) {
       for (Vector3d& position : state.positions) position *= 0.3;
     }
     System system(cloth);
-    cloth.membrane().addStep(state.positions, state.velocities, 0.0125, 0.0125, system.matrix,
+    cloth.membrane().addStep(state.positions, state.velocities, {0.0125, 0.0125}, system.matrix,
                              system.rhs);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(dense(system.matrix));
     EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-13 * eigen.eigenvalues().maxCoeff());
@@ -165,7 +165,7 @@ TEST(Membrane, StepMatrixIsTheExactJacobianWhereNothingNeedsProjection) {
   for (Vector3d& position : state.positions) position *= 1.06;
   const double h = 0.01;
   System system(cloth);
-  cloth.membrane().addStep(state.positions, state.velocities, h, h, system.matrix, system.rhs);
+  cloth.membrane().addStep(state.positions, state.velocities, {h, h}, system.matrix, system.rhs);
   const Eigen::MatrixXd assembled = dense(system.matrix);
   std::vector<int> particles(cloth.particleCount());
   for (std::size_t i = 0; i < particles.size(); ++i) particles[i] = static_cast<int>(i);
@@ -187,7 +187,7 @@ TEST_P(StepRightHandSide, IsForceAndElasticStiffnessTimesVelocity) {
   for (Vector3d& position : state.positions) position *= 1.06;
   const double h = 0.01;
   System system(cloth);
-  cloth.membrane().addStep(state.positions, state.velocities, h, h, system.matrix, system.rhs);
+  cloth.membrane().addStep(state.positions, state.velocities, {h, h}, system.matrix, system.rhs);
   BlockVector velocity(3, cloth.particleCount()),
       stiffness_times_velocity(3, cloth.particleCount());
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) velocity.col(i) = state.velocities[i];
@@ -213,7 +213,7 @@ System stepOfEachAlone(const Cloth& cloth, const material::Fabric& fabric, const
     mesh.triangles = {triangle};
     const Membrane membrane(mesh, fabric, cloth.effects().viscosity);
     SymmetricBlockMatrix matrix(sum.matrix.size(), mesh.triangles);
-    membrane.addStep(state.positions, state.velocities, h, h, matrix, sum.rhs);
+    membrane.addStep(state.positions, state.velocities, {h, h}, matrix, sum.rhs);
     for (int i = 0; i < matrix.size(); ++i) {
       sum.matrix.diagonal(i) += matrix.diagonal(i);
       for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) {
@@ -241,7 +241,7 @@ TEST_P(StepInBatches, IsTheSumOfTheStepsOfTheTrianglesAlone) {
       }
       const System exact = stepOfEachAlone(cloth, stiffeningFabric(), state, 0.002);
       System system(cloth);
-      cloth.membrane().addStep(state.positions, state.velocities, 0.002, 0.002, system.matrix,
+      cloth.membrane().addStep(state.positions, state.velocities, {0.002, 0.002}, system.matrix,
                                system.rhs);
       // The sums have the same order; what differs is the rounding within an element.
       EXPECT_LT((dense(system.matrix) - dense(exact.matrix)).norm(),
@@ -257,9 +257,9 @@ TEST_P(StepInBatches, IsExactlyTheSameEveryTime) {
   const Cloth cloth(square(5), stiffeningFabric(), effects);
   const ClothState state = randomState(cloth, 0.01, 1.0);
   System first(cloth), second(cloth);
-  cloth.membrane().addStep(state.positions, state.velocities, 0.001, 0.001, first.matrix,
+  cloth.membrane().addStep(state.positions, state.velocities, {0.001, 0.001}, first.matrix,
                            first.rhs);
-  cloth.membrane().addStep(state.positions, state.velocities, 0.001, 0.001, second.matrix,
+  cloth.membrane().addStep(state.positions, state.velocities, {0.001, 0.001}, second.matrix,
                            second.rhs);
   EXPECT_EQ(dense(first.matrix), dense(second.matrix));
   EXPECT_EQ(first.rhs, second.rhs);
@@ -277,7 +277,7 @@ TEST_P(StepInBatches, HidesNoNumberThatIsNotFinite) {
           ClothState state = randomState(cloth, 1e-3, 0.1);
           (moving ? state.velocities : state.positions)[particle][axis] = bad;
           System system(cloth);
-          cloth.membrane().addStep(state.positions, state.velocities, 0.001, 0.001, system.matrix,
+          cloth.membrane().addStep(state.positions, state.velocities, {0.001, 0.001}, system.matrix,
                                    system.rhs);
           EXPECT_FALSE(system.rhs.allFinite());
         }

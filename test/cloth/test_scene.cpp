@@ -137,6 +137,17 @@ TEST_F(SceneFile, ReadsTheSolver) {
             LinearSolverMethod::kAutomatic);
 }
 
+TEST_F(SceneFile, ReadsTheIntegrator) {
+  EXPECT_EQ(load(kValid).step.method, IntegrationMethod::kBackwardEuler);
+  for (const NamedIntegrationMethod& named : kIntegrationMethods) {
+    EXPECT_EQ(load(kValid + "integrator: " + named.name + "\n").step.method, named.method);
+  }
+  const StepSettings step =
+      load(kValid + "integrator: bdf2\nsolver: {newton_iterations: 2}\n").step;
+  EXPECT_EQ(step.method, IntegrationMethod::kBdf2);
+  EXPECT_EQ(step.newton_iterations, 2);
+}
+
 TEST_F(SceneFile, FindsMeshesByNameAndByPath) {
   for (const std::string name : {"corner", "corner.obj", "../meshes/corner.obj"}) {
     const Scene scene = load(meshScene(name));

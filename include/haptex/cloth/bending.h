@@ -52,11 +52,8 @@ class Bending {
   double energy(const Positions& positions) const;  ///< J
 
   /// Adds what bending contributes to a linearised stage (Stage),
-  ///   matrix += -h^2 K,  rhs += h (F + ahead K v).
-  /// @param h     s, finite and > 0: the time step in backward Euler
-  /// @param ahead s: h where the stage moves the particles by h v from these positions before
-  ///   their velocities change, as in backward Euler; 0 where it has moved them already
-  void addStep(const Positions& positions, const Velocities& velocities, double h, double ahead,
+  ///   matrix += -a^2 K,  rhs += a (F + ahead K v).
+  void addStep(const Positions& positions, const Velocities& velocities, const StageTimes& times,
                SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
 
   /// The sum over all hinges of stiffness weights[i] weights[j]: force on `row`

@@ -45,6 +45,7 @@ class Integrator {
   void advance(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   void takeMidpoint(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   double attachmentWork(const Cloth& cloth, const ClothState& begin);
+  double blendAgainstGrowth(const Cloth& cloth, const ClothState& begin, double allowed) const;
   void extrapolate(const Cloth& cloth, const ClothState& begin, double theta);
   void takeTrBdf2(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   void takeBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,

@@ -26,6 +26,13 @@ struct MembraneElement {
   double area;                         ///< at rest, m^2
 };
 
+/// Times (s) of an implicit stage, x = x* + a v, that is linearised about a state (Stage).
+struct StageTimes {
+  double a;      ///< > 0; the time step in backward Euler
+  double ahead;  ///< in which the state's velocities bring it to the stage: a in backward
+                 ///< Euler, 0 if it is there already
+};
+
 /// Green-Lagrange strains or their rates (1/s) in the order weft (U.U-1)/2, warp (V.V-1)/2,
 /// shear U.V.
 using MembraneStrain = Eigen::Vector3d;
@@ -62,13 +69,10 @@ class Membrane {
   double elasticEnergy(const Positions& positions) const;
 
   /// Adds what the membrane contributes to a linearised stage (Stage),
-  ///   matrix += -h D - h^2 K,  rhs += h (F + ahead K v),
+  ///   matrix += -a D - a^2 K,  rhs += a (F + ahead K v),
   /// with the exact projection: slopes of the curves clamped to >= 0 and the stress of the
   /// geometric part by projectStress(), the same K on both sides.
-  /// @param h     s, finite and > 0: the time step in backward Euler
-  /// @param ahead s: h where the stage moves the particles by h v from these positions before
-  ///   their velocities change, as in backward Euler; 0 where it has moved them already
-  void addStep(const Positions& positions, const Velocities& velocities, double h, double ahead,
+  void addStep(const Positions& positions, const Velocities& velocities, const StageTimes& times,
                SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
 
   /// The Hessian of a Newton iteration: exact, for fast convergence near a minimum, or projected as
@@ -81,7 +85,7 @@ class Membrane {
   ///   matrix += h^2 times its Hessian, rhs -= h times its gradient.
   /// @param positions     at the end of the step
   /// @param begin_strains e0 of every element, strains at the beginning of the step
-  /// @param h             time step, s, finite and > 0
+  /// @param h             a of the stage (StageTimes), s, finite and > 0
   void addNewton(const Positions& positions, const std::vector<MembraneStrain>& begin_strains,
                  double h, Hessian hessian, SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
 
@@ -113,8 +117,8 @@ class Membrane {
   static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
   template <bool kViscous>
   void addStepOf(const MembraneElement& element, const Positions& positions,
-                 const Velocities& velocities, double h, double ahead, SymmetricBlockMatrix& matrix,
-                 BlockVector& rhs) const;
+                 const Velocities& velocities, const StageTimes& times,
+                 SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
   static Response respond(const Curves& curves, const MembraneStrain& strain);
 
   std::vector<MembraneElement> elements_;

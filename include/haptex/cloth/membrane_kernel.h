@@ -23,8 +23,8 @@ struct alignas(32) MembraneBatch {
 struct MembraneStep {
   const double* positions;
   const double* velocities;
-  double time_step;                                           ///< s
-  double ahead;                                               ///< s, time_step or 0
+  double a;                                                   ///< s
+  double ahead;                                               ///< s
   const std::array<material::StrainStressCurve, 3>* elastic;  ///< weft, warp, shear
   const std::array<material::StrainStressCurve, 3>* viscous;  ///< null: none
   double* diagonal;

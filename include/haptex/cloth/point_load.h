@@ -39,14 +39,12 @@ double pointLoadEnergy(const std::vector<PointLoad>& loads, const Triangles& tri
 
 /// Adds what the loads contribute to a linearised stage (Stage), for all corners i and j of their
 /// triangles:
-///   matrix_ij += h^2 weights_i weights_j stiffness
-///   rhs_i     += h weights_i (force - stiffness (x + ahead v - position)).
+///   matrix_ij += a^2 weights_i weights_j stiffness
+///   rhs_i     += a weights_i (force - stiffness (x + ahead v - position)).
 /// @param elements of the membrane on the same triangles, with slots of the matrix
-/// @param ahead s: h where the stage moves the particles by h v from these positions before their
-///   velocities change, as in backward Euler; 0 where it has moved them already
 void addPointLoadStep(const std::vector<PointLoad>& loads, const Triangles& triangles,
                       const std::vector<MembraneElement>& elements, const Positions& positions,
-                      const Velocities& velocities, double h, double ahead,
+                      const Velocities& velocities, const StageTimes& times,
                       SymmetricBlockMatrix& matrix, BlockVector& rhs);
 
 }  // namespace haptex::cloth
