@@ -206,14 +206,14 @@ TEST_P(StepRightHandSide, IsForceAndElasticStiffnessTimesVelocity) {
 
 /// The steps of all triangles, each as a mesh of its own: too few to be added in batches.
 System stepOfEachAlone(const Cloth& cloth, const material::Fabric& fabric, const ClothState& state,
-                       double h) {
+                       const StageTimes& times) {
   System sum(cloth);
   for (const std::array<int, 3>& triangle : cloth.mesh().triangles) {
     ClothMesh mesh = cloth.mesh();
     mesh.triangles = {triangle};
     const Membrane membrane(mesh, fabric, cloth.effects().viscosity);
     SymmetricBlockMatrix matrix(sum.matrix.size(), mesh.triangles);
-    membrane.addStep(state.positions, state.velocities, {h, h}, matrix, sum.rhs);
+    membrane.addStep(state.positions, state.velocities, times, matrix, sum.rhs);
     for (int i = 0; i < matrix.size(); ++i) {
       sum.matrix.diagonal(i) += matrix.diagonal(i);
       for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) {
@@ -239,16 +239,33 @@ TEST_P(StepInBatches, IsTheSumOfTheStepsOfTheTrianglesAlone) {
       if (seed % 2 == 0) {
         for (Vector3d& position : state.positions) position *= 0.7;
       }
-      const System exact = stepOfEachAlone(cloth, stiffeningFabric(), state, 0.002);
+      const StageTimes times{0.002, std::array{0.002, 0.0, 0.003}[seed % 3]};
+      const System exact = stepOfEachAlone(cloth, stiffeningFabric(), state, times);
       System system(cloth);
-      cloth.membrane().addStep(state.positions, state.velocities, {0.002, 0.002}, system.matrix,
-                               system.rhs);
+      cloth.membrane().addStep(state.positions, state.velocities, times, system.matrix, system.rhs);
       // The sums have the same order; what differs is the rounding within an element.
       EXPECT_LT((dense(system.matrix) - dense(exact.matrix)).norm(),
                 1e-13 * dense(exact.matrix).norm());
       EXPECT_LT((system.rhs - exact.rhs).norm(), 1e-13 * exact.rhs.norm());
     }
   }
+}
+
+TEST(Membrane, TheWayAheadAddsTheMatrixTimesTheVelocities) {
+  // Without viscosity the matrix is -a^2 K, and rhs grows by a ahead K v.
+  const Cloth cloth(square(3), stiffeningFabric(), {});
+  const ClothState state = randomState(cloth, 0.003, 3.0);
+  const double a = 0.002, ahead = 0.003;
+  System there(cloth), ahead_of(cloth);
+  cloth.membrane().addStep(state.positions, state.velocities, {a, 0.0}, there.matrix, there.rhs);
+  cloth.membrane().addStep(state.positions, state.velocities, {a, ahead}, ahead_of.matrix,
+                           ahead_of.rhs);
+  BlockVector velocities(3, cloth.particleCount()), product(3, cloth.particleCount());
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) velocities.col(i) = state.velocities[i];
+  there.matrix.multiply(velocities, product);
+  const BlockVector growth = ahead_of.rhs - there.rhs;
+  EXPECT_LT((growth + ahead / a * product).norm(), 1e-12 * growth.norm());
+  EXPECT_EQ(dense(ahead_of.matrix), dense(there.matrix));
 }
 
 TEST_P(StepInBatches, IsExactlyTheSameEveryTime) {
