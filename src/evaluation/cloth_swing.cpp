@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "haptex/cloth/integrator.h"
 
@@ -14,6 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kGravity = 9.80665;       // m/s^2
 constexpr double kFrequency = 2.0 * M_PI;  // rad/s
+constexpr double kMostAmplitude = 0.1;     // m
 constexpr int kCellsInWidth = 2;
 
 double length() {
@@ -21,14 +23,18 @@ double length() {
   return kGravity * std::pow(kSlowest / kFrequency, 2);
 }
 
-Cloth hangingSheet(const material::Fabric& fabric, int cells) {
+Cloth hangingSheet(const material::Fabric& fabric, int cells, double amplitude) {
   if (cells <= 0) {
     throw std::invalid_argument("cells is " + std::to_string(cells) + "; it must be positive");
   }
+  if (!(std::abs(amplitude) <= kMostAmplitude)) {
+    throw std::invalid_argument("the amplitude is " + std::to_string(amplitude) +
+                                " m; it must be at most 0.1 m to either side");
+  }
   cloth::ModelledEffects effects;
   effects.gravity = {0.0, 0.0, -kGravity};
-  Cloth cloth(cloth::makeRectangle(kCellsInWidth * length() / cells, length(), kCellsInWidth,
-                                   cells, cloth::Triangulation::kAlternating),
+  Cloth cloth(cloth::makeRectangle(kCellsInWidth * length() / cells, length(), kCellsInWidth, cells,
+                                   cloth::Triangulation::kAlternating),
               fabric, effects);
   for (int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) {
     cloth::AttachmentPath place;
@@ -51,7 +57,7 @@ double stretchUnder(double load, const material::StrainStressCurve& curve) {
 }  // namespace
 
 ClothSwing::ClothSwing(const material::Fabric& fabric, int cells, double amplitude)
-    : cloth_(hangingSheet(fabric, cells)), start_(cloth_.initialState()) {
+    : cloth_(hangingSheet(fabric, cells, amplitude)), start_(cloth_.initialState()) {
   const double cell = length() / cells;
   const auto shape = [&](double height) {
     return amplitude * std::cyl_bessel_j(0.0, 2.0 * kFrequency * std::sqrt(height / kGravity));

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "haptex/cloth/cloth.h"
+#include "haptex/evaluation/cloth_oracles.h"
 #include "haptex/evaluation/hanging_strip.h"
 #include "haptex/evaluation/validation.h"
 #include "haptex/evaluation/virtual_test.h"
@@ -214,6 +215,7 @@ void validateCloth(const std::string& config_directory, const Sink& sink) {
   validatePatch(linear, sink);
   validateJacobians(wool, 0.05, 0.008, sink);
   validateJacobians(linear, 0.05, 0.05, sink);
+  validateIntegrators(linear, wool, sink);
 }
 
 }  // namespace haptex::evaluation

@@ -1,7 +1,6 @@
 // A sheet that swings from its bar once a second, with exact energies to compare with.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "haptex/cloth/cloth.h"
@@ -15,9 +14,11 @@ namespace haptex::evaluation {
 /// at rest, displaced in this shape. No viscosity, no air, no bending: the energy is constant.
 class ClothSwing {
  public:
-  /// @param fabric     with the same curves along weft and warp at all times; a linear warp curve
+  /// @param fabric     whose warp curve rises
   /// @param cells      along the length, > 0; they are square
-  /// @param amplitude  m, of the lower end
+  /// @param amplitude  m, of the lower end; at most 0.1, beyond which the lowest row cannot be so
+  ///   slanted
+  /// @throws std::invalid_argument if cells or amplitude are not in their range
   ClothSwing(const material::Fabric& fabric, int cells, double amplitude);
 
   /// Energy above that at rest (J).

@@ -25,7 +25,7 @@ const std::vector<Validation>& validations();
 /// Conversions of strain and stress, and the shipped fabrics' curves against their samples.
 void validateMaterial(const std::string& config_directory, const Sink& sink);
 
-/// Virtual tensile and shear tests, hanging strip, patch test, Jacobian.
+/// Virtual tensile and shear tests, hanging strip, patch test, Jacobian, integrators.
 void validateCloth(const std::string& config_directory, const Sink& sink);
 
 /// Answers of proximity queries on deformed sheets against brute force and FCL: how many differ.
