@@ -83,10 +83,10 @@ struct Patch {
       system.matrix.diagonal(i).diagonal().setConstant(cloth.masses()[i]);
     }
     system.rhs.setZero();
-    cloth.membrane().addStep(state.positions, state.velocities, kPatchStep, kPatchStep,
+    cloth.membrane().addStep(state.positions, state.velocities, {kPatchStep, kPatchStep},
                              system.matrix, system.rhs);
     if (!cloth.bending()) return;
-    cloth.bending()->addStep(state.positions, state.velocities, kPatchStep, kPatchStep,
+    cloth.bending()->addStep(state.positions, state.velocities, {kPatchStep, kPatchStep},
                              system.matrix, system.rhs);
   }
 

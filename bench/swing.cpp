@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/cloth/integrator.h"
 #include "haptex/cloth/scene.h"
 #include "haptex/material/fabric_file.h"
 #include "tab_lines.h"

@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "haptex/evaluation/cloth_swing.h"
 #include "haptex/evaluation/hanging_strip.h"
 #include "haptex/evaluation/validation.h"
 #include "haptex/evaluation/virtual_test.h"
@@ -38,6 +39,46 @@ TEST(Quantity, PrintsSixFieldsSeparatedByTabs) {
   std::ostringstream out;
   print(out, {"room/what", 1.5, 1.25, 0.25, 0.125});
   EXPECT_EQ(out.str(), "room/what\t1.5\t1.25\t0.25\t0.125\tFAIL\n");
+}
+
+material::Fabric linearFabric() {
+  material::Fabric fabric;
+  fabric.areal_density = 0.1;
+  fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(1000.0);
+  fabric.shear.elastic = material::StrainStressCurve::linear(500.0);
+  return fabric;
+}
+
+TEST(ClothSwing, IsBackAfterASecondAndOppositeAfterHalfOfIt) {
+  constexpr double kAmplitude = 0.005;  // small, so that the period does not depend on it
+  const ClothSwing swing(linearFabric(), 32, kAmplitude);
+  cloth::StepSettings settings;
+  settings.method = cloth::IntegrationMethod::kTrBdf2;
+  settings.newton_iterations = 2;
+  // 1 % for the mesh, which is a chain of 32 links, and for what the fabric stretches.
+  EXPECT_NEAR(swing.start().positions[0].x(), kAmplitude, 1e-12);
+  EXPECT_NEAR(swing.swing(settings, 0.5, 200).end.positions[0].x(), -kAmplitude, 0.01 * kAmplitude);
+  EXPECT_NEAR(swing.swing(settings, 1.0, 400).end.positions[0].x(), kAmplitude, 0.01 * kAmplitude);
+}
+
+TEST(ClothSwing, HasNoEnergyWhereItHangs) {
+  const ClothSwing hanging(linearFabric(), 16, 0.0);
+  std::vector<Eigen::Vector3d> forces;
+  hanging.cloth().computeForces(hanging.start(), forces);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (hanging.cloth().isAttached(static_cast<int>(i))) continue;
+    EXPECT_LT(forces[i].norm(), 1e-9);  // of stretches near 1e-4, bisected to rounding
+  }
+  EXPECT_EQ(hanging.energy(hanging.start()), 0.0);
+  EXPECT_GT(
+      ClothSwing(linearFabric(), 16, 0.01).energy(ClothSwing(linearFabric(), 16, 0.01).start()),
+      0.0);
+}
+
+TEST(ClothSwing, RefusesWhatItCannotBeMadeOf) {
+  EXPECT_THROW(ClothSwing(linearFabric(), 0, 0.01), std::invalid_argument);
+  EXPECT_THROW(ClothSwing(linearFabric(), 8, 0.11), std::invalid_argument);
+  EXPECT_THROW(ClothSwing(linearFabric(), 8, std::nan("")), std::invalid_argument);
 }
 
 TEST(HangingStrip, ExactElongationIsThePublishedOne) {
