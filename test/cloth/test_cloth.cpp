@@ -133,7 +133,8 @@ TEST(AttachmentPath, StartsAndEndsAtRestAndIsThereInTime) {
   EXPECT_LT((path.position(3.0 + h) - path.start).norm(), 1e-12);
   EXPECT_LT((path.position(7.0 - h) - path.position(7.0)).norm(), 1e-12);
   for (double time : {2.5, 3.1, 4.0, 5.0, 6.9, 7.5}) {  // a central difference of the position
-    const Eigen::Vector3d difference = (path.position(time + h) - path.position(time - h)) / (2 * h);
+    const Eigen::Vector3d difference =
+        (path.position(time + h) - path.position(time - h)) / (2 * h);
     EXPECT_LT((path.velocity(time) - difference).norm(), 1e-7) << time;  // of h^2 times jerk
   }
   path.duration = 0.0;
