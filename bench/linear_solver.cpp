@@ -1,10 +1,14 @@
-// What does a factorisation cost in iterations of conjugate gradients? The ratio per operation is
-// the constant behind LinearSolver's automatic choice; how supernodes are merged (elimination.cpp)
-// was chosen by the factorisation times printed here. The systems are those of a swinging sheet
-// of the linear reference at 12.5 ms. The patch cases are the parts of a 1 ms step of a sheet as
-// small as the one that follows a fingertip, of wool with viscosity, with and without the matrix
-// blocks that bending needs.
+// What does a factorisation cost in iterations of conjugate gradients? The constants behind
+// LinearSolver's automatic choice are the ratios kept_number_over_block, of the triangular solves,
+// and fitted_operation_over_block and fitted_factor_number_over_block, which together give the time
+// of the factorisation in single precision at the smallest and the largest size; how supernodes are
+// merged (elimination.cpp) was chosen by the factorisation times printed here. The systems are
+// those of a swinging sheet of the linear reference at 12.5 ms. The patch cases are the parts of a
+// 1 ms step of a sheet as small as the one that follows a fingertip, of wool with viscosity, with
+// and without the matrix blocks that bending needs.
 #include "haptex/cloth/linear_solver.h"
+
+#include <Eigen/LU>
 
 #include "haptex/cloth/cloth.h"
 #include "haptex/material/fabric_file.h"
@@ -57,6 +61,25 @@ void factorisation(benchmark::State& run, int cells) {
     if (!cholesky.factorise(system.matrix)) run.SkipWithError("not positive definite");
     x = system.rhs;
     cholesky.solve(x);
+  }
+}
+
+void keptFactorisation(benchmark::State& run, int cells) {
+  const System system = makeSystem(cells);
+  cloth::BasicBlockCholesky<float> factor(system.matrix);
+  for (auto _ : run) {
+    if (!factor.factorise(system.matrix)) run.SkipWithError("not positive definite");
+  }
+}
+
+void keptSolve(benchmark::State& run, int cells) {
+  const System system = makeSystem(cells);
+  cloth::BasicBlockCholesky<float> factor(system.matrix);
+  if (!factor.factorise(system.matrix)) run.SkipWithError("not positive definite");
+  cloth::BlockVector x(3, system.matrix.size());
+  for (auto _ : run) {
+    x = system.rhs;
+    factor.solve(x);
   }
 }
 
@@ -150,11 +173,17 @@ void registerPatch() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int cells[] = {22, 32, 50, 71};
+  const int cells[] = {22, 32, 50, 71, 224};
   for (int count : cells) {
     const std::string triangles = std::to_string(2 * count * count);
     benchmark::RegisterBenchmark(("linear_solver/factorise_and_solve/" + triangles).c_str(),
                                  factorisation, count)
+        ->Iterations(kRuns);
+    benchmark::RegisterBenchmark(("linear_solver/kept_factorise/" + triangles).c_str(),
+                                 keptFactorisation, count)
+        ->Iterations(kRuns);
+    benchmark::RegisterBenchmark(("linear_solver/kept_solve/" + triangles).c_str(), keptSolve,
+                                 count)
         ->Iterations(kRuns);
     benchmark::RegisterBenchmark(("linear_solver/50_iterations/" + triangles).c_str(), iterations,
                                  count)
@@ -166,6 +195,9 @@ int main(int argc, char** argv) {
   bench::TabReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   if (reporter.failed()) return 1;
+  // Rows (operations, numbers) and right-hand side of the fit.
+  Eigen::Matrix2d work;
+  Eigen::Vector2d spent;
   for (const int count : cells) {
     const System system = makeSystem(count);
     const cloth::BlockCholesky cholesky(system.matrix);
@@ -181,6 +213,20 @@ int main(int argc, char** argv) {
                      factorisation_time / iteration_time, "iterations");
     bench::printLine("linear_solver/operation_over_block/" + triangles, per_operation / per_block,
                      "ratio");
+    bench::printLine(
+        "linear_solver/kept_operation_over_block/" + triangles,
+        reporter.time("linear_solver/kept_factorise/" + triangles) / cholesky.cost() / per_block,
+        "ratio");
+    bench::printLine(
+        "linear_solver/kept_number_over_block/" + triangles,
+        reporter.time("linear_solver/kept_solve/" + triangles) / cholesky.numbers() / per_block,
+        "ratio");
+    const int row = count == cells[0] ? 0 : 1;  // the last stays
+    work.row(row) << cholesky.cost(), cholesky.numbers();
+    spent[row] = reporter.time("linear_solver/kept_factorise/" + triangles) / per_block;
   }
+  const Eigen::Vector2d fit = work.inverse() * spent;
+  bench::printLine("linear_solver/fitted_operation_over_block/100352", fit[0], "ratio");
+  bench::printLine("linear_solver/fitted_factor_number_over_block/100352", fit[1], "ratio");
   return 0;
 }

@@ -1,5 +1,6 @@
 #include "haptex/cloth/bending.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,20 +8,13 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "haptex/cloth/bending_stencils.h"
+#include "haptex/cloth/bending_moments.h"
 
 namespace haptex::cloth {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-/// A direction in which a fabric does not resist bending at all is fitted as if it had this part of
-/// the other's rigidity, to compare errors with something.
-constexpr double kLeastRatio = 1e-6;
-/// How much more an error of the weft's and warp's rigidity counts than one of twist or coupling.
-constexpr double kEmphasis = 30.0;
 
 void requireRigidity(const char* name, double value) {
   if (!std::isfinite(value) || value < 0.0) {
@@ -31,109 +25,90 @@ void requireRigidity(const char* name, double value) {
   }
 }
 
-/// The entries of a symmetric matrix, so that their squares sum to the Frobenius norm's but for the
-/// emphasis.
-Eigen::VectorXd entriesOf(const Matrix3d& matrix) {
-  Eigen::VectorXd entries(6);
-  entries << kEmphasis * matrix(0, 0), kEmphasis * matrix(1, 1), matrix(2, 2),
-      M_SQRT2 * matrix(0, 1), M_SQRT2 * matrix(0, 2), M_SQRT2 * matrix(1, 2);
-  return entries;
+void requireHysteresis(const char* name, double value, double rigidity) {
+  if (!std::isfinite(value) || value < 0.0 || (value > 0.0 && rigidity == 0.0)) {
+    std::ostringstream message;
+    message << "the hysteresis of bending along " << name << " is " << value
+            << " N; it must be finite and at least 0, and 0 where the rigidity is";
+    throw std::invalid_argument(message.str());
+  }
 }
-
-/// Fits the stiffnesses of the stencils around one particle.
-class Fit {
- public:
-  explicit Fit(const material::BendingRigidity& rigidity) {
-    const double largest = std::max(rigidity.weft, rigidity.warp);
-    const double weft = std::max(rigidity.weft, kLeastRatio * largest);
-    const double warp = std::max(rigidity.warp, kLeastRatio * largest);
-    scale_ = Vector3d(std::sqrt(weft), std::sqrt(warp), std::sqrt(2.0 * std::sqrt(weft * warp)));
-    wanted_ = Vector3d(rigidity.weft, rigidity.warp, 2.0 * std::sqrt(rigidity.weft * rigidity.warp))
-                  .cwiseQuotient(scale_.cwiseAbs2());
-  }
-
-  /// Adds to the stiffnesses (N/m) of all stencils.
-  void add(const std::vector<BendingStencil>& stencils, const BendingNeighbourhood& around,
-           std::vector<double>& stiffnesses) const {
-    // Stencils that resist the same. Lines through the particle, which come first, leave no part to
-    // edges beside it: else rigidity would be smeared from one particle to the next.
-    struct Group {
-      Vector3d resists;
-      std::vector<int> members;
-    };
-    std::vector<Group> groups;
-    for (int index : around.stencils) {
-      const Vector3d resists = scaled(stencils[index]).normalized();
-      const bool line = stencils[index].centre >= 0;
-      const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
-        return std::abs(std::abs(group.resists.dot(resists)) - 1.0) < 1e-12;
-      });
-      if (same == groups.end()) {
-        groups.push_back({resists, {index}});
-      } else if (stencils[same->members.front()].centre < 0 || line) {
-        same->members.push_back(index);
-      }
-    }
-    Eigen::MatrixXd columns(6, groups.size());
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      columns.col(i) = entriesOf(groups[i].resists * groups[i].resists.transpose());
-    }
-    const Eigen::VectorXd fitted = nonNegativeLeastSquares(columns, entriesOf(target(around)));
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      const double share = around.area * fitted[i] / groups[i].members.size();
-      for (int index : groups[i].members) {
-        stiffnesses[index] += share / scaled(stencils[index]).squaredNorm();
-      }
-    }
-  }
-
- private:
-  /// By curvatures times scale_: then an isotropic wish is the identity.
-  Vector3d scaled(const BendingStencil& stencil) const {
-    return stencil.resists.cwiseQuotient(scale_);
-  }
-
-  /// Without the curvature across free edges.
-  Matrix3d target(const BendingNeighbourhood& around) const {
-    Matrix3d result = wanted_.asDiagonal();
-    for (const Vector2d& n : around.free_normals) {
-      const Vector3d across =
-          Vector3d(n.x() * n.x(), n.y() * n.y(), n.x() * n.y()).cwiseProduct(scale_);
-      const Vector3d resisted = result * across;
-      const double energy = across.dot(resisted);
-      if (energy > 1e-9 * across.squaredNorm()) {
-        result -= resisted * resisted.transpose() / energy;
-      }
-    }
-    return result;
-  }
-
-  Vector3d scale_;
-  Vector3d wanted_;
-};
 
 }  // namespace
 
-Bending::Bending(const ClothMesh& mesh, const material::BendingRigidity& rigidity)
+Bending::Bending(const ClothMesh& mesh, const material::BendingRigidity& rigidity,
+                 const BendingSettings& settings,
+                 const std::optional<material::BendingHysteresis>& hysteresis)
     : diagonal_(mesh.rest_coordinates.size(), 0.0) {
   requireRigidity("weft", rigidity.weft);
   requireRigidity("warp", rigidity.warp);
-  if (rigidity.weft == 0.0 && rigidity.warp == 0.0) return;
-  const BendingStencils found = findBendingStencils(mesh);
-  std::vector<double> stiffnesses(found.stencils.size(), 0.0);
-  const Fit fit(rigidity);
-  for (const BendingNeighbourhood& around : found.neighbourhoods) {
-    fit.add(found.stencils, around, stiffnesses);
+  if (hysteresis) {
+    requireHysteresis("weft", hysteresis->weft, rigidity.weft);
+    requireHysteresis("warp", hysteresis->warp, rigidity.warp);
   }
-  std::map<std::array<int, 2>, double> couplings;
+  if (!settings.rest_curvature.allFinite()) {
+    throw std::invalid_argument("the rest curvature has a component that is not finite");
+  }
+  if (rigidity.weft == 0.0 && rigidity.warp == 0.0) return;
+  const PlateRigidity plate(rigidity);
+  std::optional<std::vector<double>> stiffnesses;
+  if (settings.model == BendingModel::kLinear) {
+    const BendingStencils found = findBendingStencils(mesh);
+    stiffnesses = fitStiffnesses(found, plate);
+    if (stiffnesses) addFittedHinges(found, *stiffnesses);
+  }
+  if (!stiffnesses) addCurvatureHinges(mesh, plate);
+  couple(mesh);
+  if (!settings.rest_curvature.isZero(0.0)) {
+    rest_.emplace(mesh, hinges_, corners_, settings.rest_curvature);
+  }
+  if (hysteresis && (hysteresis->weft > 0.0 || hysteresis->warp > 0.0)) {
+    friction_.emplace(mesh, hinges_, corners_, rigidity, *hysteresis);
+  }
+}
+
+void Bending::addFittedHinges(const BendingStencils& found,
+                              const std::vector<double>& stiffnesses) {
   for (std::size_t s = 0; s < stiffnesses.size(); ++s) {
     if (stiffnesses[s] <= 0.0) continue;
     const BendingStencil& stencil = found.stencils[s];
-    hinges_.push_back({stencil.particles, stencil.weights, stiffnesses[s]});
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < i; ++j) {
-        const double product = stiffnesses[s] * stencil.weights[i] * stencil.weights[j];
-        const auto [first, second] = std::minmax(stencil.particles[i], stencil.particles[j]);
+    const int begin = static_cast<int>(corners_.size());
+    for (int i = 0; i < 4; ++i) corners_.push_back({stencil.particles[i], stencil.weights[i]});
+    hinges_.push_back({begin, begin + 4, stiffnesses[s], stencil.resists});
+  }
+}
+
+/// The target of every triangle is a sum of squares: each becomes a hinge. Its weights are those of
+/// the curvature times the triangle's area.
+void Bending::addCurvatureHinges(const ClothMesh& mesh, const PlateRigidity& rigidity) {
+  constexpr double kLeast = 1e-12;  // of an isotropic fabric's target, which is 1
+  for (const CurvatureStencil& stencil : findCurvatureStencils(mesh)) {
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(rigidity.target(stencil.free_normals));
+    for (int i = 0; i < 3; ++i) {
+      const double part = parts.eigenvalues()[i];
+      if (part < kLeast) continue;
+      const Vector3d resists = stencil.area *
+                               rigidity.scale().cwiseProduct(parts.eigenvectors().col(i)) /
+                               rigidity.scale().maxCoeff();
+      const Eigen::RowVectorXd weights = resists.transpose() * stencil.weights;
+      const int begin = static_cast<int>(corners_.size());
+      for (std::size_t j = 0; j < stencil.particles.size(); ++j) {
+        corners_.push_back({stencil.particles[j], weights[static_cast<Eigen::Index>(j)]});
+      }
+      const double stiffness = part * std::pow(rigidity.scale().maxCoeff(), 2) / stencil.area;
+      hinges_.push_back({begin, static_cast<int>(corners_.size()), stiffness, resists});
+    }
+  }
+}
+
+/// Sums up what the hinges do between each two particles.
+void Bending::couple(const ClothMesh& mesh) {
+  std::map<std::array<int, 2>, double> couplings;
+  for (const Hinge& hinge : hinges_) {
+    for (int i = hinge.begin; i < hinge.end; ++i) {
+      for (int j = hinge.begin; j < i; ++j) {
+        const double product = hinge.stiffness * corners_[i].weight * corners_[j].weight;
+        const auto [first, second] = std::minmax(corners_[i].particle, corners_[j].particle);
         if (product != 0.0) couplings[{first, second}] += product;
       }
     }
@@ -155,6 +130,7 @@ Bending::Bending(const ClothMesh& mesh, const material::BendingRigidity& rigidit
 
 void Bending::bind(const SymmetricBlockMatrix& matrix) {
   for (Coupling& coupling : couplings_) coupling.slot = matrix.slot(coupling.row, coupling.column);
+  if (friction_) friction_->bind(matrix);
 }
 
 void Bending::addForces(const Positions& positions, std::vector<Vector3d>& forces) const {
@@ -164,18 +140,20 @@ void Bending::addForces(const Positions& positions, std::vector<Vector3d>& force
     forces[coupling.row] += force;
     forces[coupling.column] -= force;
   }
+  if (rest_) rest_->addForces(positions, forces);
 }
 
 double Bending::energy(const Positions& positions) const {
   double energy = 0.0;
   for (const Hinge& hinge : hinges_) {
-    const Vector3d& origin = positions[hinge.particles[0]];
+    const Vector3d& origin = positions[corners_[hinge.begin].particle];
     Vector3d bending = Vector3d::Zero();
-    for (int i = 1; i < 4; ++i) {
-      bending += hinge.weights[i] * (positions[hinge.particles[i]] - origin);
+    for (int i = hinge.begin + 1; i < hinge.end; ++i) {
+      bending += corners_[i].weight * (positions[corners_[i].particle] - origin);
     }
     energy += 0.5 * hinge.stiffness * bending.squaredNorm();
   }
+  if (rest_) energy += rest_->energy(positions);
   return energy;
 }
 
@@ -195,6 +173,7 @@ void Bending::addStep(const Positions& positions, const Velocities& velocities,
   for (int i = 0; i < matrix.size(); ++i) {
     matrix.diagonal(i).diagonal().array() += times.a * times.a * diagonal_[i];
   }
+  if (rest_) rest_->addStep(positions, velocities, times, rhs);
 }
 
 }  // namespace haptex::cloth

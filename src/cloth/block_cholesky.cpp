@@ -1,50 +1,116 @@
 #include "haptex/cloth/block_cholesky.h"
 
 #include <algorithm>
+#include <cmath>
+#include <type_traits>
 
 #include "haptex/cloth/dense_kernels.h"
 
 namespace haptex::cloth {
+namespace {
 
-BlockCholesky::BlockCholesky(const SymmetricBlockMatrix& pattern)
+constexpr int kGroups = 8;             // of subtrees, shared by any number of threads
+constexpr double kSmallestCut = 1e7;   // operations of a factorisation that is worth cutting
+constexpr double kLargestPart = 0.06;  // of all operations, in one subtree
+constexpr int kBlockColumns = 48;      // of a wide panel that are factorised together
+constexpr int kShareRows = 96;         // of a wide panel that a thread takes at a time
+constexpr int kFetchAhead = 8;         // entries before their blocks are read
+
+}  // namespace
+
+template <typename T>
+BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern, ThreadPool* pool)
     : elimination_(analyse(pattern)),
+      pool_(pool),
       cost_(factorisationCost(elimination_)),
       permuted_(3, pattern.size()) {
   const std::size_t count = elimination_.supernodes.size();
-  std::size_t size = 0;
-  std::size_t largest_update = 0;
-  int largest_front = 0;
-  for (const Supernode& supernode : elimination_.supernodes) {
-    const int leading = 3 * (supernode.width() + static_cast<int>(supernode.rows.size()));
-    panel_of_.push_back({size, leading, 0, 0});
-    largest_front = std::max(largest_front, leading);
-    size += static_cast<std::size_t>(leading) * 3 * supernode.width();
-  }
-  panels_.resize(size);
-  for (const Supernode& supernode : elimination_.supernodes) {
-    // The widest stretch of rows that falls into one later supernode.
-    const auto& rows = supernode.rows;
-    for (std::size_t begin = 0, end = 0; begin < rows.size(); begin = end) {
-      while (end < rows.size() &&
-             elimination_.supernode_of[rows[end]] == elimination_.supernode_of[rows[begin]]) {
-        ++end;
-      }
-      largest_update = std::max(largest_update, 9 * (end - begin) * (rows.size() - begin));
-    }
-  }
-  update_.resize(largest_update);
-  front_.resize(largest_front);
+  makePanels();
+  cutTree();
+  makeEntries(pattern);
   first_descendant_.resize(count);
   next_descendant_.resize(count);
   next_row_.resize(count);
-  panel_row_.resize(pattern.size());
+  int tallest = 0;
+  for (const Panel& panel : panel_of_) tallest = std::max(tallest, panel.leading);
+  work_.resize(pool ? pool->threads() : 1);
+  for (Workspace& work : work_) {
+    work.panel_row.resize(pattern.size());
+    work.columns.resize(std::size_t{3} * tallest);
+    work.front.resize(tallest);
+  }
+  outside_.resize(top_.empty() ? 0 : std::size_t{3} * kGroups * top_columns_);
+  if constexpr (std::is_same_v<T, float>) scales_.resize(3, pattern.size());
+}
 
-  std::vector<std::vector<Entry>> entries_of(count);
+template <typename T>
+void BasicBlockCholesky<T>::makePanels() {
+  std::size_t size = 0;
+  for (const Supernode& supernode : elimination_.supernodes) {
+    const int below = static_cast<int>(supernode.rows.size());
+    const int leading = 3 * (supernode.width() + below);
+    panel_of_.push_back({size, leading, 0, 0, below});
+    size += static_cast<std::size_t>(leading) * 3 * supernode.width();
+  }
+  panels_.resize(size);
+}
+
+/// Takes the root off the costliest subtree until none is too large, and puts the subtrees into
+/// groups of about the same cost.
+template <typename T>
+void BasicBlockCholesky<T>::cutTree() {
+  const int count = static_cast<int>(elimination_.supernodes.size());
+  std::vector<double> cost(count, 0.0);
+  std::vector<std::vector<int>> children(count + 1);  // of the forest's roots: the last
+  std::vector<int> first(count);                      // supernode of the subtree
+  for (int s = 0; s < count; ++s) {
+    const Supernode& supernode = elimination_.supernodes[s];
+    cost[s] += supernodeCost(supernode);
+    first[s] = children[s].empty() ? s : first[children[s].front()];
+    const int parent =
+        supernode.rows.empty() ? count : elimination_.supernode_of[supernode.rows.front()];
+    children[parent].push_back(s);
+    if (parent < count) cost[parent] += cost[s];
+  }
+  top_place_.assign(elimination_.order.size(), -1);
+  std::vector<int> roots = children[count];
+  const auto cheaper = [&](int a, int b) { return cost[a] < cost[b]; };
+  while (cost_ > kSmallestCut) {
+    const auto costliest = std::max_element(roots.begin(), roots.end(), cheaper);
+    if (cost[*costliest] <= kLargestPart * cost_) break;
+    const int root = *costliest;
+    roots.erase(costliest);
+    top_.push_back(root);
+    roots.insert(roots.end(), children[root].begin(), children[root].end());
+  }
+  std::sort(top_.begin(), top_.end());
+  std::sort(roots.begin(), roots.end());
+  for (int s : top_) {
+    panel_of_[s].inner_rows = -1;
+    const Supernode& supernode = elimination_.supernodes[s];
+    for (int k = supernode.first; k < supernode.end; ++k) top_place_[k] = top_columns_++;
+  }
+  double all = 0.0, done = 0.0;
+  for (int root : roots) all += cost[root];
+  for (int root : roots) {
+    const int group = std::min(kGroups - 1, static_cast<int>(kGroups * done / all));
+    subtrees_.push_back({first[root], root + 1, top_.empty() ? 0 : group});
+    done += cost[root];
+    for (int s = first[root]; s <= root; ++s) {
+      const auto& rows = elimination_.supernodes[s].rows;
+      panel_of_[s].inner_rows = static_cast<int>(
+          std::lower_bound(rows.begin(), rows.end(), elimination_.supernodes[root].end) -
+          rows.begin());
+    }
+  }
+}
+
+template <typename T>
+void BasicBlockCholesky<T>::makeEntries(const SymmetricBlockMatrix& pattern) {
+  std::vector<std::vector<Entry>> entries_of(elimination_.supernodes.size());
   const auto addEntry = [&](int row, int column, int slot) {
-    row = elimination_.position[row];
-    column = elimination_.position[column];
-    const Entry entry = entryOf(std::max(row, column), std::min(row, column), slot, row < column);
-    entries_of[elimination_.supernode_of[std::min(row, column)]].push_back(entry);
+    const int first = std::min(elimination_.position[row], elimination_.position[column]);
+    entries_of[elimination_.supernode_of[first]].push_back(entryOf(row, column, slot));
   };
   for (int i = 0; i < pattern.size(); ++i) {
     addEntry(i, i, -1 - i);
@@ -52,158 +118,325 @@ BlockCholesky::BlockCholesky(const SymmetricBlockMatrix& pattern)
       addEntry(i, pattern.column(s), s);
     }
   }
-  for (std::size_t s = 0; s < count; ++s) {
+  for (std::size_t s = 0; s < entries_of.size(); ++s) {
     panel_of_[s].first_entry = static_cast<int>(entries_.size());
     entries_.insert(entries_.end(), entries_of[s].begin(), entries_of[s].end());
     panel_of_[s].end_entry = static_cast<int>(entries_.size());
   }
+  entries_.shrink_to_fit();
 }
 
-/// Place of the block (row, column), row >= column, in the order of elimination.
-BlockCholesky::Entry BlockCholesky::entryOf(int row, int column, int slot, bool transposed) const {
-  const int s = elimination_.supernode_of[column];
+/// Place of a block of the matrix.
+template <typename T>
+typename BasicBlockCholesky<T>::Entry BasicBlockCholesky<T>::entryOf(int row, int column,
+                                                                     int slot) const {
+  int below = elimination_.position[row], right = elimination_.position[column];
+  const bool transposed = below < right;
+  if (transposed) std::swap(below, right);
+  const int s = elimination_.supernode_of[right];
   const Supernode& supernode = elimination_.supernodes[s];
-  int local = row - supernode.first;
-  if (row >= supernode.end) {
-    const auto found = std::lower_bound(supernode.rows.begin(), supernode.rows.end(), row);
+  int local = below - supernode.first;
+  if (below >= supernode.end) {
+    const auto found = std::lower_bound(supernode.rows.begin(), supernode.rows.end(), below);
     local = supernode.width() + static_cast<int>(found - supernode.rows.begin());
   }
-  return {slot, panel_of_[s].leading * 3 * (column - supernode.first) + 3 * local, transposed};
+  const int offset = panel_of_[s].leading * 3 * (right - supernode.first) + 3 * local;
+  return {slot, offset, transposed, row, column};
 }
 
-void BlockCholesky::load(const SymmetricBlockMatrix& matrix, int target) {
-  const Panel& panel = panel_of_[target];
-  double* const base = panels_.data() + panel.offset;
-  const int columns = 3 * elimination_.supernodes[target].width();
-  std::fill_n(base, static_cast<std::size_t>(panel.leading) * columns, 0.0);
-  for (int e = panel.first_entry; e < panel.end_entry; ++e) {
-    const Entry& entry = entries_[e];
-    const Eigen::Matrix3d& block =
-        entry.slot < 0 ? matrix.diagonal(-1 - entry.slot) : matrix.lower(entry.slot);
-    double* place = base + entry.offset;
-    for (int c = 0; c < 3; ++c, place += panel.leading) {
-      for (int r = 0; r < 3; ++r) place[r] = entry.transposed ? block(c, r) : block(r, c);
+template <typename T>
+template <typename Function>
+void BasicBlockCholesky<T>::share(int tasks, const Function& function) {
+  if (pool_) return pool_->run(tasks, function);
+  for (int task = 0; task < tasks; ++task) function(task, 0);
+}
+
+/// @returns false if a diagonal number is not positive and finite
+template <typename T>
+bool BasicBlockCholesky<T>::computeScales(const SymmetricBlockMatrix& matrix) {
+  bool sound = true;
+  for (int i = 0; i < static_cast<int>(scales_.cols()); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const double number = matrix.diagonal(i)(c, c);
+      sound = sound && number > 0.0 && std::isfinite(number);
+      scales_(c, i) = 1.0 / std::sqrt(number);
     }
   }
+  return sound;
 }
 
-void BlockCholesky::applyDescendant(int descendant, int target) {
-  const Supernode& source = elimination_.supernodes[descendant];
-  const Supernode& sink = elimination_.supernodes[target];
-  const Panel& from = panel_of_[descendant];
-  const Panel& to = panel_of_[target];
-  const int begin = next_row_[descendant];
-  const int total = static_cast<int>(source.rows.size());
-  int end = begin;
-  while (end < total && source.rows[end] < sink.end) ++end;
-
-  const int height = 3 * (total - begin);
-  const int width = 3 * (end - begin);
-  const double* rows = panels_.data() + from.offset + 3 * (source.width() + begin);
-  multiplyByOwnTop(height, width, 3 * source.width(), rows, from.leading, update_.data(), height);
-  for (int b = begin; b < end; ++b) {
-    const double* column = update_.data() + static_cast<std::size_t>(height) * 3 * (b - begin);
-    double* destination = panels_.data() + to.offset +
-                          static_cast<std::size_t>(to.leading) * 3 * (source.rows[b] - sink.first);
-    for (int c = 0; c < 3; ++c, column += height, destination += to.leading) {
-      for (int a = b; a < total; ++a) {
-        const double* value = column + 3 * (a - begin);
-        double* place = destination + 3 * panel_row_[source.rows[a]];
-        place[0] -= value[0];
-        place[1] -= value[1];
-        place[2] -= value[2];
+template <typename T>
+void BasicBlockCholesky<T>::load(const SymmetricBlockMatrix& matrix, int target, T shift) {
+  const Panel& panel = panel_of_[target];
+  T* const base = panels_.data() + panel.offset;
+  const int columns = 3 * elimination_.supernodes[target].width();
+  std::fill_n(base, static_cast<std::size_t>(panel.leading) * columns, T(0));
+  const auto blockOf = [&matrix](const Entry& entry) -> const Eigen::Matrix3d& {
+    return entry.slot < 0 ? matrix.diagonal(-1 - entry.slot) : matrix.lower(entry.slot);
+  };
+  const int last = static_cast<int>(entries_.size()) - 1;
+  for (int e = panel.first_entry; e < panel.end_entry; ++e) {
+    const Entry& entry = entries_[e];
+    // The blocks lie in the order of the particles, anywhere in memory.
+    const double* const ahead = blockOf(entries_[std::min(last, e + kFetchAhead)]).data();
+    __builtin_prefetch(ahead);
+    __builtin_prefetch(ahead + 8);
+    Eigen::Matrix3d block = blockOf(entry);
+    if constexpr (std::is_same_v<T, float>) {
+      for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r) {
+          block(r, c) *= scales_(r, entry.row) * scales_(c, entry.column);
+        }
+      }
+      if (entry.slot < 0) block.diagonal().array() += shift;
+    }
+    T* place = base + entry.offset;
+    for (int c = 0; c < 3; ++c, place += panel.leading) {
+      for (int r = 0; r < 3; ++r) {
+        place[r] = static_cast<T>(entry.transposed ? block(c, r) : block(r, c));
       }
     }
   }
-
-  next_row_[descendant] = end;
-  if (end < total) {
-    const int later = elimination_.supernode_of[source.rows[end]];
-    next_descendant_[descendant] = first_descendant_[later];
-    first_descendant_[later] = descendant;
-  }
 }
 
-bool BlockCholesky::factorisePanel(int target) {
+template <typename T>
+bool BasicBlockCholesky<T>::factoriseNarrow(int target) {
   const Panel& panel = panel_of_[target];
   const int columns = 3 * elimination_.supernodes[target].width();
   const int ld = panel.leading;
-  double* const base = panels_.data() + panel.offset;
+  T* const base = panels_.data() + panel.offset;
   for (int c = 0; c < columns; c += 3) {
-    double* const top = base + static_cast<std::size_t>(ld) * c + c;
-    subtractProduct(ld - c, 3, c, base + c, ld, base + c, ld, top, ld);
+    T* const top = base + static_cast<std::size_t>(ld) * c + c;
+    if (c > 0) subtractProduct(ld - c, 3, c, base + c, ld, base + c, ld, top, ld);
     if (!factoriseThreeColumns(ld - c, top, ld)) return false;
   }
   return true;
 }
 
-bool BlockCholesky::factorise(const SymmetricBlockMatrix& matrix) {
-  std::fill(first_descendant_.begin(), first_descendant_.end(), -1);
-  for (int s = 0; s < static_cast<int>(elimination_.supernodes.size()); ++s) {
-    const Supernode& supernode = elimination_.supernodes[s];
-    for (int k = 0; k < supernode.width(); ++k) panel_row_[supernode.first + k] = k;
-    for (std::size_t r = 0; r < supernode.rows.size(); ++r) {
-      panel_row_[supernode.rows[r]] = supernode.width() + static_cast<int>(r);
+/// Some columns at a time: first what those before contribute, by shares of the rows, then the
+/// square at the diagonal, then the rows below it, by shares.
+template <typename T>
+bool BasicBlockCholesky<T>::factoriseWide(int target) {
+  const int columns = 3 * elimination_.supernodes[target].width();
+  const int ld = panel_of_[target].leading;
+  T* const base = panels_.data() + panel_of_[target].offset;
+  const auto at = [&](int row, int column) {
+    return base + static_cast<std::size_t>(ld) * column + row;
+  };
+  for (int begin = 0; begin < columns; begin += kBlockColumns) {
+    const int end = std::min(columns, begin + kBlockColumns);
+    const int shares = (ld - begin + kShareRows - 1) / kShareRows;
+    if (begin > 0) {
+      share(shares, [&](int task, int) {
+        const int row = begin + kShareRows * task;
+        subtractProduct(std::min(kShareRows, ld - row), end - begin, begin, at(row, 0), ld,
+                        at(begin, 0), ld, at(row, begin), ld);
+      });
     }
-    load(matrix, s);
-    for (int d = first_descendant_[s]; d != -1;) {
-      const int next = next_descendant_[d];
-      applyDescendant(d, s);
-      d = next;
+    for (int c = begin; c < end; c += 3) {
+      subtractProduct(end - c, 3, c - begin, at(c, begin), ld, at(c, begin), ld, at(c, c), ld);
+      if (!factoriseThreeColumns(end - c, at(c, c), ld)) return false;
     }
-    if (!factorisePanel(s)) return false;
-    next_row_[s] = 0;
-    if (!supernode.rows.empty()) {
-      const int later = elimination_.supernode_of[supernode.rows.front()];
-      next_descendant_[s] = first_descendant_[later];
-      first_descendant_[later] = s;
-    }
+    share((ld - end + kShareRows - 1) / kShareRows, [&](int task, int) {
+      const int row = end + kShareRows * task;
+      const int rows = std::min(kShareRows, ld - row);
+      for (int c = begin; c < end; c += 3) {
+        subtractProduct(rows, 3, c - begin, at(row, begin), ld, at(c, begin), ld, at(row, c), ld);
+        divideThreeColumns(rows, at(c, c), ld, at(row, c), ld);
+      }
+    });
   }
   return true;
 }
 
-void BlockCholesky::solve(BlockVector& x) {
-  const int n = static_cast<int>(permuted_.cols());
-  for (int k = 0; k < n; ++k) permuted_.col(k) = x.col(elimination_.order[k]);
-  double* const values = permuted_.data();
-  double* const front = front_.data();  // the unknowns that a panel couples, in its order
-
-  for (std::size_t s = 0; s < panel_of_.size(); ++s) {  // L y = b
-    const Supernode& supernode = elimination_.supernodes[s];
-    const Panel& panel = panel_of_[s];
-    const int width = 3 * supernode.width();
-    double* const own = values + 3 * supernode.first;
-    std::copy_n(own, width, front);
-    std::fill(front + width, front + panel.leading, 0.0);
-    substituteForward(panel.leading, width, panels_.data() + panel.offset, panel.leading, front);
-    std::copy_n(front, width, own);
-    const double* change = front + width;
-    for (int row : supernode.rows) {
-      double* other = values + 3 * row;
-      other[0] += change[0];
-      other[1] += change[1];
-      other[2] += change[2];
-      change += 3;
+template <typename T>
+void BasicBlockCholesky<T>::factoriseGroup(int group, const SymmetricBlockMatrix& matrix, T shift,
+                                           Workspace& work) {
+  for (const Subtree& subtree : subtrees_) {
+    if (subtree.group != group) continue;
+    for (int s = subtree.first; s < subtree.end && work.positive; ++s) {
+      placeRows(s, work.panel_row);
+      load(matrix, s, shift);
+      for (int d = first_descendant_[s]; d != -1;) {
+        const int next = next_descendant_[d];
+        applyDescendant(d, s, 0, panel_of_[s].leading / 3, work.panel_row, work.columns);
+        advance(d, s, false);
+        d = next;
+      }
+      work.positive = factoriseNarrow(s);
+      next_row_[s] = 0;
+      const auto& rows = elimination_.supernodes[s].rows;
+      if (rows.empty() || top_place_[rows.front()] != -1) continue;
+      const int later = elimination_.supernode_of[rows.front()];
+      next_descendant_[s] = first_descendant_[later];
+      first_descendant_[later] = s;
     }
   }
-  for (std::size_t s = panel_of_.size(); s-- > 0;) {  // L^T x = y
-    const Supernode& supernode = elimination_.supernodes[s];
-    const Panel& panel = panel_of_[s];
-    const int width = 3 * supernode.width();
-    double* const own = values + 3 * supernode.first;
-    std::copy_n(own, width, front);
-    double* below = front + width;
-    for (int row : supernode.rows) {
-      const double* other = values + 3 * row;
-      below[0] = other[0];
-      below[1] = other[1];
-      below[2] = other[2];
-      below += 3;
-    }
-    substituteBackward(panel.leading, width, panels_.data() + panel.offset, panel.leading, front);
-    std::copy_n(front, width, own);
-  }
-  for (int k = 0; k < n; ++k) x.col(elimination_.order[k]) = permuted_.col(k);
 }
+
+/// Lists the supernodes of the subtrees with the first supernode of the top that they update.
+template <typename T>
+void BasicBlockCholesky<T>::collectTopDescendants() {
+  for (const Subtree& subtree : subtrees_) {
+    for (int s = subtree.first; s < subtree.end; ++s) {
+      const auto& rows = elimination_.supernodes[s].rows;
+      if (next_row_[s] == static_cast<int>(rows.size())) continue;
+      const int later = elimination_.supernode_of[rows[next_row_[s]]];
+      next_descendant_[s] = first_descendant_[later];
+      first_descendant_[later] = s;
+    }
+  }
+}
+
+template <typename T>
+bool BasicBlockCholesky<T>::factoriseTop(int target, const SymmetricBlockMatrix& matrix, T shift) {
+  std::vector<int>& panel_row = work_[0].panel_row;
+  placeRows(target, panel_row);
+  load(matrix, target, shift);
+  const int rows = panel_of_[target].leading / 3;
+  constexpr int kRows = kShareRows / 3;
+  share((rows + kRows - 1) / kRows, [&](int task, int thread) {
+    const int first = kRows * task;
+    for (int d = first_descendant_[target]; d != -1; d = next_descendant_[d]) {
+      applyDescendant(d, target, first, std::min(rows, first + kRows), panel_row,
+                      work_[thread].columns);
+    }
+  });
+  for (int d = first_descendant_[target]; d != -1;) {
+    const int next = next_descendant_[d];
+    advance(d, target, true);
+    d = next;
+  }
+  if (!factoriseWide(target)) return false;
+  next_row_[target] = 0;
+  const auto& below = elimination_.supernodes[target].rows;
+  if (below.empty()) return true;
+  const int later = elimination_.supernode_of[below.front()];
+  next_descendant_[target] = first_descendant_[later];
+  first_descendant_[later] = target;
+  return true;
+}
+
+template <typename T>
+bool BasicBlockCholesky<T>::factorise(const SymmetricBlockMatrix& matrix, T shift) {
+  if constexpr (std::is_same_v<T, float>) {
+    if (!computeScales(matrix)) return false;
+  }
+  std::fill(first_descendant_.begin(), first_descendant_.end(), -1);
+  for (Workspace& work : work_) work.positive = true;
+  share(top_.empty() ? 1 : kGroups,
+        [&](int group, int thread) { factoriseGroup(group, matrix, shift, work_[thread]); });
+  for (const Workspace& work : work_) {
+    if (!work.positive) return false;
+  }
+  if (top_.empty()) return true;
+  collectTopDescendants();
+  for (int target : top_) {
+    if (!factoriseTop(target, matrix, shift)) return false;
+  }
+  return true;
+}
+
+/// L y = b for the unknowns of one supernode.
+/// @param outside what is added to unknowns of the top; null in the top itself
+template <typename T>
+void BasicBlockCholesky<T>::forward(int s, T* outside, std::vector<T>& front) {
+  const Supernode& supernode = elimination_.supernodes[s];
+  const Panel& panel = panel_of_[s];
+  const int width = 3 * supernode.width();
+  T* const values = permuted_.data();
+  T* const own = values + 3 * supernode.first;
+  std::copy_n(own, width, front.data());
+  std::fill(front.data() + width, front.data() + panel.leading, T(0));
+  substituteForward(panel.leading, width, panels_.data() + panel.offset, panel.leading,
+                    front.data());
+  std::copy_n(front.data(), width, own);
+  const T* change = front.data() + width;
+  const auto add = [&change](T* to) {
+    to[0] += change[0];
+    to[1] += change[1];
+    to[2] += change[2];
+    change += 3;
+  };
+  const int total = static_cast<int>(supernode.rows.size());
+  const int inner = outside ? panel.inner_rows : total;
+  for (int r = 0; r < inner; ++r) add(values + 3 * supernode.rows[r]);
+  for (int r = inner; r < total; ++r) add(outside + 3 * top_place_[supernode.rows[r]]);
+}
+
+/// L^T x = y for the unknowns of one supernode.
+template <typename T>
+void BasicBlockCholesky<T>::backward(int s, std::vector<T>& front) {
+  const Supernode& supernode = elimination_.supernodes[s];
+  const Panel& panel = panel_of_[s];
+  const int width = 3 * supernode.width();
+  T* const values = permuted_.data();
+  T* const own = values + 3 * supernode.first;
+  std::copy_n(own, width, front.data());
+  T* below = front.data() + width;
+  for (int row : supernode.rows) {
+    const T* other = values + 3 * row;
+    below[0] = other[0];
+    below[1] = other[1];
+    below[2] = other[2];
+    below += 3;
+  }
+  substituteBackward(panel.leading, width, panels_.data() + panel.offset, panel.leading,
+                     front.data());
+  std::copy_n(front.data(), width, own);
+}
+
+template <typename T>
+void BasicBlockCholesky<T>::solve(BlockVector& x) {
+  const int n = static_cast<int>(permuted_.cols());
+  double size = 1.0;
+  if constexpr (std::is_same_v<T, float>) {
+    x.leftCols(n).array() *= scales_.array();
+    size = x.leftCols(n).cwiseAbs().maxCoeff();
+    if (!(size > 0.0)) size = 1.0;
+    x.leftCols(n) /= size;
+  }
+  for (int k = 0; k < n; ++k) {
+    permuted_.col(k) = x.col(elimination_.order[k]).template cast<T>();
+  }
+  const std::size_t stride = std::size_t{3} * top_columns_;
+  const int groups = top_.empty() ? 1 : kGroups;
+  share(groups, [&](int group, int thread) {
+    T* const outside = outside_.data() + group * stride;
+    std::fill_n(outside, stride, T(0));
+    for (const Subtree& subtree : subtrees_) {
+      if (subtree.group != group) continue;
+      for (int s = subtree.first; s < subtree.end; ++s) {
+        forward(s, top_.empty() ? nullptr : outside, work_[thread].front);
+      }
+    }
+  });
+  for (int s : top_) {
+    const Supernode& supernode = elimination_.supernodes[s];
+    for (int k = supernode.first; k < supernode.end; ++k) {
+      for (int group = 0; group < groups; ++group) {
+        const T* added = outside_.data() + group * stride + std::size_t{3} * top_place_[k];
+        for (int c = 0; c < 3; ++c) permuted_(c, k) += added[c];
+      }
+    }
+    forward(s, nullptr, work_[0].front);
+  }
+  for (std::size_t t = top_.size(); t-- > 0;) backward(top_[t], work_[0].front);
+  share(groups, [&](int group, int thread) {
+    for (std::size_t t = subtrees_.size(); t-- > 0;) {
+      if (subtrees_[t].group != group) continue;
+      for (int s = subtrees_[t].end; s-- > subtrees_[t].first;) {
+        backward(s, work_[thread].front);
+      }
+    }
+  });
+  for (int k = 0; k < n; ++k) {
+    x.col(elimination_.order[k]) = permuted_.col(k).template cast<double>();
+  }
+  if constexpr (std::is_same_v<T, float>) x.leftCols(n).array() *= size * scales_.array();
+}
+
+template class BasicBlockCholesky<double>;
+template class BasicBlockCholesky<float>;
 
 }  // namespace haptex::cloth

@@ -81,4 +81,30 @@ void SymmetricBlockMatrix::eliminate(const std::vector<char>& fixed, const Block
   }
 }
 
+void SymmetricBlockMatrix::confine(const std::vector<char>& confined, const BlockVector& normals,
+                                   const BlockVector& values, BlockVector& rhs) {
+  // With P = I - n n^T: the blocks become P_i A_ij P_j, the right-hand side P (b - A values).
+  for (int i = 0; i < size(); ++i) {
+    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) {
+      const int j = columns_[s];
+      Eigen::Matrix3d& block = lower_[s];
+      if (confined[j]) rhs.col(i) -= block * values.col(j);
+      if (confined[i]) rhs.col(j) -= block.transpose() * values.col(i);
+      if (confined[j]) block -= (block * normals.col(j)).eval() * normals.col(j).transpose();
+      if (confined[i]) block -= normals.col(i) * (normals.col(i).transpose() * block).eval();
+    }
+  }
+  for (int i = 0; i < size(); ++i) {
+    if (!confined[i]) continue;
+    Eigen::Matrix3d& block = diagonal_[i];
+    const Eigen::Vector3d n = normals.col(i);
+    rhs.col(i) -= block * values.col(i);
+    rhs.col(i) -= n * n.dot(rhs.col(i));
+    const double scale = block.trace() / 3.0;
+    block -= (block * n).eval() * n.transpose();
+    block -= n * (n.transpose() * block).eval();
+    block += scale * n * n.transpose();
+  }
+}
+
 }  // namespace haptex::cloth

@@ -1,13 +1,18 @@
 #include "haptex/cloth/cloth.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 
 namespace haptex::cloth {
 namespace {
+
+std::uint64_t nextRevision() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
 
 void requireDensity(const material::Fabric& fabric) {
   if (!std::isfinite(fabric.areal_density) || fabric.areal_density <= 0.0) {
@@ -31,7 +36,35 @@ std::vector<double> lumpedMasses(const Membrane& membrane, std::size_t particles
   return masses;
 }
 
-/// Nothing if bending is not modelled.
+void requireHysteresis(const material::Fabric& fabric, const ModelledEffects& effects) {
+  if (!effects.bending) {
+    throw std::invalid_argument("hysteresis of bending is modelled and bending is not");
+  }
+  if (effects.elasticity == Elasticity::kMassSpring) {
+    throw std::invalid_argument(
+        "hysteresis of bending is modelled, which bend springs do not know");
+  }
+  if (!fabric.bending_hysteresis) {
+    throw std::invalid_argument("hysteresis of bending is modelled and fabric '" + fabric.name +
+                                "' has none: add the key hysteresis to bending");
+  }
+}
+
+const material::Fabric& requireModelled(const material::Fabric& fabric,
+                                        const ModelledEffects& effects) {
+  if (effects.contraction && effects.elasticity != Elasticity::kGreenLagrange) {
+    throw std::invalid_argument(
+        "contraction is modelled, which only Green-Lagrange elasticity knows");
+  }
+  if (effects.bending_hysteresis) requireHysteresis(fabric, effects);
+  if (effects.contraction && !fabric.contraction) {
+    throw std::invalid_argument("contraction is modelled and fabric '" + fabric.name +
+                                "' has none: add the key contraction");
+  }
+  return fabric;
+}
+
+/// Nothing if bending is not modelled, or by springs.
 std::optional<Bending> bendingOf(const ClothMesh& mesh, const material::Fabric& fabric,
                                  const ModelledEffects& effects) {
   if (!effects.bending) return std::nullopt;
@@ -39,7 +72,9 @@ std::optional<Bending> bendingOf(const ClothMesh& mesh, const material::Fabric& 
     throw std::invalid_argument("bending is modelled and fabric '" + fabric.name +
                                 "' has no bending rigidity: add the key bending");
   }
-  return Bending(mesh, *fabric.bending);
+  if (effects.elasticity == Elasticity::kMassSpring) return std::nullopt;
+  return Bending(mesh, *fabric.bending, effects.bending_settings,
+                 effects.bending_hysteresis ? fabric.bending_hysteresis : std::nullopt);
 }
 
 }  // namespace
@@ -58,11 +93,14 @@ Eigen::Vector3d AttachmentPath::velocity(double time) const {
 }
 
 Cloth::Cloth(ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects)
-    : mesh_(std::move(mesh)),
+    : revision_(nextRevision()),
+      mesh_(std::move(mesh)),
       fabric_(std::move(fabric)),
       effects_(effects),
-      membrane_(requireSoundAndReturn(mesh_), fabric_, effects.viscosity),
+      membrane_(requireSoundAndReturn(mesh_), requireModelled(fabric_, effects), effects.viscosity,
+                effects.contraction),
       bending_(bendingOf(mesh_, fabric_, effects)),
+      air_(effects.air ? std::optional<Aerodynamics>(*effects.air) : std::nullopt),
       external_forces_(mesh_.rest_coordinates.size(), Eigen::Vector3d::Zero()),
       attachments_(mesh_.rest_coordinates.size()) {
   requireDensity(fabric_);
@@ -70,38 +108,67 @@ Cloth::Cloth(ClothMesh mesh, material::Fabric fabric, const ModelledEffects& eff
     throw std::invalid_argument("gravity has a component that is not finite");
   }
   masses_ = lumpedMasses(membrane_, mesh_.rest_coordinates.size(), fabric_.areal_density);
-  bindBending();
-  point_loads_.reserve(kMostPointLoads);
-  checked_loads_.reserve(kMostPointLoads);
+  if (effects.elasticity == Elasticity::kMassSpring) {
+    springs_.emplace(mesh_, fabric_, effects.viscosity, effects.bending);
+  }
+  bindPattern();
+  if (effects.point_loads) point_loads_.reserve(kMostPointLoads);
+  if (!effects.contacts) return;
+  contacts_.reserve(particleCount());
+  touched_.resize(particleCount());
 }
 
 SymmetricBlockMatrix Cloth::pattern() const {
   const int count = static_cast<int>(particleCount());
+  if (springs_) return {count, mesh_.triangles, springs_->pairs()};
   if (!bending_) return {count, mesh_.triangles};
   return {count, mesh_.triangles, bending_->pairs()};
 }
 
-void Cloth::bindBending() {
-  if (!bending_) return;
-  const SymmetricBlockMatrix matrix = pattern();
-  membrane_.bind(matrix);
-  bending_->bind(matrix);
+/// Makes what has slots in the matrix anew for the present fabric and pattern.
+void Cloth::bindPattern() {
+  if (bending_ || springs_) {
+    const SymmetricBlockMatrix matrix = pattern();
+    membrane_.bind(matrix);
+    if (bending_) bending_->bind(matrix);
+    if (springs_) springs_->bind(matrix);
+  }
+  if (effects_.elasticity == Elasticity::kCorotational) {
+    corotational_.emplace(membrane_.elements(), fabric_, effects_.viscosity);
+  }
 }
 
 ClothState Cloth::initialState() const {
   ClothState state;
   state.positions = mesh_.initial_positions;
   state.velocities.assign(particleCount(), Eigen::Vector3d::Zero());
+  forgetBending(state);
   return state;
+}
+
+void Cloth::forgetBending(ClothState& state) const {
+  requireParticles(state);
+  state.plastic_bends.clear();
+  if (const BendingFriction* friction = bendingFriction()) {
+    state.plastic_bends = friction->withoutFriction(state.positions);
+  }
+}
+
+void Cloth::yieldBending(ClothState& state) const {
+  requireState(state);
+  if (bendingFriction()) bendingFriction()->yield(state.positions, state.plastic_bends);
 }
 
 void Cloth::setFabric(material::Fabric fabric) {
   requireDensity(fabric);
+  requireModelled(fabric, effects_);
+  revision_ = nextRevision();
   bending_ = bendingOf(mesh_, fabric, effects_);
-  bindBending();
-  membrane_.setFabric(fabric);
-  masses_ = lumpedMasses(membrane_, particleCount(), fabric.areal_density);
   fabric_ = std::move(fabric);
+  membrane_.setFabric(fabric_);
+  if (springs_) springs_->setFabric(fabric_);
+  bindPattern();
+  masses_ = lumpedMasses(membrane_, particleCount(), fabric_.areal_density);
 }
 
 void Cloth::requireParticle(int particle) const {
@@ -120,18 +187,31 @@ void Cloth::setExternalForce(int particle, const Eigen::Vector3d& force) {
                                 " has a component that is not finite");
   }
   external_forces_[particle] = force;
+  revision_ = nextRevision();
 }
 
 void Cloth::setPointLoads(const std::vector<PointLoad>& loads) {
+  if (!effects_.point_loads && !loads.empty()) {
+    throw std::invalid_argument("the cloth is modelled without point loads; none can be set");
+  }
   if (loads.size() > kMostPointLoads) {
     throw std::invalid_argument("there are " + std::to_string(loads.size()) +
                                 " point loads; allowed are " + std::to_string(kMostPointLoads));
   }
-  checked_loads_.clear();
+  for (std::size_t i = 0; i < loads.size(); ++i) checkedLoad(loads[i], i, mesh_.triangles.size());
+  revision_ = nextRevision();
+  point_loads_.clear();
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    checked_loads_.push_back(checkedLoad(loads[i], i, mesh_.triangles.size()));
+    point_loads_.push_back(checkedLoad(loads[i], i, mesh_.triangles.size()));
   }
-  std::swap(point_loads_, checked_loads_);
+}
+
+void Cloth::setContacts(const std::vector<ParticleContact>& contacts) {
+  if (!effects_.contacts) {
+    throw std::invalid_argument("the cloth is modelled without contacts; none can be set");
+  }
+  cloth::requireSound(contacts, touched_);
+  contacts_.assign(contacts.begin(), contacts.end());
 }
 
 void Cloth::attach(int particle, const AttachmentPath& path) {
@@ -164,6 +244,17 @@ bool Cloth::isAttached(int particle) const {
 }
 
 void Cloth::requireState(const ClothState& state) const {
+  requireParticles(state);
+  const std::size_t bends = bendingFriction() ? bendingFriction()->size() : 0;
+  if (state.plastic_bends.size() != bends) {
+    std::ostringstream message;
+    message << "the state has " << state.plastic_bends.size() << " plastic bends; the cloth has "
+            << bends << " hinges with friction";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+void Cloth::requireParticles(const ClothState& state) const {
   if (state.positions.size() != particleCount() || state.velocities.size() != particleCount()) {
     std::ostringstream message;
     message << "the state has " << state.positions.size() << " positions and "
@@ -171,106 +262,6 @@ void Cloth::requireState(const ClothState& state) const {
             << " particles";
     throw std::invalid_argument(message.str());
   }
-}
-
-void Cloth::computeForces(const ClothState& state, std::vector<Eigen::Vector3d>& forces) const {
-  requireState(state);
-  forces.resize(particleCount());
-  for (std::size_t i = 0; i < particleCount(); ++i) {
-    forces[i] = external_forces_[i] + masses_[i] * effects_.gravity;
-  }
-  membrane_.addForces(state.positions, state.velocities, forces);
-  if (bending_) bending_->addForces(state.positions, forces);
-  addPointForces(point_loads_, mesh_.triangles, state.positions, forces);
-}
-
-double Cloth::potentialEnergy(const ClothState& state) const {
-  requireState(state);
-  double energy = membrane_.elasticEnergy(state.positions) +
-                  pointLoadEnergy(point_loads_, mesh_.triangles, state.positions);
-  if (bending_) energy += bending_->energy(state.positions);
-  for (std::size_t i = 0; i < particleCount(); ++i) {
-    energy -= (external_forces_[i] + masses_[i] * effects_.gravity).dot(state.positions[i]);
-  }
-  return energy;
-}
-
-double Cloth::kineticEnergy(const ClothState& state) const {
-  requireState(state);
-  double energy = 0.0;
-  for (std::size_t i = 0; i < particleCount(); ++i) {
-    energy += 0.5 * masses_[i] * state.velocities[i].squaredNorm();
-  }
-  return energy;
-}
-
-void Cloth::addPointLoadJacobian(const std::map<int, std::vector<std::size_t>>& rows_of_particle,
-                                 std::vector<JacobianRow>& rows) const {
-  for (const PointLoad& load : point_loads_) {
-    const std::array<int, 3>& corners = mesh_.triangles[load.triangle];
-    for (int i = 0; i < 3; ++i) {
-      const auto asked = rows_of_particle.find(corners[i]);
-      if (asked == rows_of_particle.end()) continue;
-      for (std::size_t r : asked->second) {
-        for (int j = 0; j < 3; ++j) {  // the membrane has made the block
-          rows[r].at(corners[j]).by_position -= load.weights[i] * load.weights[j] * load.stiffness;
-        }
-      }
-    }
-  }
-}
-
-void Cloth::addBendingJacobian(const std::map<int, std::vector<std::size_t>>& rows_of_particle,
-                               std::vector<JacobianRow>& rows) const {
-  const auto add = [&](int row, int column, double stiffness) {
-    const auto asked = rows_of_particle.find(row);
-    if (asked == rows_of_particle.end()) return;
-    const Eigen::Matrix3d block = stiffness * Eigen::Matrix3d::Identity();
-    for (std::size_t r : asked->second) {
-      rows[r].at(row).by_position += block;
-      const JacobianBlock empty{row, column, Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
-      rows[r].emplace(column, empty).first->second.by_position -= block;
-    }
-  };
-  for (const Bending::Coupling& coupling : bending_->couplings()) {
-    add(coupling.row, coupling.column, coupling.stiffness);
-    add(coupling.column, coupling.row, coupling.stiffness);
-  }
-}
-
-std::vector<JacobianBlock> Cloth::jacobian(const ClothState& state,
-                                           const std::vector<int>& particles) const {
-  requireState(state);
-  std::vector<JacobianRow> rows(particles.size());
-  std::map<int, std::vector<std::size_t>> rows_of_particle;
-  for (std::size_t r = 0; r < particles.size(); ++r) {
-    requireParticle(particles[r]);
-    rows_of_particle[particles[r]].push_back(r);
-  }
-  for (const MembraneElement& element : membrane_.elements()) {
-    for (int i = 0; i < 3; ++i) {
-      const auto asked = rows_of_particle.find(element.particles[i]);
-      if (asked == rows_of_particle.end()) continue;
-      const Membrane::Jacobian jacobian =
-          membrane_.exactJacobian(element, state.positions, state.velocities);
-      for (std::size_t r : asked->second) {
-        for (int j = 0; j < 3; ++j) {
-          JacobianBlock empty{element.particles[i], element.particles[j], Eigen::Matrix3d::Zero(),
-                              Eigen::Matrix3d::Zero()};
-          JacobianBlock& block = rows[r].emplace(element.particles[j], empty).first->second;
-          block.by_position += jacobian.by_position[i][j];
-          block.by_velocity += jacobian.by_velocity[i][j];
-        }
-      }
-    }
-  }
-  if (bending_) addBendingJacobian(rows_of_particle, rows);
-  addPointLoadJacobian(rows_of_particle, rows);
-  std::vector<JacobianBlock> blocks;
-  for (const auto& row : rows) {
-    for (const auto& entry : row) blocks.push_back(entry.second);
-  }
-  return blocks;
 }
 
 }  // namespace haptex::cloth

@@ -19,6 +19,29 @@ ConjugateGradient::ConjugateGradient(int size)
 
 SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
                                      double tolerance, int max_iterations, BlockVector& x) {
+  for (int i = 0; i < matrix.size(); ++i) inverse_diagonal_[i] = matrix.diagonal(i).inverse();
+  const auto precondition = [&] {
+    for (int i = 0; i < matrix.size(); ++i) {
+      preconditioned_.col(i).noalias() = inverse_diagonal_[i] * residual_.col(i);
+    }
+  };
+  return iterate(matrix, precondition, rhs, tolerance, max_iterations, x);
+}
+
+SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix,
+                                     BasicBlockCholesky<float>& factor, const BlockVector& rhs,
+                                     double tolerance, int max_iterations, BlockVector& x) {
+  const auto precondition = [&] {
+    preconditioned_ = residual_;
+    factor.solve(preconditioned_);
+  };
+  return iterate(matrix, precondition, rhs, tolerance, max_iterations, x);
+}
+
+template <typename Precondition>
+SolveResult ConjugateGradient::iterate(const SymmetricBlockMatrix& matrix,
+                                       const Precondition& precondition, const BlockVector& rhs,
+                                       double tolerance, int max_iterations, BlockVector& x) {
   SolveResult result;
   const double rhs_norm = rhs.norm();
   if (rhs_norm == 0.0) {
@@ -26,12 +49,6 @@ SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, const B
     result.converged = true;
     return result;
   }
-  for (int i = 0; i < matrix.size(); ++i) inverse_diagonal_[i] = matrix.diagonal(i).inverse();
-  const auto precondition = [&] {
-    for (int i = 0; i < matrix.size(); ++i) {
-      preconditioned_.col(i).noalias() = inverse_diagonal_[i] * residual_.col(i);
-    }
-  };
   const auto restart = [&] {
     matrix.multiply(x, product_);
     residual_ = rhs - product_;
@@ -50,15 +67,17 @@ SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, const B
     direction_ = preconditioned_;
     double slope = dot(residual_, preconditioned_);
     double recurrence = result.residual;
-    while (recurrence > tolerance && result.iterations < max_iterations) {
+    while (result.iterations < max_iterations) {
       matrix.multiply(direction_, product_);
       const double curvature = dot(direction_, product_);
-      if (!(curvature > 0.0)) break;  // not positive definite to rounding, or not a number
+      result.indefinite = !(curvature > 0.0);  // to rounding, or not a number
+      if (result.indefinite) break;
       const double step = slope / curvature;
       x += step * direction_;
       residual_ -= step * product_;
       ++result.iterations;
       recurrence = residual_.norm() / rhs_norm;
+      if (recurrence <= tolerance) break;
       precondition();
       const double next_slope = dot(residual_, preconditioned_);
       direction_ = preconditioned_ + (next_slope / slope) * direction_;

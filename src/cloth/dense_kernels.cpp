@@ -3,26 +3,41 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 namespace haptex::cloth {
 namespace {
 
-// Four doubles at any address; one register with AVX, two with the baseline.
-typedef double Lanes __attribute__((vector_size(32), aligned(8), may_alias));
+/// kBytes of numbers at any address: one register, or two with the baseline.
+template <typename T, int kBytes>
+struct Register {
+  static constexpr int kLanes = kBytes / sizeof(T);
+  typedef T Lanes __attribute__((vector_size(kBytes), aligned(sizeof(T)), may_alias));
+  using Number = T;
+  using Half = Register<T, kBytes / 2>;
+};
 
-constexpr int kLanes = 4;
+template <typename R>
+[[gnu::always_inline]] inline typename R::Lanes& lanesAt(typename R::Number* address) {
+  return *reinterpret_cast<typename R::Lanes*>(address);
+}
+
+template <typename R>
+[[gnu::always_inline]] inline const typename R::Lanes& lanesAt(const typename R::Number* address) {
+  return *reinterpret_cast<const typename R::Lanes*>(address);
+}
 
 enum class Store { kSubtract, kAssign };
 
-/// kVectors * 4 rows by three columns of A B^T: nine accumulators at most, so that they, the loads
-/// and one broadcast stay in sixteen registers.
-template <int kVectors>
-[[gnu::always_inline]] inline void sumTile(int depth, const double* a, int lda, const double* b,
-                                           int ldb, Lanes (&sum)[3][kVectors]) {
+/// kVectors registers of rows by kColumns columns of A B^T. The accumulators, the loads and one
+/// broadcast have to stay in the registers: three by three in sixteen, three by six in thirty-two.
+template <typename R, int kVectors, int kColumns, typename T>
+[[gnu::always_inline]] inline void sumTile(int depth, const T* a, int lda, const T* b, int ldb,
+                                           typename R::Lanes (&sum)[kColumns][kVectors]) {
   for (int k = 0; k < depth; ++k) {
-    Lanes column[kVectors];
-    for (int v = 0; v < kVectors; ++v) column[v] = *reinterpret_cast<const Lanes*>(a + v * kLanes);
-    for (int j = 0; j < 3; ++j) {
+    typename R::Lanes column[kVectors];
+    for (int v = 0; v < kVectors; ++v) column[v] = lanesAt<R>(a + v * R::kLanes);
+    for (int j = 0; j < kColumns; ++j) {
       for (int v = 0; v < kVectors; ++v) sum[j][v] += column[v] * b[j];
     }
     a += lda;
@@ -30,27 +45,43 @@ template <int kVectors>
   }
 }
 
-template <Store kStore, int kVectors>
-[[gnu::always_inline]] inline void tile(int depth, const double* a, int lda, const double* b,
-                                        int ldb, double* c, int ldc) {
-  Lanes sum[3][kVectors] = {};
-  sumTile<kVectors>(depth, a, lda, b, ldb, sum);
-  for (int j = 0; j < 3; ++j) {
+template <Store kStore, typename R, int kVectors, int kColumns, typename T>
+[[gnu::always_inline]] inline void tile(int depth, const T* a, int lda, const T* b, int ldb, T* c,
+                                        int ldc) {
+  typename R::Lanes sum[kColumns][kVectors] = {};
+  sumTile<R, kVectors, kColumns>(depth, a, lda, b, ldb, sum);
+  for (int j = 0; j < kColumns; ++j) {
     for (int v = 0; v < kVectors; ++v) {
-      Lanes* target = reinterpret_cast<Lanes*>(c + j * ldc + v * kLanes);
+      auto& target = lanesAt<R>(c + j * ldc + v * R::kLanes);
       if constexpr (kStore == Store::kSubtract) {
-        *target -= sum[j][v];
+        target -= sum[j][v];
       } else {
-        *target = sum[j][v];
+        target = sum[j][v];
       }
     }
   }
 }
 
-template <Store kStore>
-[[gnu::always_inline]] inline void element(int depth, const double* a, int lda, const double* b,
-                                           int ldb, double* c) {
-  double sum = 0.0;
+/// The last lanes of `rows` rows, of which those before `begin` are done.
+template <Store kStore, typename R, int kColumns, typename T>
+[[gnu::always_inline]] inline void lastTile(int begin, int rows, int depth, const T* a, int lda,
+                                            const T* b, int ldb, T* c, int ldc) {
+  const int last = rows - R::kLanes;
+  if constexpr (kStore == Store::kAssign) {
+    tile<kStore, R, 1, kColumns>(depth, a + last, lda, b, ldb, c + last, ldc);
+  } else {
+    typename R::Lanes sum[kColumns][1] = {};
+    sumTile<R, 1, kColumns>(depth, a + last, lda, b, ldb, sum);
+    for (int j = 0; j < kColumns; ++j) {
+      for (int r = begin; r < rows; ++r) c[r + j * ldc] -= sum[j][0][r - last];
+    }
+  }
+}
+
+template <Store kStore, typename T>
+[[gnu::always_inline]] inline void element(int depth, const T* a, int lda, const T* b, int ldb,
+                                           T* c) {
+  T sum = 0;
   for (int k = 0; k < depth; ++k) sum += a[k * lda] * b[k * ldb];
   if constexpr (kStore == Store::kSubtract) {
     *c -= sum;
@@ -59,141 +90,180 @@ template <Store kStore>
   }
 }
 
-/// Three columns of A B^T.
-template <Store kStore>
-[[gnu::always_inline]] inline void threeColumns(int rows, int depth, const double* a, int lda,
-                                                const double* b, int ldb, double* c, int ldc) {
+/// kColumns columns of A B^T.
+template <Store kStore, typename R, int kColumns, typename T>
+[[gnu::always_inline]] inline void someColumns(int rows, int depth, const T* a, int lda, const T* b,
+                                               int ldb, T* c, int ldc) {
+  constexpr int kLanes = R::kLanes;
   int i = 0;
   for (; i + 3 * kLanes <= rows; i += 3 * kLanes) {
-    tile<kStore, 3>(depth, a + i, lda, b, ldb, c + i, ldc);
+    tile<kStore, R, 3, kColumns>(depth, a + i, lda, b, ldb, c + i, ldc);
   }
   if (i + 2 * kLanes <= rows) {
-    tile<kStore, 2>(depth, a + i, lda, b, ldb, c + i, ldc);
+    tile<kStore, R, 2, kColumns>(depth, a + i, lda, b, ldb, c + i, ldc);
     i += 2 * kLanes;
   } else if (i + kLanes <= rows) {
-    tile<kStore, 1>(depth, a + i, lda, b, ldb, c + i, ldc);
+    tile<kStore, R, 1, kColumns>(depth, a + i, lda, b, ldb, c + i, ldc);
     i += kLanes;
   }
   if (i == rows) return;
-  if (rows < kLanes) {
-    for (; i < rows; ++i) {
-      for (int j = 0; j < 3; ++j) element<kStore>(depth, a + i, lda, b + j, ldb, c + i + j * ldc);
-    }
-    return;
-  }
-  // The last four rows: some of them are done.
-  const int last = rows - kLanes;
-  if constexpr (kStore == Store::kAssign) {
-    tile<kStore, 1>(depth, a + last, lda, b, ldb, c + last, ldc);
+  if (rows >= kLanes) {
+    lastTile<kStore, R, kColumns>(i, rows, depth, a, lda, b, ldb, c, ldc);
+  } else if constexpr (sizeof(typename R::Lanes) > 16) {
+    someColumns<kStore, typename R::Half, kColumns>(rows, depth, a, lda, b, ldb, c, ldc);
   } else {
-    Lanes sum[3][1] = {};
-    sumTile<1>(depth, a + last, lda, b, ldb, sum);
-    for (int j = 0; j < 3; ++j) {
-      for (int r = i; r < rows; ++r) c[r + j * ldc] -= sum[j][0][r - last];
+    for (; i < rows; ++i) {
+      for (int j = 0; j < kColumns; ++j) {
+        element<kStore>(depth, a + i, lda, b + j, ldb, c + i + j * ldc);
+      }
     }
   }
 }
 
-[[gnu::always_inline]] inline void subtractProductOf(int rows, int columns, int depth,
-                                                     const double* a, int lda, const double* b,
-                                                     int ldb, double* c, int ldc) {
-  int j = 0;
-  for (; j + 3 <= columns; j += 3) {
-    threeColumns<Store::kSubtract>(rows, depth, a, lda, b + j, ldb, c + j * ldc, ldc);
+/// C -= A B^T by parts of A that stay in the first-level cache while all columns pass.
+template <typename R, typename T>
+[[gnu::always_inline]] inline void subtractProductOf(int rows, int columns, int depth, const T* a,
+                                                     int lda, const T* b, int ldb, T* c, int ldc) {
+  constexpr int kWide = sizeof(typename R::Lanes) >= 64 ? 6 : 3;
+  constexpr int kRows = 3 * R::kLanes;
+  constexpr int kDepth = 192;
+  if (columns == 3) {  // A passes once
+    return someColumns<Store::kSubtract, R, 3>(rows, depth, a, lda, b, ldb, c, ldc);
   }
-  for (; j < columns; ++j) {
-    for (int i = 0; i < rows; ++i) {
-      element<Store::kSubtract>(depth, a + i, lda, b + j, ldb, c + i + j * ldc);
+  for (int k = 0; k < depth; k += kDepth) {
+    const int part = depth - k < kDepth ? depth - k : kDepth;
+    const T* const a_part = a + static_cast<std::ptrdiff_t>(lda) * k;
+    const T* const b_part = b + static_cast<std::ptrdiff_t>(ldb) * k;
+    for (int i = 0; i < rows;) {
+      // The last part takes up what is too short for a register.
+      const int height = rows - i < kRows + R::kLanes ? rows - i : kRows;
+      int j = 0;
+      for (; j + kWide <= columns; j += kWide) {
+        someColumns<Store::kSubtract, R, kWide>(height, part, a_part + i, lda, b_part + j, ldb,
+                                                c + i + static_cast<std::ptrdiff_t>(ldc) * j, ldc);
+      }
+      if constexpr (kWide > 3) {
+        for (; j + 3 <= columns; j += 3) {
+          someColumns<Store::kSubtract, R, 3>(height, part, a_part + i, lda, b_part + j, ldb,
+                                              c + i + static_cast<std::ptrdiff_t>(ldc) * j, ldc);
+        }
+      }
+      for (; j < columns; ++j) {
+        for (int r = i; r < i + height; ++r) {
+          element<Store::kSubtract>(part, a_part + r, lda, b_part + j, ldb,
+                                    c + r + static_cast<std::ptrdiff_t>(ldc) * j);
+        }
+      }
+      i += height;
     }
   }
 }
 
-[[gnu::always_inline]] inline void multiplyByOwnTopOf(int rows, int columns, int depth,
-                                                      const double* a, int lda, double* c,
-                                                      int ldc) {
-  for (int j = 0; j < columns; j += 3) {
-    threeColumns<Store::kAssign>(rows - j, depth, a + j, lda, a + j, lda, c + j + j * ldc, ldc);
-  }
-}
-
-/// L_below = A_below L_top^-T of kVectors * 4 rows.
-template <int kVectors>
-[[gnu::always_inline]] inline void divideRows(const double (&l)[3][3], double* a, int lda) {
+/// L_below = A_below L_top^-T of kVectors registers of rows.
+template <typename R, int kVectors, typename T>
+[[gnu::always_inline]] inline void divideRows(const T (&l)[3][3], T* a, int lda) {
   for (int v = 0; v < kVectors; ++v) {
-    Lanes* columns[3];
-    for (int c = 0; c < 3; ++c) columns[c] = reinterpret_cast<Lanes*>(a + c * lda + v * kLanes);
-    const Lanes x0 = *columns[0] * l[0][0];
-    const Lanes x1 = (*columns[1] - x0 * l[1][0]) * l[1][1];
-    const Lanes x2 = (*columns[2] - x0 * l[2][0] - x1 * l[2][1]) * l[2][2];
+    typename R::Lanes* columns[3];
+    for (int c = 0; c < 3; ++c) columns[c] = &lanesAt<R>(a + c * lda + v * R::kLanes);
+    const auto x0 = *columns[0] * l[0][0];
+    const auto x1 = (*columns[1] - x0 * l[1][0]) * l[1][1];
+    const auto x2 = (*columns[2] - x0 * l[2][0] - x1 * l[2][1]) * l[2][2];
     *columns[0] = x0;
     *columns[1] = x1;
     *columns[2] = x2;
   }
 }
 
-[[gnu::always_inline]] inline bool factoriseThreeColumnsOf(int rows, double* a, int lda) {
-  double l[3][3];  // the top, with its diagonal inverted
+template <typename R, typename T>
+[[gnu::always_inline]] inline void divideRowsOf(const T (&l)[3][3], int rows, T* a, int lda) {
+  constexpr int kLanes = R::kLanes;
+  int i = 0;
+  for (; i + 2 * kLanes <= rows; i += 2 * kLanes) divideRows<R, 2>(l, a + i, lda);
+  for (; i + kLanes <= rows; i += kLanes) divideRows<R, 1>(l, a + i, lda);
+  for (; i < rows; ++i) {
+    T* const x = a + i;
+    x[0] *= l[0][0];
+    x[lda] = (x[lda] - x[0] * l[1][0]) * l[1][1];
+    x[2 * lda] = (x[2 * lda] - x[0] * l[2][0] - x[lda] * l[2][1]) * l[2][2];
+  }
+}
+
+template <typename R, typename T>
+[[gnu::always_inline]] inline void divideThreeColumnsOf(int rows, const T* top, int ldtop, T* a,
+                                                        int lda) {
+  T l[3][3];
+  for (int c = 0; c < 3; ++c) {
+    for (int r = c; r < 3; ++r) l[r][c] = top[r + c * ldtop];
+  }
+  divideRowsOf<R>(l, rows, a, lda);
+}
+
+template <typename R, typename T>
+[[gnu::always_inline]] inline bool factoriseThreeColumnsOf(int rows, T* a, int lda) {
+  T l[3][3];  // the top, with its diagonal inverted
   for (int c = 0; c < 3; ++c) {
     for (int r = c; r < 3; ++r) {
       l[r][c] = a[r + c * lda];
       for (int k = 0; k < c; ++k) l[r][c] -= l[r][k] * l[c][k];
     }
-    if (!(l[c][c] > 0.0 && l[c][c] <= std::numeric_limits<double>::max())) return false;
-    l[c][c] = 1.0 / std::sqrt(l[c][c]);
+    if (!(l[c][c] > 0 && l[c][c] <= std::numeric_limits<T>::max())) return false;
+    l[c][c] = 1 / std::sqrt(l[c][c]);
     for (int r = c + 1; r < 3; ++r) l[r][c] *= l[c][c];
     for (int r = c; r < 3; ++r) a[r + c * lda] = l[r][c];
   }
-  int i = 3;
-  for (; i + 2 * kLanes <= rows; i += 2 * kLanes) divideRows<2>(l, a + i, lda);
-  for (; i + kLanes <= rows; i += kLanes) divideRows<1>(l, a + i, lda);
-  for (; i < rows; ++i) {
-    double* const x = a + i;
-    x[0] *= l[0][0];
-    x[lda] = (x[lda] - x[0] * l[1][0]) * l[1][1];
-    x[2 * lda] = (x[2 * lda] - x[0] * l[2][0] - x[lda] * l[2][1]) * l[2][2];
-  }
+  divideRowsOf<R>(l, rows - 3, a + 3, lda);
   return true;
 }
 
-[[gnu::always_inline]] inline void substituteForwardOf(int rows, int columns, const double* l,
-                                                       int ldl, double* x) {
+template <typename R, typename T>
+[[gnu::always_inline]] inline void substituteForwardOf(int rows, int columns, const T* l, int ldl,
+                                                       T* x) {
+  constexpr int kLanes = R::kLanes;
   for (int c = 0; c < columns; c += 3) {
-    const double* l0 = l + static_cast<std::ptrdiff_t>(ldl) * c;
-    const double* l1 = l0 + ldl;
-    const double* l2 = l1 + ldl;
-    const double x0 = x[c] * l0[c];
-    const double x1 = (x[c + 1] - l0[c + 1] * x0) * l1[c + 1];
-    const double x2 = (x[c + 2] - l0[c + 2] * x0 - l1[c + 2] * x1) * l2[c + 2];
+    const T* l0 = l + static_cast<std::ptrdiff_t>(ldl) * c;
+    const T* l1 = l0 + ldl;
+    const T* l2 = l1 + ldl;
+    const T x0 = x[c] * l0[c];
+    const T x1 = (x[c + 1] - l0[c + 1] * x0) * l1[c + 1];
+    const T x2 = (x[c + 2] - l0[c + 2] * x0 - l1[c + 2] * x1) * l2[c + 2];
     x[c] = x0;
     x[c + 1] = x1;
     x[c + 2] = x2;
     int r = c + 3;
     for (; r + kLanes <= rows; r += kLanes) {
-      *reinterpret_cast<Lanes*>(x + r) -= *reinterpret_cast<const Lanes*>(l0 + r) * x0 +
-                                          *reinterpret_cast<const Lanes*>(l1 + r) * x1 +
-                                          *reinterpret_cast<const Lanes*>(l2 + r) * x2;
+      lanesAt<R>(x + r) -=
+          lanesAt<R>(l0 + r) * x0 + lanesAt<R>(l1 + r) * x1 + lanesAt<R>(l2 + r) * x2;
     }
     for (; r < rows; ++r) x[r] -= l0[r] * x0 + l1[r] * x1 + l2[r] * x2;
   }
 }
 
-[[gnu::always_inline]] inline void substituteBackwardOf(int rows, int columns, const double* l,
-                                                        int ldl, double* x) {
+/// The sum of all lanes, halves first.
+template <typename R>
+[[gnu::always_inline]] inline typename R::Number sumOf(typename R::Lanes& lanes) {
+  for (int half = R::kLanes / 2; half > 0; half /= 2) {
+    for (int i = 0; i < half; ++i) lanes[i] += lanes[i + half];
+  }
+  return lanes[0];
+}
+
+template <typename R, typename T>
+[[gnu::always_inline]] inline void substituteBackwardOf(int rows, int columns, const T* l, int ldl,
+                                                        T* x) {
+  constexpr int kLanes = R::kLanes;
   for (int c = columns - 3; c >= 0; c -= 3) {
-    const double* l0 = l + static_cast<std::ptrdiff_t>(ldl) * c;
-    const double* l1 = l0 + ldl;
-    const double* l2 = l1 + ldl;
-    Lanes sum[3] = {};
+    const T* l0 = l + static_cast<std::ptrdiff_t>(ldl) * c;
+    const T* l1 = l0 + ldl;
+    const T* l2 = l1 + ldl;
+    typename R::Lanes sum[3] = {};
     int r = c + 3;
     for (; r + kLanes <= rows; r += kLanes) {
-      const Lanes below = *reinterpret_cast<const Lanes*>(x + r);
-      sum[0] += *reinterpret_cast<const Lanes*>(l0 + r) * below;
-      sum[1] += *reinterpret_cast<const Lanes*>(l1 + r) * below;
-      sum[2] += *reinterpret_cast<const Lanes*>(l2 + r) * below;
+      const auto below = lanesAt<R>(x + r);
+      sum[0] += lanesAt<R>(l0 + r) * below;
+      sum[1] += lanesAt<R>(l1 + r) * below;
+      sum[2] += lanesAt<R>(l2 + r) * below;
     }
-    double s0 = (sum[0][0] + sum[0][1]) + (sum[0][2] + sum[0][3]);
-    double s1 = (sum[1][0] + sum[1][1]) + (sum[1][2] + sum[1][3]);
-    double s2 = (sum[2][0] + sum[2][1]) + (sum[2][2] + sum[2][3]);
+    T s0 = sumOf<R>(sum[0]), s1 = sumOf<R>(sum[1]), s2 = sumOf<R>(sum[2]);
     for (; r < rows; ++r) {
       s0 += l0[r] * x[r];
       s1 += l1[r] * x[r];
@@ -205,77 +275,109 @@ template <int kVectors>
   }
 }
 
+template <typename T>
 struct Kernels {
-  void (*subtract_product)(int, int, int, const double*, int, const double*, int, double*, int);
-  void (*multiply_by_own_top)(int, int, int, const double*, int, double*, int);
-  bool (*factorise_three_columns)(int, double*, int);
-  void (*substitute_forward)(int, int, const double*, int, double*);
-  void (*substitute_backward)(int, int, const double*, int, double*);
+  void (*subtract_product)(int, int, int, const T*, int, const T*, int, T*, int);
+  void (*multiply_three_columns)(int, int, const T*, int, const T*, int, T*, int);
+  void (*divide_three_columns)(int, const T*, int, T*, int);
+  bool (*factorise_three_columns)(int, T*, int);
+  void (*substitute_forward)(int, int, const T*, int, T*);
+  void (*substitute_backward)(int, int, const T*, int, T*);
 };
 
 // One class per instruction set, because a template cannot be given the attribute.
-#define HAPTEX_DENSE_KERNELS(Name, ...)                                                         \
-  struct Name {                                                                                 \
-    __VA_ARGS__ static void subtractProduct(int rows, int columns, int depth, const double* a,  \
-                                            int lda, const double* b, int ldb, double* c,       \
-                                            int ldc) {                                          \
-      subtractProductOf(rows, columns, depth, a, lda, b, ldb, c, ldc);                          \
-    }                                                                                           \
-    __VA_ARGS__ static void multiplyByOwnTop(int rows, int columns, int depth, const double* a, \
-                                             int lda, double* c, int ldc) {                     \
-      multiplyByOwnTopOf(rows, columns, depth, a, lda, c, ldc);                                 \
-    }                                                                                           \
-    __VA_ARGS__ static bool factoriseThreeColumns(int rows, double* a, int lda) {               \
-      return factoriseThreeColumnsOf(rows, a, lda);                                             \
-    }                                                                                           \
-    __VA_ARGS__ static void substituteForward(int rows, int columns, const double* l, int ldl,  \
-                                              double* x) {                                      \
-      substituteForwardOf(rows, columns, l, ldl, x);                                            \
-    }                                                                                           \
-    __VA_ARGS__ static void substituteBackward(int rows, int columns, const double* l, int ldl, \
-                                               double* x) {                                     \
-      substituteBackwardOf(rows, columns, l, ldl, x);                                           \
-    }                                                                                           \
-    static constexpr Kernels kKernels{subtractProduct, multiplyByOwnTop, factoriseThreeColumns, \
-                                      substituteForward, substituteBackward};                   \
+#define HAPTEX_DENSE_KERNELS(Name, kBytes, ...)                                                    \
+  template <typename T>                                                                            \
+  struct Name {                                                                                    \
+    using R = Register<T, kBytes>;                                                                 \
+    __VA_ARGS__ static void subtractProduct(int rows, int columns, int depth, const T* a, int lda, \
+                                            const T* b, int ldb, T* c, int ldc) {                  \
+      subtractProductOf<R>(rows, columns, depth, a, lda, b, ldb, c, ldc);                          \
+    }                                                                                              \
+    __VA_ARGS__ static void multiplyThreeColumns(int rows, int depth, const T* a, int lda,         \
+                                                 const T* b, int ldb, T* c, int ldc) {             \
+      someColumns<Store::kAssign, R, 3>(rows, depth, a, lda, b, ldb, c, ldc);                      \
+    }                                                                                              \
+    __VA_ARGS__ static void divideThreeColumns(int rows, const T* top, int ldtop, T* a, int lda) { \
+      divideThreeColumnsOf<R>(rows, top, ldtop, a, lda);                                           \
+    }                                                                                              \
+    __VA_ARGS__ static bool factoriseThreeColumns(int rows, T* a, int lda) {                       \
+      return factoriseThreeColumnsOf<R>(rows, a, lda);                                             \
+    }                                                                                              \
+    __VA_ARGS__ static void substituteForward(int rows, int columns, const T* l, int ldl, T* x) {  \
+      substituteForwardOf<R>(rows, columns, l, ldl, x);                                            \
+    }                                                                                              \
+    __VA_ARGS__ static void substituteBackward(int rows, int columns, const T* l, int ldl, T* x) { \
+      substituteBackwardOf<R>(rows, columns, l, ldl, x);                                           \
+    }                                                                                              \
+    static constexpr Kernels<T> kKernels{subtractProduct,    multiplyThreeColumns,                 \
+                                         divideThreeColumns, factoriseThreeColumns,                \
+                                         substituteForward,  substituteBackward};                  \
   };
 
-HAPTEX_DENSE_KERNELS(Baseline, )
+HAPTEX_DENSE_KERNELS(Baseline, 32, )
 #if defined(__x86_64__)
-HAPTEX_DENSE_KERNELS(Avx2, [[gnu::target("avx2,fma")]])
+HAPTEX_DENSE_KERNELS(Avx2, 32, [[gnu::target("avx2,fma")]])
+HAPTEX_DENSE_KERNELS(Avx512, 64, [[gnu::target("avx512f,avx2,fma")]])
 #endif
 #undef HAPTEX_DENSE_KERNELS
 
-const Kernels& kernels() {
+template <typename T>
+const Kernels<T>& kernels() {
 #if defined(__x86_64__)
   static const bool wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (wide) return Avx2::kKernels;
+  static const bool widest = wide && __builtin_cpu_supports("avx512f");
+  // The panels of small systems, which are those in double precision, are too short for it.
+  if (widest && std::is_same_v<T, float>) return Avx512<T>::kKernels;
+  if (wide) return Avx2<T>::kKernels;
 #endif
-  return Baseline::kKernels;
+  return Baseline<T>::kKernels;
 }
 
 }  // namespace
 
-void subtractProduct(int rows, int columns, int depth, const double* a, int lda, const double* b,
-                     int ldb, double* c, int ldc) {
-  kernels().subtract_product(rows, columns, depth, a, lda, b, ldb, c, ldc);
+template <typename T>
+void subtractProduct(int rows, int columns, int depth, const T* a, int lda, const T* b, int ldb,
+                     T* c, int ldc) {
+  kernels<T>().subtract_product(rows, columns, depth, a, lda, b, ldb, c, ldc);
 }
 
-void multiplyByOwnTop(int rows, int columns, int depth, const double* a, int lda, double* c,
-                      int ldc) {
-  kernels().multiply_by_own_top(rows, columns, depth, a, lda, c, ldc);
+template <typename T>
+void multiplyThreeColumns(int rows, int depth, const T* a, int lda, const T* b, int ldb, T* c,
+                          int ldc) {
+  kernels<T>().multiply_three_columns(rows, depth, a, lda, b, ldb, c, ldc);
 }
 
-bool factoriseThreeColumns(int rows, double* a, int lda) {
-  return kernels().factorise_three_columns(rows, a, lda);
+template <typename T>
+void divideThreeColumns(int rows, const T* top, int ldtop, T* a, int lda) {
+  kernels<T>().divide_three_columns(rows, top, ldtop, a, lda);
 }
 
-void substituteForward(int rows, int columns, const double* l, int ldl, double* x) {
-  kernels().substitute_forward(rows, columns, l, ldl, x);
+template <typename T>
+bool factoriseThreeColumns(int rows, T* a, int lda) {
+  return kernels<T>().factorise_three_columns(rows, a, lda);
 }
 
-void substituteBackward(int rows, int columns, const double* l, int ldl, double* x) {
-  kernels().substitute_backward(rows, columns, l, ldl, x);
+template <typename T>
+void substituteForward(int rows, int columns, const T* l, int ldl, T* x) {
+  kernels<T>().substitute_forward(rows, columns, l, ldl, x);
 }
+
+template <typename T>
+void substituteBackward(int rows, int columns, const T* l, int ldl, T* x) {
+  kernels<T>().substitute_backward(rows, columns, l, ldl, x);
+}
+
+#define HAPTEX_INSTANTIATE(T)                                                          \
+  template void subtractProduct(int, int, int, const T*, int, const T*, int, T*, int); \
+  template void multiplyThreeColumns(int, int, const T*, int, const T*, int, T*, int); \
+  template void divideThreeColumns(int, const T*, int, T*, int);                       \
+  template bool factoriseThreeColumns(int, T*, int);                                   \
+  template void substituteForward(int, int, const T*, int, T*);                        \
+  template void substituteBackward(int, int, const T*, int, T*);
+
+HAPTEX_INSTANTIATE(double)
+HAPTEX_INSTANTIATE(float)
+#undef HAPTEX_INSTANTIATE
 
 }  // namespace haptex::cloth

@@ -1,28 +1,12 @@
 #include "haptex/cloth/elimination.h"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <iterator>
 
+#include "haptex/cloth/ordering.h"
+
 namespace haptex::cloth {
 namespace {
-
-std::vector<int> minimumDegreeOrder(const SymmetricBlockMatrix& pattern) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < pattern.size(); ++i) {
-    entries.emplace_back(i, i, 1.0);
-    for (int s = pattern.rowBegin(i); s < pattern.rowBegin(i + 1); ++s) {
-      entries.emplace_back(i, pattern.column(s), 1.0);
-      entries.emplace_back(pattern.column(s), i, 1.0);
-    }
-  }
-  Eigen::SparseMatrix<double> adjacency(pattern.size(), pattern.size());
-  adjacency.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(adjacency, permutation);
-  return {permutation.indices().data(), permutation.indices().data() + pattern.size()};
-}
 
 std::vector<int> inverseOf(const std::vector<int>& order) {
   std::vector<int> position(order.size());
@@ -147,14 +131,12 @@ std::vector<Supernode> supernodesOf(const std::vector<std::vector<int>>& columns
 
 }  // namespace
 
-Elimination analyse(const SymmetricBlockMatrix& pattern) {
+Elimination analyse(const SymmetricBlockMatrix& pattern, const std::vector<int>& order) {
   Elimination result;
-  result.order = minimumDegreeOrder(pattern);
   const std::vector<int> post =
-      postorder(eliminationTree(earlierNeighbours(pattern, inverseOf(result.order))));
-  std::vector<int> reordered(post.size());
-  for (std::size_t k = 0; k < post.size(); ++k) reordered[k] = result.order[post[k]];
-  result.order = std::move(reordered);
+      postorder(eliminationTree(earlierNeighbours(pattern, inverseOf(order))));
+  result.order.resize(post.size());
+  for (std::size_t k = 0; k < post.size(); ++k) result.order[k] = order[post[k]];
   result.position = inverseOf(result.order);
 
   const auto earlier = earlierNeighbours(pattern, result.position);
@@ -169,14 +151,25 @@ Elimination analyse(const SymmetricBlockMatrix& pattern) {
   return result;
 }
 
+Elimination analyse(const SymmetricBlockMatrix& pattern) {
+  Elimination by_degree = analyse(pattern, minimumDegreeOrder(pattern));
+  Elimination by_dissection = analyse(pattern, nestedDissectionOrder(pattern));
+  const bool dissect = factorisationCost(by_dissection) < factorisationCost(by_degree);
+  return dissect ? by_dissection : by_degree;
+}
+
+double supernodeCost(const Supernode& supernode) {
+  double cost = 0.0;
+  for (int k = 0; k < supernode.width(); ++k) {
+    const double below = 3.0 * (supernode.width() - k + supernode.rows.size());
+    cost += 3.0 * 0.5 * below * below;
+  }
+  return cost;
+}
+
 double factorisationCost(const Elimination& elimination) {
   double cost = 0.0;
-  for (const Supernode& supernode : elimination.supernodes) {
-    for (int k = 0; k < supernode.width(); ++k) {
-      const double below = 3.0 * (supernode.width() - k + supernode.rows.size());
-      cost += 3.0 * 0.5 * below * below;
-    }
-  }
+  for (const Supernode& supernode : elimination.supernodes) cost += supernodeCost(supernode);
   return cost;
 }
 

@@ -30,6 +30,11 @@ const StepSettings& requireSound(const StepSettings& settings) {
     message << "newton_iterations is " << settings.newton_iterations << "; it must be at least 1";
     throw std::invalid_argument(message.str());
   }
+  if (settings.threads < 1 || settings.threads > kMostThreads) {
+    std::ostringstream message;
+    message << "threads is " << settings.threads << "; it must lie from 1 to " << kMostThreads;
+    throw std::invalid_argument(message.str());
+  }
   return settings;
 }
 
@@ -39,7 +44,12 @@ bool allFinite(const std::vector<Vector3d>& vectors) {
 }
 
 std::size_t couplingCount(const Cloth& cloth) {
+  if (cloth.springs()) return cloth.springs()->springs().size();
   return cloth.bending() ? cloth.bending()->couplings().size() : 0;
+}
+
+std::size_t frictionCount(const Cloth& cloth) {
+  return cloth.bendingFriction() ? cloth.bendingFriction()->size() : 0;
 }
 
 }  // namespace
@@ -55,6 +65,12 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
     return;
   }
   stages_.emplace(cloth, settings);
+  if (settings.keep_energy) {
+    if (cloth.effects().elasticity == Elasticity::kCorotational) {
+      throw std::invalid_argument("keep_energy is not to be had with corotational elasticity");
+    }
+    balance_.emplace(cloth);
+  }
   if (method == IntegrationMethod::kBackwardEuler) return;
   forces_.resize(cloth.particleCount());
   if (method != IntegrationMethod::kBackwardMidpoint) base_ = end_;
@@ -71,22 +87,58 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
       state.velocities.size() != cloth.particleCount() ||
       end_.positions.size() != cloth.particleCount() ||
       cloth.membrane().elements().size() != element_count_ ||
-      couplingCount(cloth) != coupling_count_) {
+      couplingCount(cloth) != coupling_count_ ||
+      state.plastic_bends.size() != frictionCount(cloth) ||
+      end_.plastic_bends.size() != frictionCount(cloth)) {
     throw std::invalid_argument("the state, the cloth and the integrator differ in size");
   }
   StepReport report;
   const Clock::time_point start = Clock::now();
   end_.time = state.time + time_step;
+  end_.plastic_bends = state.plastic_bends;  // until the step is accepted
   advance(cloth, state, time_step, report);
+  settle(end_.velocities);
+  if (balance_) keepEnergy(cloth, state, time_step, report);
   report.accepted = std::isfinite(report.linear_residual) && std::isfinite(end_.time) &&
                     allFinite(end_.positions) && allFinite(end_.velocities);
   if (report.accepted) {
-    keep(state, time_step);
+    cloth.yieldBending(end_);
+    keep(cloth, state, time_step, touches() || report.taken_anew);
   } else if (stages_) {
     stages_->forget();
   }
   report.total_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return report;
+}
+
+void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double h,
+                            StepReport& report) {
+  constexpr double kMostTaken = 0.1;  // of the kinetic energy
+  balance_->begin(cloth, begin);
+  const auto growth = [&] { return balance_->growth(cloth, begin, end_, contactReactions()); };
+  double gained = growth();
+  if (gained <= 0.0) return;
+  if (!(gained <= kMostTaken * balance_->kineticAtEnd())) {
+    report.taken_anew = true;
+    stages_->forget();
+    stages_->solveSafely(cloth, {begin, h, end_.time, 1.0, Stage::Rates::kSinceBase},
+                         {begin.positions, begin.velocities, h}, end_, report);
+    settle(end_.velocities);
+    gained = growth();
+  }
+  if (gained > 0.0) slowDown(cloth, gained, report);
+}
+
+/// Takes energy (J) out of the velocities at the end, as far as there is any.
+void Integrator::slowDown(const Cloth& cloth, double energy, StepReport& report) {
+  const double kinetic = balance_->kineticAtEnd();
+  if (!(kinetic > 0.0)) return;
+  report.energy_taken = std::min(energy, kinetic);
+  const double factor = std::sqrt(1.0 - report.energy_taken / kinetic);
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (!cloth.attachments()[i]) end_.velocities[i] *= factor;
+  }
+  settle(end_.velocities);
 }
 
 void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
@@ -99,6 +151,7 @@ void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
       return takeTrBdf2(cloth, begin, h, report);
     case IntegrationMethod::kBdf2:
       if (!continuesHistory(begin, h)) return takeTrBdf2(cloth, begin, h, report);
+      base_.plastic_bends = begin.plastic_bends;
       return takeBdf2(cloth, history_->before, begin, history_->time_step, h, report);
     default:
       return stages_->solve(cloth, {begin, h, end_.time, 1.0, Stage::Rates::kSinceBase},
@@ -106,15 +159,30 @@ void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
   }
 }
 
-/// Takes the state over from end_.
-void Integrator::keep(ClothState& state, double h) {
+/// Takes the state over from end_. @param anew the next step of BDF-2 is to start anew
+void Integrator::keep(const Cloth& cloth, ClothState& state, double h, bool anew) {
+  if (balance_) balance_->keep(cloth, end_);
   if (history_) std::swap(history_->before, state);
   std::swap(state.positions, end_.positions);
   std::swap(state.velocities, end_.velocities);
+  std::swap(state.plastic_bends, end_.plastic_bends);
   state.time = end_.time;
   if (!history_) return;
   history_->last = state;
-  history_->time_step = h;
+  history_->time_step = anew ? 0.0 : h;
+}
+
+bool Integrator::touches() const {
+  return stages_ && stages_->contacts() && stages_->contacts()->holding();
+}
+
+void Integrator::settle(Velocities& velocities) const {
+  if (touches()) stages_->contacts()->settle(velocities);
+}
+
+const std::vector<ContactReaction>& Integrator::contactReactions() const {
+  static const std::vector<ContactReaction> kNone;
+  return stages_ && stages_->contacts() ? stages_->contacts()->reactions() : kNone;
 }
 
 bool Integrator::continuesHistory(const ClothState& begin, double h) const {
@@ -125,7 +193,7 @@ bool Integrator::continuesHistory(const ClothState& begin, double h) const {
 
 /// A stage at theta = 1/2 + blend of the step, and on from there in a straight line:
 ///   x1 = x0 + (x - x0) / theta,  v1 = v0 + (v - v0) / theta.
-/// For linear forces the energy then changes by what the attachments do minus
+/// For linear forces the energy then changes by what attachments and wind do minus
 ///   blend (|v1 - v0|_M^2 + |x1 - x0|_K^2),
 /// so the first term tells how much blend takes away what nonlinear forces have added; where that
 /// does not suffice it is doubled. What they add at the midpoint is of the third order in h, so
@@ -138,7 +206,7 @@ void Integrator::takeMidpoint(const Cloth& cloth, const ClothState& begin, doubl
     const double theta = 0.5 + report.blend;
     stages_->solve(cloth, {begin, theta * h, end_.time, theta, Stage::Rates::kOfVelocities},
                    {begin.positions, begin.velocities, theta * h}, end_, report);
-    const double work = attachmentWork(cloth, begin);
+    const double work = outerWork(cloth, begin, h, theta);
     extrapolate(cloth, begin, theta);
     if (report.blend >= kMostBlend) return;
     const double enough = blendAgainstGrowth(cloth, begin, potential + work);
@@ -169,19 +237,23 @@ double Integrator::blendAgainstGrowth(const Cloth& cloth, const ClothState& begi
   return growth > open ? growth / change_squared : 0.0;
 }
 
-/// What the attachments do over the step (J) by the forces in the stage that end_ holds.
-double Integrator::attachmentWork(const Cloth& cloth, const ClothState& begin) {
-  double work = 0.0;
+/// What attachments and wind do over the step (J) by the forces in the stage at theta that end_
+/// holds. What the air takes from motion relative to it is not work that may come back.
+double Integrator::outerWork(const Cloth& cloth, const ClothState& begin, double h, double theta) {
+  const double end = end_.time;
+  end_.time = begin.time + theta * h;
+  double work = h * cloth.windPower(end_);
   bool known = false;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     const auto& attachment = cloth.attachments()[i];
     if (!attachment) continue;
-    const Vector3d way = attachment->position(end_.time) - begin.positions[i];
+    const Vector3d way = attachment->position(end) - begin.positions[i];
     if (way.isZero(0.0)) continue;
     if (!known) cloth.computeForces(end_, forces_);
     known = true;
     work -= forces_[i].dot(way);
   }
+  end_.time = end;
   return work;
 }
 
@@ -203,6 +275,7 @@ void Integrator::takeTrBdf2(const Cloth& cloth, const ClothState& begin, double 
                             StepReport& report) {
   const double first = (2.0 - std::sqrt(2.0)) * h;
   const double a = 0.5 * first;
+  base_.plastic_bends = begin.plastic_bends;
   cloth.computeForces(begin, forces_);
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     base_.positions[i] = begin.positions[i] + a * begin.velocities[i];
@@ -210,6 +283,7 @@ void Integrator::takeTrBdf2(const Cloth& cloth, const ClothState& begin, double 
   }
   stages_->solve(cloth, {base_, a, begin.time + first, 1.0, Stage::Rates::kOfVelocities},
                  {begin.positions, begin.velocities, first}, end_, report);
+  settle(end_.velocities);
   takeBdf2(cloth, begin, end_, first, h - first, report);
 }
 
@@ -227,6 +301,8 @@ void Integrator::takeBdf2(const Cloth& cloth, const ClothState& before, const Cl
         middle.velocities[i] + of_before * (middle.velocities[i] - before.velocities[i]);
     end_.velocities[i] = way / first;
   }
+  // A velocity from before an impact would make what touches rebound.
+  settle(base_.velocities);
   const double a = second * (1.0 + ratio) / divisor;
   stages_->solve(cloth, {base_, a, end_.time, 1.0, Stage::Rates::kOfVelocities},
                  {middle.positions, end_.velocities, second}, end_, report);

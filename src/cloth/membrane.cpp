@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptex/cloth/element_assembly.h"
+#include "haptex/material/contraction.h"
+
 namespace haptex::cloth {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-struct Membrane::Frame {
-  Vector3d weft;
-  Vector3d warp;
-
+struct Membrane::Frame : ElementFrame {
   MembraneStrain strain() const {
     return {0.5 * (weft.squaredNorm() - 1.0), 0.5 * (warp.squaredNorm() - 1.0), weft.dot(warp)};
   }
@@ -25,6 +25,7 @@ struct Membrane::Frame {
 struct Membrane::Response {
   Vector3d stress;
   Vector3d slope;
+  double coupling = 0.0;  // of the weft's stress and the warp's strain, and the other way round
 };
 
 namespace {
@@ -62,10 +63,10 @@ kernels::MembraneBatch batchOf(const MembraneElement* elements) {
 }
 
 /// Adds factor * (tangent blocks of one element) to the matrix: the sum over the three strains of
-/// slope g_i g_j^T plus the geometric part, both positive semidefinite. Blocks with particle 0
-/// follow from the others because the weights sum to zero.
+/// slope g_i g_j^T, plus that of weft and warp by their coupling, plus the geometric part, both
+/// positive semidefinite.
 void addTangent(const MembraneElement& element, const Vector3d& weft, const Vector3d& warp,
-                const Vector3d& slope, const Vector3d& stress, double factor,
+                const Vector3d& slope, double coupling, const Vector3d& stress, double factor,
                 SymmetricBlockMatrix& matrix) {
   const Matrix3d weft_weft = weft * weft.transpose();
   const Matrix3d warp_warp = warp * warp.transpose();
@@ -76,38 +77,28 @@ void addTangent(const MembraneElement& element, const Vector3d& weft, const Vect
     const double uv = factor * element.weft_weights[i] * element.warp_weights[j];
     const double vu = factor * element.warp_weights[i] * element.weft_weights[j];
     Matrix3d result = (slope[0] * uu + slope[2] * vv) * weft_weft +
-                      (slope[1] * vv + slope[2] * uu) * warp_warp + (slope[2] * uv) * warp_weft +
-                      (slope[2] * vu) * warp_weft.transpose();
+                      (slope[1] * vv + slope[2] * uu) * warp_warp +
+                      (slope[2] * uv + coupling * vu) * warp_weft +
+                      (slope[2] * vu + coupling * uv) * warp_weft.transpose();
     result.diagonal().array() += stress[0] * uu + stress[1] * vv + stress[2] * (uv + vu);
     return result;
   };
-  const Matrix3d b11 = block(1, 1);
-  const Matrix3d b21 = block(2, 1);
-  const Matrix3d b22 = block(2, 2);
-  const Matrix3d b10 = -b11 - b21.transpose();
-  const Matrix3d b20 = -b21 - b22;
-  matrix.diagonal(element.particles[0]) -= b10 + b20;
-  matrix.diagonal(element.particles[1]) += b11;
-  matrix.diagonal(element.particles[2]) += b22;
-  matrix.lower(element.slots[0]) += b10;
-  matrix.lower(element.slots[1]) += b20;
-  matrix.lower(element.slots[2]) += b21;
-}
-
-/// Distributes the tractions conjugate to U and V (times the rest area) to the particles.
-template <typename Target>
-void addScattered(const MembraneElement& element, const Vector3d& weft_traction,
-                  const Vector3d& warp_traction, Target&& target) {
-  const Vector3d at_1 =
-      element.weft_weights[1] * weft_traction + element.warp_weights[1] * warp_traction;
-  const Vector3d at_2 =
-      element.weft_weights[2] * weft_traction + element.warp_weights[2] * warp_traction;
-  target(element.particles[0]) -= at_1 + at_2;
-  target(element.particles[1]) += at_1;
-  target(element.particles[2]) += at_2;
+  addElementBlocks(element, block, matrix);
 }
 
 Vector3d clampedToNonNegative(const Vector3d& slope) { return slope.cwiseMax(0.0); }
+
+/// Makes the tangent [[slope0, coupling], [coupling, slope1]] and the slope of the shear positive
+/// semidefinite.
+void projectMaterial(Vector3d& slope, double& coupling) {
+  if (coupling == 0.0) {
+    slope = clampedToNonNegative(slope);
+    return;
+  }
+  const Vector3d projected = projectStress({slope[0], slope[1], coupling});
+  slope = {projected[0], projected[1], std::max(0.0, slope[2])};
+  coupling = projected[2];
+}
 
 }  // namespace
 
@@ -122,8 +113,9 @@ Vector3d projectStress(const Vector3d& stress) {
           half * stress[2] / radius};
 }
 
-Membrane::Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool viscosity)
-    : viscosity_(viscosity) {
+Membrane::Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool viscosity,
+                   bool contraction)
+    : viscosity_(viscosity), contraction_(contraction) {
   elements_.reserve(mesh.triangles.size());
   for (const std::array<int, 3>& triangle : mesh.triangles) {
     elements_.push_back(restElement(mesh, triangle));
@@ -147,15 +139,12 @@ void Membrane::bind(const SymmetricBlockMatrix& matrix) {
 void Membrane::setFabric(const material::Fabric& fabric) {
   elastic_ = {fabric.weft.elastic, fabric.warp.elastic, fabric.shear.elastic};
   viscous_ = {fabric.weft.viscous, fabric.warp.viscous, fabric.shear.viscous};
+  coupling_ = contraction_ ? material::contractionModulus(fabric) : 0.0;
 }
 
 Membrane::Frame Membrane::frame(const MembraneElement& element,
                                 const std::vector<Vector3d>& points) {
-  const Vector3d& origin = points[element.particles[0]];
-  const Vector3d edge_1 = points[element.particles[1]] - origin;
-  const Vector3d edge_2 = points[element.particles[2]] - origin;
-  return {element.weft_weights[1] * edge_1 + element.weft_weights[2] * edge_2,
-          element.warp_weights[1] * edge_1 + element.warp_weights[2] * edge_2};
+  return {elementFrame(element, points)};
 }
 
 MembraneStrain Membrane::strain(const MembraneElement& element, const Positions& positions) const {
@@ -169,11 +158,26 @@ Membrane::Response Membrane::respond(const Curves& curves, const MembraneStrain&
   return {{weft.stress, warp.stress, shear.stress}, {weft.slope, warp.slope, shear.slope}};
 }
 
+Membrane::Response Membrane::respondElastic(const MembraneStrain& strain) const {
+  Response response = respond(elastic_, strain);
+  response.stress[0] += coupling_ * strain[1];
+  response.stress[1] += coupling_ * strain[0];
+  response.coupling = coupling_;
+  return response;
+}
+
+/// Energy per rest area (J/m^2).
+double Membrane::elasticDensity(const MembraneStrain& strain) const {
+  double density = coupling_ * strain[0] * strain[1];
+  for (int m = 0; m < 3; ++m) density += elastic_[m].energy(strain[m]);
+  return density;
+}
+
 void Membrane::addForces(const Positions& positions, const Velocities& velocities,
                          std::vector<Vector3d>& forces) const {
   for (const MembraneElement& element : elements_) {
     const Frame at = frame(element, positions);
-    Vector3d stress = respond(elastic_, at.strain()).stress;
+    Vector3d stress = respondElastic(at.strain()).stress;
     if (viscosity_) stress += respond(viscous_, at.rate(frame(element, velocities))).stress;
     stress *= -element.area;
     addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
@@ -184,9 +188,12 @@ void Membrane::addForces(const Positions& positions, const Velocities& velocitie
 
 double Membrane::elasticEnergy(const Positions& positions) const {
   double energy = 0.0;
-  for (const MembraneElement& element : elements_) {
-    const MembraneStrain strain = frame(element, positions).strain();
-    for (int m = 0; m < 3; ++m) energy += element.area * elastic_[m].energy(strain[m]);
+  if (!batches_.empty()) {
+    energy = kernels::elasticEnergy(batches_.data(), static_cast<int>(batches_.size()),
+                                    positions.data()->data(), elastic_, coupling_);
+  }
+  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+    energy += elements_[t].area * elasticDensity(frame(elements_[t], positions).strain());
   }
   return energy;
 }
@@ -197,8 +204,8 @@ void Membrane::addStep(const Positions& positions, const Velocities& velocities,
   if (!batches_.empty()) {
     kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
                      {positions.data()->data(), velocities.data()->data(), times.a, times.ahead,
-                      &elastic_, viscosity_ ? &viscous_ : nullptr, matrix.diagonal(0).data(),
-                      matrix.lower(0).data(), rhs.data()});
+                      &elastic_, viscosity_ ? &viscous_ : nullptr, coupling_,
+                      matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()});
   }
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     if (viscosity_) {
@@ -216,17 +223,18 @@ void Membrane::addStepOf(const MembraneElement& element, const Positions& positi
   const Frame at = frame(element, positions);
   const Frame derivative = frame(element, velocities);
   const MembraneStrain rate = at.rate(derivative);
-  const Response elastic = respond(elastic_, at.strain());
-  Vector3d stress = elastic.stress;
-  Vector3d slope = clampedToNonNegative(elastic.slope);
-  const Vector3d stress_increment = times.ahead * slope.cwiseProduct(rate);
+  auto [stress, slope, coupling] = respondElastic(at.strain());
+  projectMaterial(slope, coupling);
+  const Vector3d stress_increment =
+      times.ahead * (slope.cwiseProduct(rate) + coupling * Vector3d(rate[1], rate[0], 0.0));
   if constexpr (kViscous) {
     const Response viscous = respond(viscous_, rate);
     stress += viscous.stress;
     slope += clampedToNonNegative(viscous.slope) / times.a;
   }
   const Vector3d geometric = projectStress(stress);
-  addTangent(element, at.weft, at.warp, slope, geometric, element.area * times.a * times.a, matrix);
+  addTangent(element, at.weft, at.warp, slope, coupling, geometric,
+             element.area * times.a * times.a, matrix);
 
   const double factor = -element.area * times.a;
   const Vector3d end = factor * (stress + stress_increment);
@@ -246,15 +254,16 @@ void Membrane::addNewton(const Positions& positions,
     const MembraneElement& element = elements_[t];
     const Frame at = frame(element, positions);
     const MembraneStrain strain = at.strain();
-    auto [stress, slope] = respond(elastic_, strain);
+    auto [stress, slope, coupling] = respondElastic(strain);
     if (viscosity_) {
       const Response viscous = respond(viscous_, (strain - begin_strains[t]) / h);
       stress += viscous.stress;
       slope += viscous.slope / h;
     }
     const bool exact = hessian == Hessian::kExact;
-    addTangent(element, at.weft, at.warp, exact ? slope : clampedToNonNegative(slope),
-               exact ? stress : projectStress(stress), element.area * h * h, matrix);
+    if (!exact) projectMaterial(slope, coupling);
+    addTangent(element, at.weft, at.warp, slope, coupling, exact ? stress : projectStress(stress),
+               element.area * h * h, matrix);
     stress *= -element.area * h;
     addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
                  stress[1] * at.warp + stress[2] * at.weft,
@@ -268,11 +277,11 @@ double Membrane::incrementalPotential(const Positions& positions,
   double potential = 0.0;
   for (std::size_t t = 0; t < elements_.size(); ++t) {
     const MembraneStrain strain = frame(elements_[t], positions).strain();
-    for (int m = 0; m < 3; ++m) {
-      double density = elastic_[m].energy(strain[m]);
-      if (viscosity_) density += h * viscous_[m].energy((strain[m] - begin_strains[t][m]) / h);
-      potential += elements_[t].area * density;
+    double density = elasticDensity(strain);
+    for (int m = 0; viscosity_ && m < 3; ++m) {
+      density += h * viscous_[m].energy((strain[m] - begin_strains[t][m]) / h);
     }
+    potential += elements_[t].area * density;
   }
   return potential;
 }
@@ -298,9 +307,11 @@ Membrane::Jacobian Membrane::exactJacobian(const MembraneElement& element,
                                            const Positions& positions,
                                            const Velocities& velocities) const {
   const Frame at = frame(element, positions);
-  auto [stress, slope] = respond(elastic_, at.strain());
+  auto [stress, slope, coupling] = respondElastic(at.strain());
+  Matrix3d tangent = slope.asDiagonal();
+  tangent(0, 1) = tangent(1, 0) = coupling;
   Vector3d viscous_slope = Vector3d::Zero();
-  Frame derivative{Vector3d::Zero(), Vector3d::Zero()};
+  Frame derivative{{Vector3d::Zero(), Vector3d::Zero()}};
   if (viscosity_) {
     derivative = frame(element, velocities);
     const Response viscous = respond(viscous_, at.rate(derivative));
@@ -328,7 +339,7 @@ Membrane::Jacobian Membrane::exactJacobian(const MembraneElement& element,
                                                 stress[2] * (ru_i * rv_j + rv_i * ru_j));
       result.by_velocity[i][j] = g_i * viscous_slope.asDiagonal() * g_j.transpose();
       result.by_position[i][j] =
-          g_i * slope.asDiagonal() * g_j.transpose() +
+          g_i * tangent * g_j.transpose() +
           g_i * viscous_slope.asDiagonal() * gradients(derivative, j).transpose() +
           geometric * Matrix3d::Identity();
     }

@@ -100,6 +100,8 @@ HAPTEX_AVX2_INLINE Block full(const Symmetric& s) {
   return {{s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz}};
 }
 
+/// Slopes clamped to >= 0 from the first one on.
+template <int kFirstClamped>
 HAPTEX_AVX2_INLINE Response respond(const std::array<material::StrainStressCurve, 3>& curves,
                                     const __m256d* strain) {
   Response result;
@@ -109,6 +111,7 @@ HAPTEX_AVX2_INLINE Response respond(const std::array<material::StrainStressCurve
       result.stress[m][lane] = value.stress;
       result.slope[m][lane] = value.slope;
     }
+    if (m < kFirstClamped) continue;
     // NaN is the second operand and therefore stays.
     result.slope[m] = _mm256_max_pd(_mm256_setzero_pd(), result.slope[m]);
   }
@@ -133,11 +136,13 @@ HAPTEX_AVX2_INLINE void project(const __m256d* stress, __m256d* result) {
 }
 
 /// A tangent block with i = j: weft (p)^T + warp (q)^T is symmetric there.
+/// @param coupling of weft and warp, read if they are
+template <bool kCoupled>
 HAPTEX_AVX2_INLINE Symmetric diagonalBlock(const Vector& weft, const Vector& warp, __m256d ru,
-                                           __m256d rv, const __m256d* slope,
+                                           __m256d rv, const __m256d* slope, __m256d coupling,
                                            const __m256d* stress) {
   const __m256d uu = ru * ru, vv = rv * rv, uv = ru * rv;
-  const __m256d across = slope[2] * uv;
+  const __m256d across = (kCoupled ? slope[2] + coupling : slope[2]) * uv;
   const Vector p = combine(slope[0] * uu + slope[2] * vv, weft, across, warp);
   const Vector q = combine(across, weft, slope[1] * vv + slope[2] * uu, warp);
   const __m256d geometric = stress[0] * uu + stress[1] * vv + stress[2] * (uv + uv);
@@ -153,19 +158,25 @@ struct Lanes {  // an element's constants
   __m256d weft_weights[2], warp_weights[2], area;
 };
 
+template <bool kCoupled>
 HAPTEX_AVX2_INLINE void addTangent(const MembraneBatch& batch, const Lanes& at, const Vector& weft,
-                                   const Vector& warp, const __m256d* slope, const __m256d* stress,
-                                   const MembraneStep& step) {
-  const Symmetric b11 =
-      diagonalBlock(weft, warp, at.weft_weights[0], at.warp_weights[0], slope, stress);
-  const Symmetric b22 =
-      diagonalBlock(weft, warp, at.weft_weights[1], at.warp_weights[1], slope, stress);
+                                   const Vector& warp, const __m256d* slope, __m256d coupling,
+                                   const __m256d* stress, const MembraneStep& step) {
+  const Symmetric b11 = diagonalBlock<kCoupled>(weft, warp, at.weft_weights[0], at.warp_weights[0],
+                                                slope, coupling, stress);
+  const Symmetric b22 = diagonalBlock<kCoupled>(weft, warp, at.weft_weights[1], at.warp_weights[1],
+                                                slope, coupling, stress);
   const __m256d uu = at.weft_weights[1] * at.weft_weights[0];
   const __m256d vv = at.warp_weights[1] * at.warp_weights[0];
   const __m256d uv = at.weft_weights[1] * at.warp_weights[0];
   const __m256d vu = at.warp_weights[1] * at.weft_weights[0];
-  const Vector p = combine(slope[0] * uu + slope[2] * vv, weft, slope[2] * vu, warp);
-  const Vector q = combine(slope[2] * uv, weft, slope[1] * vv + slope[2] * uu, warp);
+  __m256d weft_warp = slope[2] * vu, warp_weft = slope[2] * uv;
+  if constexpr (kCoupled) {
+    weft_warp += coupling * uv;
+    warp_weft += coupling * vu;
+  }
+  const Vector p = combine(slope[0] * uu + slope[2] * vv, weft, weft_warp, warp);
+  const Vector q = combine(warp_weft, weft, slope[1] * vv + slope[2] * uu, warp);
   const __m256d geometric = stress[0] * uu + stress[1] * vv + stress[2] * (uv + vu);
   const Block b21 = {{weft.x * p.x + (warp.x * q.x + geometric), weft.y * p.x + warp.y * q.x,
                       weft.z * p.x + warp.z * q.x, weft.x * p.y + warp.x * q.y,
@@ -192,6 +203,7 @@ HAPTEX_AVX2_INLINE void addTangent(const MembraneBatch& batch, const Lanes& at, 
   scatter(full(b00), batch.particles[0], step.diagonal);
 }
 
+template <bool kCoupled>
 HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep& step) {
   Lanes at;
   for (int i = 0; i < 2; ++i) {
@@ -219,11 +231,27 @@ HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep&
   const __m256d turn = _mm256_set1_pd(-step.ahead / step.a);
   const __m256d load = -at.area * h;  // N.s/m per N/m of stress
   const __m256d stiffness = -load * h;
-  Response response = respond(*step.elastic, strain);
+  Response response = respond < kCoupled ? 2 : 0 > (*step.elastic, strain);
+  __m256d coupling = _mm256_set1_pd(step.coupling);
+  if constexpr (kCoupled) {
+    response.stress[0] += coupling * strain[1];
+    response.stress[1] += coupling * strain[0];
+    const __m256d tangent[3] = {response.slope[0], response.slope[1], coupling};
+    __m256d projected[3];
+    project(tangent, projected);
+    response.slope[0] = projected[0];
+    response.slope[1] = projected[1];
+    coupling = projected[2];
+  }
   __m256d end[3];
   for (int m = 0; m < 3; ++m) end[m] = ahead * response.slope[m] * rate[m];
+  if constexpr (kCoupled) {
+    end[0] += ahead * coupling * rate[1];
+    end[1] += ahead * coupling * rate[0];
+    coupling *= stiffness;
+  }
   if (step.viscous) {
-    const Response viscous = respond(*step.viscous, rate);
+    const Response viscous = respond<0>(*step.viscous, rate);
     const __m256d frequency = 1.0 / h;
     for (int m = 0; m < 3; ++m) {
       response.stress[m] += viscous.stress[m];
@@ -248,14 +276,48 @@ HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep&
   scatter(Vector{zero, zero, zero} - (at_1 + at_2), batch.particles[0], step.rhs);
   scatter(at_1, batch.particles[1], step.rhs);
   scatter(at_2, batch.particles[2], step.rhs);
-  addTangent(batch, at, weft, warp, response.slope, geometric, step);
+  addTangent<kCoupled>(batch, at, weft, warp, response.slope, coupling, geometric, step);
 }
 
 HAPTEX_AVX2 void addStepAvx2(const MembraneBatch* batches, int count, const MembraneStep& step) {
-  for (int b = 0; b < count; ++b) addBatch(batches[b], step);
+  if (step.coupling == 0.0) {
+    for (int b = 0; b < count; ++b) addBatch<false>(batches[b], step);
+  } else {
+    for (int b = 0; b < count; ++b) addBatch<true>(batches[b], step);
+  }
+}
+
+HAPTEX_AVX2 double elasticEnergyAvx2(const MembraneBatch* batches, int count,
+                                     const double* positions,
+                                     const std::array<material::StrainStressCurve, 3>& elastic,
+                                     double coupling) {
+  __m256d sum = _mm256_setzero_pd();
+  for (int b = 0; b < count; ++b) {
+    const MembraneBatch& batch = batches[b];
+    const Vector origin = gather(positions, batch.particles[0]);
+    const Vector edge_1 = gather(positions, batch.particles[1]) - origin;
+    const Vector edge_2 = gather(positions, batch.particles[2]) - origin;
+    const Vector weft = combine(_mm256_load_pd(batch.weft_weights[0]), edge_1,
+                                _mm256_load_pd(batch.weft_weights[1]), edge_2);
+    const Vector warp = combine(_mm256_load_pd(batch.warp_weights[0]), edge_1,
+                                _mm256_load_pd(batch.warp_weights[1]), edge_2);
+    const __m256d strain[3] = {0.5 * (dot(weft, weft) - 1.0), 0.5 * (dot(warp, warp) - 1.0),
+                               dot(weft, warp)};
+    __m256d density = coupling * strain[0] * strain[1];
+    for (int m = 0; m < 3; ++m) {
+      for (int lane = 0; lane < kBatch; ++lane) density[lane] += elastic[m].energy(strain[m][lane]);
+    }
+    sum += _mm256_load_pd(batch.area) * density;
+  }
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 }  // namespace
+
+double elasticEnergy(const MembraneBatch* batches, int count, const double* positions,
+                     const std::array<material::StrainStressCurve, 3>& elastic, double coupling) {
+  return elasticEnergyAvx2(batches, count, positions, elastic, coupling);
+}
 
 bool canAddBatches() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 
@@ -275,6 +337,11 @@ namespace haptex::cloth::kernels {
 bool canAddBatches() { return false; }
 
 void addStep(const MembraneBatch*, int, const MembraneStep&) {}
+
+double elasticEnergy(const MembraneBatch*, int, const double*,
+                     const std::array<material::StrainStressCurve, 3>&, double) {
+  return 0.0;
+}
 
 }  // namespace haptex::cloth::kernels
 

@@ -12,6 +12,8 @@ namespace {
 
 using material::YamlValue;
 
+constexpr double kShortestPeriod = 1e-3;  // s
+constexpr double kFastest = 1e3;          // m/s
 const std::vector<std::string> kShapes = {"sphere", "box", "capsule", "mesh"};
 
 Eigen::Vector3d readVector(const YamlValue& value) {
@@ -72,9 +74,44 @@ auto readShape(const YamlValue& value) -> decltype(Obstacle::shape) {
   return readMesh(value.at("mesh"));
 }
 
+ObstacleOrbit readOrbit(const YamlValue& value) {
+  value.requireKeys({"centre", "axis", "period"});
+  ObstacleOrbit orbit{readPosition(value.at("centre")), readVector(value.at("axis")),
+                      value.at("period").number()};
+  if (!(orbit.axis.stableNorm() > 0.0)) value.at("axis").refuseBecause("must not be zero");
+  orbit.axis.stableNormalize();
+  if (!(orbit.period >= kShortestPeriod)) value.at("period").refuse("must be at least 1e-3 s");
+  return orbit;
+}
+
+ObstacleDrift readDrift(const YamlValue& value) {
+  const ObstacleDrift drift{readVector(value)};
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(drift.velocity[i]) > kFastest) {
+      value.items(3)[i].refuse("must be from -1000 to 1000 m/s");
+    }
+  }
+  return drift;
+}
+
+auto readMotion(const YamlValue& value) -> decltype(Obstacle::motion) {
+  if (value.has("orbit") && value.has("velocity")) {
+    value.refuseBecause("must have at most one of orbit, velocity");
+  }
+  if (value.has("orbit")) return readOrbit(value.at("orbit"));
+  if (value.has("velocity")) return readDrift(value.at("velocity"));
+  return {};
+}
+
+double readFriction(const YamlValue& value) {
+  const double friction = value.number();
+  if (!(friction >= 0.0)) value.refuse("must be >= 0");
+  return friction;
+}
+
 Obstacle readObstacle(const YamlValue& value) {
   std::vector<std::string> optional = kShapes;
-  optional.push_back("rpy");
+  for (const char* key : {"rpy", "orbit", "velocity", "friction"}) optional.push_back(key);
   value.requireKeys({"name", "position"}, optional);
   Obstacle obstacle;
   obstacle.name = value.at("name").text();
@@ -82,6 +119,8 @@ Obstacle readObstacle(const YamlValue& value) {
   obstacle.pose.setIdentity();
   obstacle.pose.translation() = readPosition(value.at("position"));
   if (value.has("rpy")) obstacle.pose.linear() = readRotation(value.at("rpy"));
+  obstacle.motion = readMotion(value);
+  if (value.has("friction")) obstacle.friction = readFriction(value.at("friction"));
   return obstacle;
 }
 

@@ -1,5 +1,6 @@
 #include "haptex/cloth/stage_solver.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -17,64 +18,97 @@ Vector3d placeIn(const Stage& stage, const AttachmentPath& path, int particle) {
          stage.share * path.position(stage.end);
 }
 
+/// When the forces of the stage act (s, simulated).
+double timeOf(const Stage& stage) {
+  return (1.0 - stage.share) * stage.base.time + stage.share * stage.end;
+}
+
 }  // namespace
 
 StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
     : settings_(settings),
+      pool_(settings.threads > 1 ? std::make_unique<ThreadPool>(settings.threads) : nullptr),
       matrix_(cloth.pattern()),
-      solver_(matrix_, settings.solver),
+      solver_(matrix_, settings.solver, pool_.get()),
       rhs_(3, cloth.particleCount()),
       solution_(BlockVector::Zero(3, cloth.particleCount())),
       prescribed_(BlockVector::Zero(3, cloth.particleCount())),
       fixed_(cloth.particleCount(), 0) {
-  if (settings.newton_iterations > 1) {
-    trial_ = cloth.initialState();
-    base_strains_.resize(cloth.membrane().elements().size());
-  }
+  if (cloth.effects().contacts) contacts_.emplace(matrix_);
+  if (settings.newton_iterations == 1 && !settings.keep_energy) return;
+  trial_ = cloth.initialState();
+  base_strains_.resize(cloth.strainCount());
+  if (cloth.air()) fixed_air_.panels.resize(cloth.membrane().elements().size());
 }
 
 void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                         ClothState& result, StepReport& report) {
+  takeFirst(cloth, stage, guess, result, report);
+  if (settings_.newton_iterations == 1) return;
+  fixPast(cloth, stage, result);
+  iterateNewton(cloth, stage, settings_.newton_iterations - 1, result, report);
+}
+
+void StageSolver::solveSafely(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                              ClothState& result, StepReport& report) {
+  constexpr int kLeastSolves = 20;
+  takeFirst(cloth, stage, guess, result, report);
+  fixPast(cloth, stage, stage.base);
+  for (AirPanel& panel : fixed_air_.panels) panel.lift.setZero();
+  if (!touching()) startFromRest(cloth, stage, result);
+  iterateNewton(cloth, stage, std::max(kLeastSolves, settings_.newton_iterations), result, report);
+}
+
+/// The linearised stage.
+void StageSolver::takeFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                            ClothState& result, StepReport& report) {
   const Clock::time_point start = Clock::now();
   linearise(cloth, stage, guess);
   report.assembly_seconds += seconds(Clock::now() - start);
-  report.linear_converged = solveLinear(report) && report.linear_converged;
+  report.linear_converged = solveFirst(cloth, stage, guess, report) && report.linear_converged;
   for (int i = 0; i < matrix_.size(); ++i) {
+    const auto& attachment = cloth.attachments()[i];
     result.velocities[i] = guess.velocities[i] + solution_.col(i);
-    result.positions[i] = fixed_[i] ? placeIn(stage, *cloth.attachments()[i], i)
-                                    : stage.base.positions[i] + stage.a * result.velocities[i];
+    result.positions[i] = attachment ? placeIn(stage, *attachment, i)
+                                     : stage.base.positions[i] + stage.a * result.velocities[i];
   }
-  if (settings_.newton_iterations == 1) return;
-  if (stage.rates == Stage::Rates::kSinceBase) {
-    cloth.membrane().computeStrains(stage.base.positions, base_strains_);
-  } else {
-    cloth.membrane().computeStrainsBefore(result.positions, result.velocities, stage.a,
-                                          base_strains_);
-  }
-  iterateNewton(cloth, stage, result, report);
 }
 
-/// Inertia and the external forces that are constant over the step.
+/// What Newton iterations hold fixed: the strains before, and the air of a state near the end.
+void StageSolver::fixPast(const Cloth& cloth, const Stage& stage, const ClothState& at) {
+  if (stage.rates == Stage::Rates::kSinceBase) {
+    cloth.computeStrains(stage.base.positions, base_strains_);
+  } else {
+    cloth.computeStrainsBefore(at.positions, at.velocities, stage.a, base_strains_);
+  }
+  cloth.fixAir(at.positions, at.velocities, timeOf(stage), fixed_air_);
+}
+
+/// Takes the free particles to x*, without velocity, if the potential is lower there.
+void StageSolver::startFromRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
+  for (int i = 0; i < matrix_.size(); ++i) {
+    trial_.positions[i] = fixed_[i] ? result.positions[i] : stage.base.positions[i];
+    trial_.velocities[i] = fixed_[i] ? result.velocities[i] : Vector3d::Zero();
+  }
+  const double at_rest = incrementalPotential(cloth, stage, trial_);
+  if (incrementalPotential(cloth, stage, result) <= at_rest) return;
+  std::swap(result.positions, trial_.positions);
+  std::swap(result.velocities, trial_.velocities);
+}
+
 void StageSolver::addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities) {
   matrix_.setZero();
   for (int i = 0; i < matrix_.size(); ++i) {
     const double mass = cloth.masses()[i];
     matrix_.diagonal(i).diagonal().setConstant(mass);
-    rhs_.col(i) = stage.a * (cloth.externalForces()[i] + mass * cloth.effects().gravity) -
-                  mass * (velocities[i] - stage.base.velocities[i]);
+    rhs_.col(i) = -mass * (velocities[i] - stage.base.velocities[i]);
   }
 }
 
 void StageSolver::linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
   addInertia(cloth, stage, guess.velocities);
-  cloth.membrane().addStep(guess.positions, guess.velocities, {stage.a, guess.ahead}, matrix_,
-                           rhs_);
-  if (cloth.bending()) {
-    cloth.bending()->addStep(guess.positions, guess.velocities, {stage.a, guess.ahead}, matrix_,
-                             rhs_);
-  }
-  addPointLoadStep(cloth.pointLoads(), cloth.mesh().triangles, cloth.membrane().elements(),
-                   guess.positions, guess.velocities, {stage.a, guess.ahead}, matrix_, rhs_);
+  cloth.addStep(guess.positions, guess.velocities, stage.base.plastic_bends,
+                {stage.a, guess.ahead, timeOf(stage)}, matrix_, rhs_);
   prescribe(cloth, stage, guess);
 }
 
@@ -88,7 +122,31 @@ void StageSolver::prescribe(const Cloth& cloth, const Stage& stage, const StageG
     const Vector3d place = placeIn(stage, *attachment, i);
     prescribed_.col(i) = (place - stage.base.positions[i]) / stage.a - guess.velocities[i];
   }
+}
+
+void StageSolver::eliminate() {
   if (any_fixed_) matrix_.eliminate(fixed_, prescribed_, rhs_);
+  if (touching()) contacts_->confine(matrix_, rhs_);
+}
+
+/// The linear solve of the linearised stage, as often as the contacts ask for it.
+bool StageSolver::solveFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                             StepReport& report) {
+  constexpr int kMostRounds = 10;
+  if (contacts_) contacts_->begin(cloth, stage, guess.velocities, fixed_, matrix_, rhs_);
+  if (!touching()) {
+    eliminate();
+    return solveLinear(report);
+  }
+  bool solved = false;
+  for (int round = 1; round <= kMostRounds; ++round) {
+    any_fixed_ = contacts_->prepareRound(matrix_, rhs_, fixed_, prescribed_);
+    eliminate();
+    solved = solveLinear(report);
+    ++report.contact_rounds;
+    if (!contacts_->update(solution_, round == kMostRounds)) break;
+  }
+  return solved;
 }
 
 /// Solves matrix_ solution_ = rhs_ from the guess in solution_; false if that did not converge.
@@ -97,10 +155,12 @@ bool StageSolver::solveLinear(StepReport& report) {
   for (int i = 0; any_fixed_ && i < matrix_.size(); ++i) {
     if (fixed_[i]) solution_.col(i).setZero();
   }
+  if (touching()) contacts_->removeNormal(solution_);
   const SolveResult result = solver_.solve(matrix_, rhs_, settings_.tolerance, solution_);
   for (int i = 0; any_fixed_ && i < matrix_.size(); ++i) {
     if (fixed_[i]) solution_.col(i) = prescribed_.col(i);
   }
+  if (touching()) contacts_->putNormal(solution_);
   report.solver = solver_.lastMethod();
   report.linear_iterations += result.iterations;
   report.linear_residual = result.residual;
@@ -111,9 +171,8 @@ bool StageSolver::solveLinear(StepReport& report) {
 
 double StageSolver::incrementalPotential(const Cloth& cloth, const Stage& stage,
                                          const ClothState& at) const {
-  double potential = cloth.membrane().incrementalPotential(at.positions, base_strains_, stage.a) +
-                     pointLoadEnergy(cloth.pointLoads(), cloth.mesh().triangles, at.positions);
-  if (cloth.bending()) potential += cloth.bending()->energy(at.positions);
+  double potential = cloth.incrementalPotential(
+      at.positions, at.velocities, stage.base.plastic_bends, base_strains_, fixed_air_, stage.a);
   for (int i = 0; i < matrix_.size(); ++i) {
     if (fixed_[i]) continue;
     const double mass = cloth.masses()[i];
@@ -121,6 +180,7 @@ double StageSolver::incrementalPotential(const Cloth& cloth, const Stage& stage,
     potential -= (cloth.externalForces()[i] + mass * cloth.effects().gravity)
                      .dot(at.positions[i] - stage.base.positions[i]);
   }
+  if (touching()) potential += contacts_->frictionPotential(at.velocities);
   return potential;
 }
 
@@ -128,31 +188,32 @@ void StageSolver::assembleNewton(const Cloth& cloth, const Stage& stage, const C
                                  Membrane::Hessian hessian, StepReport& report) {
   const Clock::time_point start = Clock::now();
   addInertia(cloth, stage, at.velocities);
-  cloth.membrane().addNewton(at.positions, base_strains_, stage.a, hessian, matrix_, rhs_);
-  if (cloth.bending()) {
-    cloth.bending()->addStep(at.positions, at.velocities, {stage.a, 0.0}, matrix_, rhs_);
-  }
-  addPointLoadStep(cloth.pointLoads(), cloth.mesh().triangles, cloth.membrane().elements(),
-                   at.positions, at.velocities, {stage.a, 0.0}, matrix_, rhs_);
-  if (any_fixed_) matrix_.eliminate(fixed_, prescribed_, rhs_);
+  cloth.addNewton(at.positions, at.velocities, stage.base.plastic_bends, base_strains_, fixed_air_,
+                  stage.a, hessian, matrix_, rhs_);
+  contacts_change_ =
+      touching() && contacts_->addNewton(at.velocities, matrix_, rhs_, fixed_, prescribed_);
+  any_fixed_ = any_fixed_ || touching();
+  eliminate();
   report.assembly_seconds += seconds(Clock::now() - start);
 }
 
-void StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, ClothState& result,
-                                StepReport& report) {
+/// @param most_solves linear ones
+void StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, int most_solves,
+                                ClothState& result, StepReport& report) {
   constexpr double kNearMinimum = 1e-2;  // relative residual from which the exact Hessian is tried
   const double reference = rhs_.norm();
-  const int most_solves = report.newton_iterations - 1 + settings_.newton_iterations;
+  const int last_solve = report.newton_iterations + most_solves;
   double potential = incrementalPotential(cloth, stage, result);
-  prescribed_.setZero();  // the attached particles have reached their places
+  prescribed_.setZero();  // the fixed particles have reached their places
   bool converged = false;
   auto hessian = Membrane::Hessian::kProjected;
   while (true) {
     assembleNewton(cloth, stage, result, hessian, report);
+    if (touching()) potential = incrementalPotential(cloth, stage, result);  // of this friction
     const double norm = rhs_.norm();
     report.newton_residual = reference > 0.0 ? norm / reference : norm;
-    converged = norm <= settings_.newton_tolerance * reference;
-    if (converged || report.newton_iterations >= most_solves) break;
+    converged = norm <= settings_.newton_tolerance * reference && !contacts_change_;
+    if (converged || report.newton_iterations >= last_solve) break;
     solution_.setZero();
     const bool solved = solveLinear(report);
     const bool exact = hessian == Membrane::Hessian::kExact;
@@ -179,7 +240,8 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
   constexpr int kMostHalvings = 40;
   const double descent = rhs_.cwiseProduct(solution_).sum();
   const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
-  if (!(descent > 0.0)) return below_rounding ? Descent::kBelowRounding : Descent::kNone;
+  if (!(descent > 0.0) && !contacts_change_)
+    return below_rounding ? Descent::kBelowRounding : Descent::kNone;
   double step = 1.0;
   for (int halving = 0; halving < kMostHalvings; ++halving, step *= 0.5) {
     for (int i = 0; i < matrix_.size(); ++i) {
@@ -188,7 +250,8 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
       trial_.positions[i] = result.positions[i] + stage.a * change;
     }
     const double trial = incrementalPotential(cloth, stage, trial_);
-    if (trial <= potential - kSufficientDecrease * step * descent || below_rounding) {
+    if (contacts_change_ || trial <= potential - kSufficientDecrease * step * descent ||
+        below_rounding) {
       std::swap(result.positions, trial_.positions);
       std::swap(result.velocities, trial_.velocities);
       potential = trial;

@@ -61,6 +61,10 @@ std::pair<Vector3d, Vector3d> fabricDirections(const cloth::ClothMesh& mesh, int
 
 }  // namespace
 
+void requireTouchable(const material::Fabric& fabric, const HapticSettings& settings) {
+  ContactLaw(requireBending(fabric, settings));
+}
+
 HapticLayer::HapticLayer(cloth::ClothMesh mesh, material::Fabric fabric,
                          const cloth::ModelledEffects& effects, const HapticSettings& settings)
     : settings_(settings),
@@ -199,7 +203,8 @@ void HapticLayer::stepPatch() {
 Vector3d HapticLayer::aheadOf(const FingertipContact& contact, const Matrix3d& stiffness) const {
   if (!settings_.predict) return Vector3d::Zero();
   const Vector3d ahead = motion_.period() * contact.velocity;
-  const double now = -contact.normal.dot(contact.force);
+  // Friction may pull a fingertip at rest along the mean normal.
+  const double now = std::max(0.0, -contact.normal.dot(contact.force));
   const double change = contact.normal.dot(stiffness * ahead);
   return change < -now ? Vector3d(now / -change * ahead) : ahead;
 }

@@ -17,6 +17,10 @@ HapticSettings readSettings(const YamlValue& value) {
     const bool patch = value.at("layer").oneOf({"patch", "whole_cloth"}) == "patch";
     settings.layer = patch ? HapticSettings::Layer::kPatch : HapticSettings::Layer::kWholeCloth;
   }
+  for (const char* key : {"refinement", "margin", "most_elements", "predict"}) {
+    if (settings.layer == HapticSettings::Layer::kPatch || !value.has(key)) continue;
+    value.at(key).refuse("is not allowed with layer: whole_cloth, which has no patches");
+  }
   if (value.has("refinement")) {
     settings.refinement = value.at("refinement").integer();
     if (settings.refinement < 0 || settings.refinement > kMostRefinement) {

@@ -41,8 +41,8 @@ Patch::Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fab
              const cloth::ModelledEffects& effects, const ContactLaw& law)
     : cut_(std::move(cut)),
       effects_(effects),
-      membrane_(cut_.mesh, fabric, effects.viscosity),
-      bending_(cut_.mesh, *fabric.bending),
+      membrane_(cut_.mesh, fabric, effects.viscosity, effects.contraction),
+      bending_(cut_.mesh, *fabric.bending, effects.bending_settings),
       matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, bending_.pairs()),
       cholesky_(leadingPattern(matrix_, cut_.free_count)),
       areas_(tributaryAreas(membrane_, cut_.supports.size())),

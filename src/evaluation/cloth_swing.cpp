@@ -5,6 +5,7 @@
 #include <string>
 
 #include "haptex/cloth/integrator.h"
+#include "haptex/evaluation/hanging_strip.h"
 
 namespace haptex::evaluation {
 namespace {
@@ -42,16 +43,6 @@ Cloth hangingSheet(const material::Fabric& fabric, int cells, double amplitude) 
     cloth.attach(particle, place);
   }
   return cloth;
-}
-
-/// l with l s((l^2 - 1) / 2) = load (N/m), for a curve that rises.
-double stretchUnder(double load, const material::StrainStressCurve& curve) {
-  double low = 1.0, high = 2.0;
-  for (int halving = 0; halving < 60; ++halving) {
-    const double l = 0.5 * (low + high);
-    (l * curve.evaluate(0.5 * (l * l - 1.0)).stress < load ? low : high) = l;
-  }
-  return low;
 }
 
 }  // namespace

@@ -62,4 +62,13 @@ double simulatedElongation(const HangingStrip& strip, int cells, double time_ste
   return -lower_end / strip.length - 1.0;
 }
 
+double stretchUnder(double load, const StrainStressCurve& curve) {
+  double low = 1.0, high = 2.0;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double l = 0.5 * (low + high);
+    (l * curve.evaluate(0.5 * (l * l - 1.0)).stress < load ? low : high) = l;
+  }
+  return low;
+}
+
 }  // namespace haptex::evaluation

@@ -16,11 +16,16 @@ std::vector<Eigen::Vector3d> restPositions(const cloth::ClothMesh& mesh) {
   return positions;
 }
 
+cloth::ModelledEffects withPointLoads(cloth::ModelledEffects effects) {
+  effects.point_loads = true;
+  return effects;
+}
+
 }  // namespace
 
 HapticLoop::HapticLoop(HapticLoopSettings settings)
     : settings_(std::move(settings)),
-      cloth_(settings_.mesh, settings_.fabric, settings_.effects),
+      cloth_(settings_.mesh, settings_.fabric, withPointLoads(settings_.effects)),
       state_(cloth_.initialState()),
       integrator_(cloth_, settings_.step),
       hierarchy_(settings_.mesh.triangles, restPositions(settings_.mesh)),

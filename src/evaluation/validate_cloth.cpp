@@ -24,13 +24,6 @@ constexpr double kElongationTolerance = 1e-4;
 constexpr double kPatchTolerance = 1e-12;
 constexpr double kJacobianTolerance = 1e-7;
 
-std::string numbered(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
 void sinkReadings(const std::string& name, const std::vector<Reading>& readings,
                   const std::function<double(double)>& exact, const Sink& sink) {
   double peak = 0.0;
@@ -131,14 +124,25 @@ std::vector<Vector3d> centralDifference(const Cloth& cloth, const ClothState& st
   return above;
 }
 
-/// Largest difference between the Jacobian and central differences of the forces, relative to the
-/// largest entry, in a random deformation about a given mean.
-void validateJacobian(const Fabric& fabric, const std::string& name,
+}  // namespace
+
+std::string numbered(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+void validateJacobian(const Fabric& fabric, cloth::Elasticity elasticity, const std::string& name,
                       const Eigen::Matrix2d& mean_deformation, const Sink& sink) {
   constexpr double kSize = 0.1, kCell = kSize / 4.0;
   cloth::ModelledEffects effects;
   effects.viscosity = true;
-  Cloth cloth(irregularRectangle(kSize, kSize, 4, 4, 11), fabric, effects);
+  effects.elasticity = elasticity;
+  Cloth cloth(elasticity == cloth::Elasticity::kMassSpring
+                  ? cloth::makeRectangle(kSize, kSize, 4, 4, cloth::Triangulation::kAlternating)
+                  : irregularRectangle(kSize, kSize, 4, 4, 11),
+              fabric, effects);
   ClothState state = cloth.initialState();
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -152,10 +156,8 @@ void validateJacobian(const Fabric& fabric, const std::string& name,
   }
   // Steps small enough for the stiffest curve, whose slope turns within 5e-4 of strain.
   const double position_step = 1e-7 * kCell, velocity_step = 1e-5;
-  Quantity position{"cloth/jacobian_position/" + fabric.name + "/" + name, 0.0, 0.0, 0.0,
-                    kJacobianTolerance};
-  Quantity velocity{"cloth/jacobian_velocity/" + fabric.name + "/" + name, 0.0, 0.0, 0.0,
-                    kJacobianTolerance};
+  Quantity position{"cloth/jacobian_position/" + name, 0.0, 0.0, 0.0, kJacobianTolerance};
+  Quantity velocity{"cloth/jacobian_velocity/" + name, 0.0, 0.0, 0.0, kJacobianTolerance};
   double largest_by_position = 0.0, largest_by_velocity = 0.0;
   const std::vector<cloth::JacobianBlock> blocks = cloth.jacobian(state, particles);
   for (int column : particles) {
@@ -185,6 +187,8 @@ void validateJacobian(const Fabric& fabric, const std::string& name,
   sink(velocity);
 }
 
+namespace {
+
 void validateJacobians(const Fabric& fabric, double weft_strain, double warp_strain,
                        const Sink& sink) {
   const Eigen::Matrix2d rest = Eigen::Matrix2d::Identity();
@@ -192,9 +196,13 @@ void validateJacobians(const Fabric& fabric, double weft_strain, double warp_str
   tension.diagonal() << 1.0 + weft_strain, 1.0 + warp_strain;
   compression.diagonal() << 0.7, 0.8;
   shear(0, 1) = 0.1;
-  validateJacobian(fabric, "tension", tension, sink);
-  validateJacobian(fabric, "compression", compression, sink);
-  validateJacobian(fabric, "shear", shear, sink);
+  const auto validate = [&](const std::string& name, const Eigen::Matrix2d& deformation) {
+    validateJacobian(fabric, cloth::Elasticity::kGreenLagrange, fabric.name + "/" + name,
+                     deformation, sink);
+  };
+  validate("tension", tension);
+  validate("compression", compression);
+  validate("shear", shear);
 }
 
 }  // namespace
@@ -215,7 +223,12 @@ void validateCloth(const std::string& config_directory, const Sink& sink) {
   validatePatch(linear, sink);
   validateJacobians(wool, 0.05, 0.008, sink);
   validateJacobians(linear, 0.05, 0.05, sink);
+  validateBending(sink);
+  validateModels(linear, wool, sink);
   validateIntegrators(linear, wool, sink);
+  validateAir(linear, sink);
+  validateContraction(wool, sink);
+  validateKes(wool, material::loadFabric(config_directory + "/fabrics/denim.yaml"), sink);
 }
 
 }  // namespace haptex::evaluation

@@ -6,6 +6,7 @@ namespace haptex::evaluation {
 
 void validateContact(const std::string& config_directory, const Sink& sink) {
   const material::Fabric wool = material::loadFabric(config_directory + "/fabrics/wool.yaml");
+  validateContactObstacles(sink);
   validateContactTouch(wool, sink);
   validateContactFriction(wool, sink);
   validateContactEquilibrium(wool, sink);

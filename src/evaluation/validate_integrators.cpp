@@ -72,7 +72,10 @@ double oscillatorEnergy(const StepSettings& settings) {
   constexpr double kAmplitude = 0.02;  // m
   material::Fabric limp;
   limp.areal_density = 0.1;
-  cloth::Cloth cloth(cloth::makeRectangle(0.1, 0.1, 1, 1, cloth::Triangulation::kOneWay), limp, {});
+  cloth::ModelledEffects effects;
+  effects.point_loads = true;
+  cloth::Cloth cloth(cloth::makeRectangle(0.1, 0.1, 1, 1, cloth::Triangulation::kOneWay), limp,
+                     effects);
   cloth::ClothState state = cloth.initialState();
   std::vector<cloth::PointLoad> springs(cloth.particleCount());
   double energy_begin = 0.0;

@@ -1,20 +1,12 @@
 #include "haptex/evaluation/virtual_test.h"
 
-#include <cmath>
-#include <functional>
 #include <random>
-#include <stdexcept>
 
-#include "haptex/cloth/cloth.h"
-#include "haptex/cloth/integrator.h"
-#include "haptex/evaluation/quantity.h"
 #include "haptex/material/strain_measures.h"
 
 namespace haptex::evaluation {
 namespace {
 
-using cloth::Cloth;
-using cloth::ClothState;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -22,76 +14,25 @@ using Eigen::Vector3d;
 constexpr int kCellsAlongJaw = 50;
 constexpr int kCellsBetweenJaws = 25;
 
-/// Cloth in the plane x = 0 that goes from one static equilibrium to the next.
-class Tester {
- public:
-  Tester(cloth::ClothMesh mesh, const material::Fabric& fabric)
-      : cloth_(std::move(mesh), fabric, {}),
-        state_(cloth_.initialState()),
-        integrator_(cloth_, settings()) {}
-
-  const cloth::ClothMesh& mesh() const { return cloth_.mesh(); }
-
-  /// Holds these particles at `place` of their rest coordinates, moves the others there too but for
-  /// a random disturbance, and lets them find the equilibrium.
-  void equilibrate(const std::vector<int>& held, const std::function<Vector3d(Vector2d)>& place) {
-    std::normal_distribution<double> disturbance(0.0, 2e-5);  // m
-    for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
-      state_.positions[i] = place(mesh().rest_coordinates[i]) +
-                            Vector3d(0.0, disturbance(random_), disturbance(random_));
-    }
-    cloth_.releaseAll();
-    for (int particle : held) {
-      cloth::AttachmentPath path;
-      path.start = place(mesh().rest_coordinates[particle]);
-      cloth_.attach(particle, path);
-    }
-    // Inertia over a step as long as this is far below the stiffness: backward Euler's fixed point
-    // is the static equilibrium itself.
-    constexpr double kTimeStep = 1.0;
-    constexpr int kMostSteps = 60;
-    constexpr double kUnbalanced = 1e-9;  // of the largest force
-    constexpr double kNoForce = 1e-11;    // N, near the rounding of the stiffest elements
-    for (int i = 0; i < kMostSteps; ++i) {
-      state_.velocities.assign(cloth_.particleCount(), Vector3d::Zero());
-      integrator_.step(cloth_, state_, kTimeStep);
-      cloth_.computeForces(state_, forces_);
-      if (largestFreeForce() <= std::max(kUnbalanced * largestForce(), kNoForce)) return;
-    }
-    throw std::runtime_error("the virtual test did not reach its equilibrium");
+/// Regular for springs, which need that.
+cloth::ClothMesh sampleMesh(bool weft, unsigned seed,
+                            cloth::Elasticity elasticity = cloth::Elasticity::kGreenLagrange) {
+  const double width = weft ? kSampleLength : kSampleWidth;
+  const double height = weft ? kSampleWidth : kSampleLength;
+  const int cells_u = weft ? kCellsBetweenJaws : kCellsAlongJaw;
+  const int cells_v = weft ? kCellsAlongJaw : kCellsBetweenJaws;
+  if (elasticity == cloth::Elasticity::kMassSpring) {
+    return cloth::makeRectangle(width, height, cells_u, cells_v,
+                                cloth::Triangulation::kAlternating);
   }
+  return irregularRectangle(width, height, cells_u, cells_v, seed);
+}
 
-  /// The force that holds a particle (N).
-  Vector3d reaction(int particle) const { return -forces_[particle]; }
-
- private:
-  static cloth::StepSettings settings() {
-    cloth::StepSettings settings;
-    settings.solver = cloth::LinearSolverMethod::kCholesky;
-    settings.tolerance = 1e-9;
-    settings.newton_iterations = 100;
-    settings.newton_tolerance = 1e-13;
-    return settings;
-  }
-  double largestForce() const {
-    double largest = 0.0;
-    for (const Vector3d& force : forces_) largest = largerOrNaN(largest, force.norm());
-    return largest;
-  }
-  double largestFreeForce() const {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < forces_.size(); ++i) {
-      if (!cloth_.attachments()[i]) largest = largerOrNaN(largest, forces_[i].norm());
-    }
-    return largest;
-  }
-
-  Cloth cloth_;
-  ClothState state_;
-  cloth::Integrator integrator_;
-  std::vector<Vector3d> forces_;
-  std::mt19937 random_{1};
-};
+cloth::ModelledEffects effectsOf(cloth::Elasticity elasticity) {
+  cloth::ModelledEffects effects;
+  effects.elasticity = elasticity;
+  return effects;
+}
 
 }  // namespace
 
@@ -112,53 +53,86 @@ cloth::ClothMesh irregularRectangle(double width, double height, int cells_u, in
   return mesh;
 }
 
-std::vector<Reading> tensileTest(const material::Fabric& fabric, Direction direction,
-                                 const std::vector<double>& strains) {
-  const bool weft = direction == Direction::kWeft;
-  Tester tester(
-      weft ? irregularRectangle(kSampleLength, kSampleWidth, kCellsBetweenJaws, kCellsAlongJaw, 2)
-           : irregularRectangle(kSampleWidth, kSampleLength, kCellsAlongJaw, kCellsBetweenJaws, 2),
-      fabric);
-  const std::vector<int> jaw =
-      sideParticles(tester.mesh(), weft ? cloth::Side::kRight : cloth::Side::kTop);
-  std::vector<int> held =
-      sideParticles(tester.mesh(), weft ? cloth::Side::kLeft : cloth::Side::kBottom);
-  held.insert(held.end(), jaw.begin(), jaw.end());
+TensileRig::TensileRig(const material::Fabric& fabric, Direction direction,
+                       cloth::Elasticity elasticity)
+    : weft_(direction == Direction::kWeft),
+      sample_(sampleMesh(weft_, 2, elasticity), fabric, effectsOf(elasticity)) {
+  jaw_ = sideParticles(sample_.mesh(), weft_ ? cloth::Side::kRight : cloth::Side::kTop);
+  held_ = sideParticles(sample_.mesh(), weft_ ? cloth::Side::kLeft : cloth::Side::kBottom);
+  held_.insert(held_.end(), jaw_.begin(), jaw_.end());
+}
 
+void TensileRig::pull(double strain) {
+  const double stretch = 1.0 + strain;
+  sample_.equilibrate(held_, [&](const Vector2d& rest) {
+    return weft_ ? Vector3d(0.0, stretch * rest.x(), rest.y())
+                 : Vector3d(0.0, rest.x(), stretch * rest.y());
+  });
+}
+
+void TensileRig::move(double strain_rate) {
+  sample_.moveAs([&](const Vector2d& rest) {
+    return weft_ ? Vector3d(0.0, strain_rate * rest.x(), 0.0)
+                 : Vector3d(0.0, 0.0, strain_rate * rest.y());
+  });
+}
+
+double TensileRig::force() const {
+  double force = 0.0;
+  for (int particle : jaw_) force += sample_.reaction(particle)[weft_ ? 1 : 2];
+  return force;
+}
+
+ShearRig::ShearRig(const material::Fabric& fabric, Direction direction)
+    : weft_(direction == Direction::kWeft), sample_(sampleMesh(!weft_, 3), fabric) {
+  jaw_ = sideParticles(sample_.mesh(), weft_ ? cloth::Side::kTop : cloth::Side::kRight);
+  for (cloth::Side side :
+       {cloth::Side::kTop, cloth::Side::kBottom, cloth::Side::kLeft, cloth::Side::kRight}) {
+    const std::vector<int> particles = sideParticles(sample_.mesh(), side);
+    held_.insert(held_.end(), particles.begin(), particles.end());
+  }
+}
+
+void ShearRig::shear(double shear, double height) {
+  sample_.equilibrate(held_, [&](const Vector2d& rest) {
+    return weft_ ? Vector3d(0.0, rest.x() + shear * rest.y(), height * rest.y())
+                 : Vector3d(0.0, height * rest.x(), rest.y() + shear * rest.x());
+  });
+}
+
+void ShearRig::move(double shear_rate, double height_rate) {
+  sample_.moveAs([&](const Vector2d& rest) {
+    return weft_ ? Vector3d(0.0, shear_rate * rest.y(), height_rate * rest.y())
+                 : Vector3d(0.0, height_rate * rest.x(), shear_rate * rest.x());
+  });
+}
+
+ShearRig::Force ShearRig::force() const {
+  // The corners also carry the guides of the sides: the force on the whole jaw follows from the
+  // particles between them, which hold all of it but half a cell at either end.
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 1; i + 1 < jaw_.size(); ++i) sum += sample_.reaction(jaw_[i]);
+  sum *= kCellsAlongJaw / (kCellsAlongJaw - 1.0);
+  return weft_ ? Force{sum.y(), sum.z()} : Force{sum.z(), sum.y()};
+}
+
+std::vector<Reading> tensileTest(const material::Fabric& fabric, Direction direction,
+                                 const std::vector<double>& strains, cloth::Elasticity elasticity) {
+  TensileRig rig(fabric, direction, elasticity);
   std::vector<Reading> readings;
   for (double strain : strains) {
-    const double stretch = 1.0 + strain;
-    tester.equilibrate(held, [&](const Vector2d& rest) {
-      return weft ? Vector3d(0.0, stretch * rest.x(), rest.y())
-                  : Vector3d(0.0, rest.x(), stretch * rest.y());
-    });
-    double force = 0.0;
-    for (int particle : jaw) force += tester.reaction(particle)[weft ? 1 : 2];
-    readings.push_back({strain, force});
+    rig.pull(strain);
+    readings.push_back({strain, rig.force()});
   }
   return readings;
 }
 
 std::vector<Reading> shearTest(const material::Fabric& fabric, const std::vector<double>& shears) {
-  Tester tester(
-      irregularRectangle(kSampleWidth, kSampleLength, kCellsAlongJaw, kCellsBetweenJaws, 3),
-      fabric);
-  const std::vector<int> jaw = sideParticles(tester.mesh(), cloth::Side::kTop);
-  std::vector<int> held = jaw;
-  for (cloth::Side side : {cloth::Side::kBottom, cloth::Side::kLeft, cloth::Side::kRight}) {
-    const std::vector<int> particles = sideParticles(tester.mesh(), side);
-    held.insert(held.end(), particles.begin(), particles.end());
-  }
+  ShearRig rig(fabric, Direction::kWeft);
   std::vector<Reading> readings;
   for (double shear : shears) {
-    tester.equilibrate(held, [&](const Vector2d& rest) {
-      return Vector3d(0.0, rest.x() + shear * rest.y(), rest.y());
-    });
-    // The corners also carry the guides of the sides: the force on the whole jaw follows from the
-    // particles between them, which hold all of it but half a cell at either end.
-    double force = 0.0;
-    for (std::size_t i = 1; i + 1 < jaw.size(); ++i) force += tester.reaction(jaw[i]).y();
-    readings.push_back({shear, force * kCellsAlongJaw / (kCellsAlongJaw - 1.0)});
+    rig.shear(shear, 1.0);
+    readings.push_back({shear, rig.force().along});
   }
   return readings;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptex/material/compression.h"
+#include "haptex/material/contraction.h"
 #include "haptex/material/strain_measures.h"
 #include "haptex/material/surface_file.h"
 #include "haptex/material/yaml_reader.h"
@@ -190,9 +191,45 @@ double readRigidity(const YamlValue& value) {
 }
 
 BendingRigidity readBending(const YamlValue& value) {
-  value.requireKeys({"unit", "provenance", "source", "weft", "warp"});
+  value.requireKeys({"unit", "provenance", "source", "weft", "warp"}, {"hysteresis"});
   value.at("unit").oneOf({"N.m"});
   return {readRigidity(value.at("weft")), readRigidity(value.at("warp"))};
+}
+
+double readLoopWidth(const YamlValue& value, double rigidity) {
+  const double width = value.number();
+  if (width < 0.0) value.refuse("must be a finite number >= 0");
+  if (width > 0.0 && rigidity == 0.0) value.refuse("must be 0, as the rigidity is");
+  return width;
+}
+
+BendingHysteresis readHysteresis(const YamlValue& value, const BendingRigidity& rigidity) {
+  value.requireKeys({"unit", "provenance", "source", "weft", "warp"});
+  value.at("unit").oneOf({"N"});
+  return {readLoopWidth(value.at("weft"), rigidity.weft),
+          readLoopWidth(value.at("warp"), rigidity.warp)};
+}
+
+// Reads the bending, if there is one, and the provenance of its hysteresis into the fabric.
+void readBendingInto(const YamlValue& file, Fabric& fabric) {
+  if (!file.has("bending")) return;
+  const YamlValue value = file.at("bending");
+  fabric.bending = readBending(value);
+  if (!value.has("hysteresis")) return;
+  fabric.bending_hysteresis = readHysteresis(value.at("hysteresis"), *fabric.bending);
+  fabric.provenance["bending.hysteresis"] = readProvenance(value.at("hysteresis"));
+}
+
+/// Of a fabric whose curves are read.
+double readContraction(const YamlValue& value, const Fabric& fabric) {
+  value.requireKeys({"value", "provenance", "source"});
+  const double contraction = value.at("value").number();
+  const double largest = largestContraction(fabric);
+  if (contraction < 0.0 || contraction >= largest) {
+    value.at("value").refuse("must be >= 0 and < " + std::to_string(largest) +
+                             ": at more weft and warp of these curves would give way together");
+  }
+  return contraction;
 }
 
 std::vector<ThicknessPoint> readThicknessPoints(const YamlValue& value) {
@@ -263,7 +300,7 @@ void readSurfaceInto(const YamlValue& file, Fabric& fabric) {
 Fabric loadFabric(const std::string& path) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"name", "areal_density", "weft", "warp", "shear"},
-                   {"description", "bending", "compression", "friction", "surface"});
+                   {"description", "bending", "contraction", "compression", "friction", "surface"});
   Fabric fabric;
   fabric.name = file.at("name").text();
   if (file.has("description")) fabric.description = file.at("description").text();
@@ -272,10 +309,13 @@ Fabric loadFabric(const std::string& path) {
   fabric.weft = readDirection(file, "weft", NegativeBranch::kLinear, fabric);
   fabric.warp = readDirection(file, "warp", NegativeBranch::kLinear, fabric);
   fabric.shear = readDirection(file, "shear", NegativeBranch::kOdd, fabric);
-  if (file.has("bending")) fabric.bending = readBending(file.at("bending"));
+  readBendingInto(file, fabric);
+  if (file.has("contraction")) {
+    fabric.contraction = readContraction(file.at("contraction"), fabric);
+  }
   if (file.has("compression")) fabric.compression = readCompression(file.at("compression"));
   if (file.has("friction")) fabric.friction = readFriction(file.at("friction"));
-  for (const std::string key : {"bending", "compression", "friction"}) {
+  for (const std::string key : {"bending", "contraction", "compression", "friction"}) {
     if (file.has(key)) fabric.provenance[key] = readProvenance(file.at(key));
   }
   readSurfaceInto(file, fabric);

@@ -243,12 +243,6 @@ void StrainStressCurve::makeBins() {
   }
 }
 
-double StrainStressCurve::energyFromBegin(std::size_t segment, double strain) const {
-  const Cubic& c = segments_[segment].coefficients;
-  const double x = strain - segments_[segment].begin;
-  return x * (c[0] + x * (c[1] / 2.0 + x * (c[2] / 3.0 + x * c[3] / 4.0)));
-}
-
 // Sums outwards from strain 0, so that small strains keep their relative accuracy.
 void StrainStressCurve::integrateEnergy() {
   const std::size_t zero = segmentIndex(0.0);
@@ -261,11 +255,6 @@ void StrainStressCurve::integrateEnergy() {
     segments_[i].energy_at_begin =
         segments_[i + 1].energy_at_begin - energyFromBegin(i, segments_[i + 1].begin);
   }
-}
-
-double StrainStressCurve::energy(double strain) const {
-  const std::size_t segment = segmentIndex(strain);
-  return segments_[segment].energy_at_begin + energyFromBegin(segment, strain);
 }
 
 bool StrainStressCurve::isZero() const {

@@ -8,6 +8,7 @@
 
 #include "haptex/nodes/colour_map.h"
 #include "haptex/nodes/marker_shapes.h"
+#include "haptex/nodes/obstacle_marker.h"
 
 namespace haptex::nodes {
 namespace {
@@ -31,7 +32,8 @@ std::vector<std::array<int, 2>> uniqueEdges(const std::vector<std::array<int, 3>
 
 }  // namespace
 
-ClothMarkers::ClothMarkers(const cloth::ClothMesh& mesh, double full_scale)
+ClothMarkers::ClothMarkers(const cloth::ClothMesh& mesh, double full_scale,
+                           const std::vector<cloth::Obstacle>& obstacles)
     : triangles_(mesh.triangles), edges_(uniqueEdges(mesh.triangles)), full_scale_(full_scale) {
   Eigen::Vector3d low = mesh.initial_positions.front();
   Eigen::Vector3d high = low;
@@ -62,6 +64,18 @@ ClothMarkers::ClothMarkers(const cloth::ClothMesh& mesh, double full_scale)
     markers[index].color = colourMessage(Eigen::Vector3f(0.25F, 0.27F, 0.30F));
   }
   addScale();
+  first_obstacle_ = markers.size();
+  for (const cloth::Obstacle& obstacle : obstacles) {
+    if (!obstacle.moves()) continue;
+    markers.push_back(obstacleMarker(obstacle, static_cast<int>(moving_.size())));
+    moving_.push_back(obstacle);
+  }
+}
+
+void ClothMarkers::updateObstacles(double time) {
+  for (std::size_t i = 0; i < moving_.size(); ++i) {
+    setObstaclePose(moving_[i], time, markers_.markers[first_obstacle_ + i]);
+  }
 }
 
 void ClothMarkers::addScale() {
@@ -110,6 +124,7 @@ const visualization_msgs::MarkerArray& ClothMarkers::update(const SimulatedCloth
   computeNormals(simulation.state().positions);
   updateCloth(simulation);
   updateAttachments(simulation);
+  updateObstacles(simulation.state().time);
   for (visualization_msgs::Marker& marker : markers_.markers) marker.header.stamp = stamp;
   return markers_;
 }

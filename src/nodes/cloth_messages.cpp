@@ -43,10 +43,8 @@ void fillStateMessage(const SimulatedCloth& simulation, const ros::Time& stamp,
                       std::vector<Eigen::Vector3d>& forces, haptex::ClothState& message) {
   const cloth::ClothState& state = simulation.state();
   simulation.cloth().computeForces(state, forces);
-  message.header.stamp = stamp;
+  restampStateMessage(simulation, stamp, message);
   message.header.frame_id = kFixedFrame;
-  message.step = simulation.steps();
-  message.simulated_time = state.time;
   fillVectors(state.positions, message.positions);
   fillVectors(state.velocities, message.velocities);
   fillVectors(forces, message.forces);
@@ -55,6 +53,13 @@ void fillStateMessage(const SimulatedCloth& simulation, const ros::Time& stamp,
   for (std::size_t i = 0; i < attachments.size(); ++i) {
     if (attachments[i]) message.attached.push_back(static_cast<std::uint32_t>(i));
   }
+}
+
+void restampStateMessage(const SimulatedCloth& simulation, const ros::Time& stamp,
+                         haptex::ClothState& message) {
+  message.header.stamp = stamp;
+  message.step = simulation.steps();
+  message.simulated_time = simulation.state().time;
 }
 
 void fillJacobianResponse(const std::vector<cloth::JacobianBlock>& blocks,

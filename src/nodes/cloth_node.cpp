@@ -1,12 +1,13 @@
 #include "haptex/nodes/cloth_node.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
-#include "haptex/material/fabric_file.h"
+#include "haptex/contact/scene_fabric.h"
 #include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/node_parameters.h"
 #include "haptex/nodes/steady_clock.h"
@@ -17,11 +18,24 @@ namespace {
 constexpr double kDefaultMarkerRate = 25.0;
 constexpr double kDefaultStrainScale = 0.01;
 constexpr double kRestPeriod = 0.1;  // s, between two messages of a state that does not change
+constexpr std::chrono::seconds kQualityPeriod{1};  // between two messages without a change
+constexpr double kShareToKeep = 0.95;              // of the cycles, inside the budget
 
 /// How many steps there are between two messages of a rate, to the nearest whole number.
 std::uint64_t stepsPerMessage(double rate, double time_step) {
   if (rate == 0.0) return 1;
   return std::max<std::uint64_t>(1, std::llround(std::min(1.0 / (rate * time_step), 1e9)));
+}
+
+std::optional<RuntimeQuality> qualityOf(const ClothNodeParameters& parameters) {
+  if (!parameters.quality.any()) return std::nullopt;
+  return RuntimeQuality(parameters.scene_path, parameters.quality);
+}
+
+SimulatedCloth simulate(const ClothNodeParameters& parameters,
+                        const std::optional<RuntimeQuality>& quality, const cloth::Scene& scene) {
+  if (quality) return quality->simulate();
+  return SimulatedCloth(scene, contact::loadSceneFabric(parameters.scene_path, scene));
 }
 
 }  // namespace
@@ -32,6 +46,7 @@ ClothNodeParameters ClothNodeParameters::read(const ros::NodeHandle& private_nod
   parameters.state_rate = readPositive(private_node, "state_rate", 0.0);
   parameters.marker_rate = readPositive(private_node, "marker_rate", kDefaultMarkerRate);
   parameters.strain_scale = readPositive(private_node, "strain_scale", kDefaultStrainScale);
+  parameters.quality = QualityRequest::read(private_node);
   return parameters;
 }
 
@@ -40,31 +55,46 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
 
 ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                      const ClothNodeParameters& parameters)
-    : ClothNode(node, private_node, parameters, cloth::loadScene(parameters.scene_path)) {}
+    : ClothNode(node, private_node, parameters, qualityOf(parameters)) {}
 
 ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
-                     const ClothNodeParameters& parameters, cloth::Scene scene)
+                     const ClothNodeParameters& parameters,
+                     const std::optional<RuntimeQuality>& quality)
+    : ClothNode(node, private_node, parameters, quality,
+                quality ? quality->scene() : cloth::loadScene(parameters.scene_path)) {}
+
+ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                     const ClothNodeParameters& parameters,
+                     const std::optional<RuntimeQuality>& quality, const cloth::Scene& scene)
     : node_(node),
       diagnostics_(node, private_node),
       steps_per_state_(stepsPerMessage(parameters.state_rate, scene.time_step)),
       steps_per_markers_(stepsPerMessage(parameters.marker_rate, scene.time_step)),
-      markers_(scene.mesh, parameters.strain_scale),
+      markers_(scene.mesh, parameters.strain_scale, scene.obstacles),
       state_stamp_(ros::Time::now()),
+      quality_(quality),
       time_step_(scene.time_step),
       tolerance_(scene.step.tolerance),
       particle_count_(scene.mesh.initial_positions.size()),
       triangle_count_(scene.mesh.triangles.size()),
-      contact_input_(node, triangle_count_),
+      contact_input_(scene.fingers ? std::make_unique<ContactInput>(node, triangle_count_)
+                                   : nullptr),
       heartbeat_(node, "cloth/heartbeat"),
       loop_(
-          SimulatedCloth(std::move(scene), material::loadFabric(scene.fabric_path)),
+          simulate(parameters, quality, scene),
           [this](const SimulatedCloth& simulation, bool rests) { publishStep(simulation, rests); },
-          [this](SimulatedCloth& simulation) { takeContactForces(simulation); }) {
+          contact_input_ ? RealTimeLoop::Command([this](SimulatedCloth& simulation) {
+            takeContactForces(simulation);
+          })
+                         : RealTimeLoop::Command()) {
   ROS_INFO("Scene %s: %zu particles, %zu triangles, steps of %g ms", parameters.scene_path.c_str(),
            particle_count_, triangle_count_, 1e3 * time_step_);
   advertiseTopics();
   loop_.start();
-  loop_.execute([this](SimulatedCloth& simulation) { publishMesh(simulation.cloth()); });
+  loop_.execute([this](SimulatedCloth& simulation) {
+    publishMesh(simulation.cloth());
+    publishQuality(simulation);
+  });
   advertiseServices();
   diagnostics_.setHardwareID("none");
   diagnostics_.add("cloth simulation", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -86,6 +116,9 @@ void ClothNode::advertiseTopics() {
   state_publisher_ = node_.advertise<haptex::ClothState>("cloth/state", 10, republish);
   marker_publisher_ =
       node_.advertise<visualization_msgs::MarkerArray>("cloth/markers", 2, republish);
+  if (quality_) {
+    quality_publisher_ = node_.advertise<haptex::ClothQuality>("cloth/quality", 1, true);
+  }
 }
 
 void ClothNode::publishMesh(const cloth::Cloth& cloth) {
@@ -99,18 +132,45 @@ void ClothNode::publishStep(const SimulatedCloth& simulation, bool rests) {
   }
   const bool state_due = rests || stamped_step_ % steps_per_state_ == 0;
   if (state_due && state_publisher_.getNumSubscribers() > 0) {
-    fillStateMessage(simulation, state_stamp_, forces_, state_message_);
-    state_publisher_.publish(state_message_);
+    publishState(simulation);
   }
   const bool markers_due = rests || stamped_step_ % steps_per_markers_ == 0;
   if (markers_due && marker_publisher_.getNumSubscribers() > 0) {
     marker_publisher_.publish(markers_.update(simulation, state_stamp_));
   }
+  publishQualityIfDue(simulation);
+}
+
+void ClothNode::publishQuality(const SimulatedCloth& simulation) {
+  if (!quality_) return;
+  const haptex::ClothQuality message = quality_->message(simulation, ros::Time::now());
+  quality_publisher_.publish(message);
+  published_changes_ = simulation.controller()->changes();
+  quality_due_ = steadyNow() + kQualityPeriod;
+  const std::lock_guard<std::mutex> lock(quality_mutex_);
+  quality_message_ = message;
+}
+
+void ClothNode::publishQualityIfDue(const SimulatedCloth& simulation) {
+  if (!quality_) return;
+  const bool changed = published_changes_ != simulation.controller()->changes();
+  if (changed || steadyNow() >= quality_due_) publishQuality(simulation);
+}
+
+/// While the cloth sleeps, only the time is new.
+void ClothNode::publishState(const SimulatedCloth& simulation) {
+  if (simulation.asleep() && filled_step_ == simulation.computedSteps()) {
+    restampStateMessage(simulation, state_stamp_, state_message_);
+  } else {
+    fillStateMessage(simulation, state_stamp_, forces_, state_message_);
+    filled_step_ = simulation.computedSteps();
+  }
+  state_publisher_.publish(state_message_);
 }
 
 void ClothNode::takeContactForces(SimulatedCloth& simulation) {
   // They have been checked when they came, so that this does not throw.
-  if (contact_input_.loads().take(loads_, steadyNow())) simulation.setPointLoads(loads_);
+  if (contact_input_->loads().take(loads_, steadyNow())) simulation.setPointLoads(loads_);
 }
 
 void ClothNode::republishIfResting() {
@@ -132,6 +192,8 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) co
                    "undo what led to it");
   } else if (loop.paused) {
     status.summary(DiagnosticStatus::OK, "paused");
+  } else if (loop.asleep) {
+    status.summary(DiagnosticStatus::OK, "asleep: nothing moves, and nothing is computed");
   } else if (loop.real_time_factor < 0.99) {
     status.summaryf(DiagnosticStatus::WARN, "%.1f %% slower than real time",
                     100.0 * (1.0 - loop.real_time_factor));
@@ -150,16 +212,47 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) co
   status.add("linear solver", direct ? "Cholesky" : "conjugate gradient");
   status.add("linear iterations", loop.last_report.linear_iterations);
   status.add("largest residual", loop.largest_residual);
-  status.add("tolerance", tolerance_);
+  if (!quality_) status.add("tolerance", tolerance_);
   status.add("steps that missed the tolerance", loop.unsolved_steps);
   status.add("rejected steps", loop.rejected_steps);
-  const ContactInputStatus contact = contact_input_.status();
+  status.add("asleep", loop.asleep ? "yes" : "no");
+  status.add("particles", particle_count_);
+  status.add("triangles", triangle_count_);
+  if (quality_) diagnoseQuality(status);
+  if (!contact_input_) return;
+  const ContactInputStatus contact = contact_input_->status();
   status.add("contact forces taken", contact.taken);
   status.add("contact forces refused", contact.refused);
   status.add("last contact forces refused for",
              contact.refused_why.empty() ? "none" : contact.refused_why);
-  status.add("particles", particle_count_);
-  status.add("triangles", triangle_count_);
+}
+
+void ClothNode::diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  haptex::ClothQuality quality;
+  {
+    const std::lock_guard<std::mutex> lock(quality_mutex_);
+    quality = quality_message_;
+  }
+  const haptex::QualityPoint& point = quality.quality;
+  if (quality.within_budget < kShareToKeep) {
+    status.mergeSummaryf(DiagnosticStatus::WARN, "only %.0f %% of the cycles within %g ms",
+                         100.0 * quality.within_budget, quality.budget_ms);
+  }
+  status.add("quality", point.name);
+  status.add("integrator", point.integrator);
+  status.add("substeps", point.substeps);
+  status.add("tolerance", point.solver_tolerance);
+  status.add("Newton iterations", point.newton_iterations);
+  status.add("budget (ms)", quality.budget_ms > 0.0 ? std::to_string(quality.budget_ms) : "none");
+  status.add("smoothed computing time of a cycle (ms)", quality.cycle_ms);
+  status.add("cycles within the budget (%)", 100.0 * quality.within_budget);
+  status.add("load", quality.load);
+  status.add("changes of quality", quality.changes);
+  for (std::size_t i = 0; i < point.motion.size(); ++i) {
+    status.add("expected error of position in " + point.motion[i] + " of " + point.fabric + " (mm)",
+               1e3 * point.position_error[i]);
+  }
 }
 
 }  // namespace haptex::nodes

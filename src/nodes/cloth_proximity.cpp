@@ -35,8 +35,12 @@ proximity::Range rangeOf(const Request& request) {
 
 }  // namespace
 
-ClothProximity::ClothProximity(double stale_after, Obstacles obstacles)
+ClothProximity::ClothProximity(double stale_after, Obstacles obstacles,
+                               const std::vector<cloth::Obstacle>& moving)
     : stale_after_(stale_after), obstacles_(std::move(obstacles)) {
+  for (const cloth::Obstacle& obstacle : moving) {
+    if (obstacle.moves()) moving_.emplace(obstacle.name, obstacle);
+  }
   status_.refit_seconds = status_.answer_seconds = kNaN;
 }
 
@@ -125,7 +129,7 @@ FittedCloth::View ClothProximity::look(const Cloth& cloth) {
   return view;
 }
 
-const proximity::RigidObstacle& ClothProximity::requireObstacle(const std::string& name) const {
+proximity::RigidObstacle ClothProximity::requireObstacle(const std::string& name) const {
   const auto found = obstacles_.find(name);
   if (found != obstacles_.end()) return found->second;
   std::string known;
@@ -134,6 +138,13 @@ const proximity::RigidObstacle& ClothProximity::requireObstacle(const std::strin
                               (known.empty() ? "there is none in the scene; parameter ~scene names "
                                                "the scene file that lists them"
                                              : "those of the scene are" + known));
+}
+
+/// Copies of an obstacle share its shape, so each query may have a pose of its own.
+void ClothProximity::moveObstacle(const std::string& name, double time,
+                                  proximity::RigidObstacle& obstacle) const {
+  const auto found = moving_.find(name);
+  if (found != moving_.end()) obstacle.setPose(found->second.poseAt(time));
 }
 
 haptex::QueryProximity::Response ClothProximity::answer(const Request& request,
@@ -158,8 +169,8 @@ haptex::QueryProximity::Response ClothProximity::compute(const Request& request,
                                                          const FrameLookup& world_from_frame,
                                                          Clock::time_point now) {
   requireValid(request);
-  const proximity::RigidObstacle* obstacle = nullptr;
-  if (request.shape == Request::OBSTACLE) obstacle = &requireObstacle(request.obstacle);
+  std::optional<proximity::RigidObstacle> obstacle;
+  if (request.shape == Request::OBSTACLE) obstacle = requireObstacle(request.obstacle);
   std::optional<proximity::Cursor> cursor;
   if (!obstacle) {
     cursor = cursorInWorld(request, world_from_frame());
@@ -172,6 +183,7 @@ haptex::QueryProximity::Response ClothProximity::compute(const Request& request,
   {
     const FittedCloth::View view = look(cloth);
     if (obstacle) {
+      moveObstacle(request.obstacle, view.state.simulated_time, *obstacle);
       query(view.hierarchy, *obstacle, rangeOf(request), found);
     } else {
       view.hierarchy.query(*cursor, rangeOf(request), found);

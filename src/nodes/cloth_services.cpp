@@ -28,14 +28,15 @@ void ClothNode::advertiseServices() {
                node_.advertiseService("cloth/attach", &ClothNode::attach, this),
                node_.advertiseService("cloth/move", &ClothNode::move, this),
                node_.advertiseService("cloth/release", &ClothNode::release, this),
-               node_.advertiseService("cloth/get_jacobian", &ClothNode::getJacobian, this)};
+               node_.advertiseService("cloth/get_jacobian", &ClothNode::getJacobian, this),
+               node_.advertiseService("cloth/query_budget", &ClothNode::queryBudget, this)};
 }
 
 bool ClothNode::reset(std_srvs::Trigger::Request& /*request*/,
                       std_srvs::Trigger::Response& response) {
   return answer("reset", response, [&] {
     loop_.execute([this](SimulatedCloth& simulation) {
-      contact_input_.loads().clear();
+      if (contact_input_) contact_input_->loads().clear();
       simulation.reset();
     });
     return std::string("positions, velocities, attachments and time are those of the start");
@@ -75,6 +76,7 @@ bool ClothNode::setFabric(SetFabric::Request& request, SetFabric::Response& resp
     loop_.execute([&](SimulatedCloth& simulation) {
       simulation.setFabric(std::move(fabric));
       publishMesh(simulation.cloth());
+      publishQuality(simulation);
     });
     return message;
   });
@@ -122,6 +124,21 @@ bool ClothNode::getJacobian(GetJacobian::Request& request, GetJacobian::Response
       response.simulated_time = simulation.state().time;
     });
     return counted(response.rows.size(), "block");
+  });
+}
+
+bool ClothNode::queryBudget(QueryBudget::Request& request, QueryBudget::Response& response) {
+  return answer("query_budget", response, [&] {
+    if (!quality_) {
+      throw std::invalid_argument(
+          "the node runs by the scene's own settings: start it with ~quality "
+          "or ~budget_ms, so that it measures what the qualities take");
+    }
+    std::string message;
+    loop_.execute([&](SimulatedCloth& simulation) {
+      message = quality_->query(simulation, 1e-3 * request.budget_ms, response);
+    });
+    return message;
   });
 }
 

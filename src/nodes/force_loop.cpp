@@ -225,7 +225,7 @@ void ForceLoop::step() {
     rendered.contact.position = fingertip->position;
     rendered.contact.velocity = fingertip->velocity;
     const Array& array = inputs_[finger].array.value();
-    if (array.known && rendered.contact.touching) {
+    if (array.known && rendered.contact.touching && contactors_wanted_[finger]) {
       rendered.contactor_forces =
           contact::contactorForces(rendered.contact, *fingertip, array.pose);
       rendered.array = contact::arrayOnFabric(rendered.contact, *fingertip, array.pose);

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/cloth/scene.h"
 #include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/driver_messages.h"
 #include "haptex/nodes/node_parameters.h"
@@ -52,9 +53,14 @@ Time ageOf(const ros::Time& stamp) {
 }  // namespace
 
 ForceRendererParameters ForceRendererParameters::read(const ros::NodeHandle& private_node) {
-  return {readScenePath(private_node),
-          {{readRadius(private_node, "index_radius", kIndexRadius),
-            readRadius(private_node, "thumb_radius", kThumbRadius)}}};
+  ForceRendererParameters parameters;
+  parameters.scene_path = readScenePath(private_node);
+  parameters.radii = {{readRadius(private_node, "index_radius", kIndexRadius),
+                       readRadius(private_node, "thumb_radius", kThumbRadius)}};
+  const cloth::Scene scene = cloth::loadScene(parameters.scene_path);
+  requireListed(parameters.scene_path, scene.fingers, "fingers", "force_renderer");
+  parameters.tactile = scene.tactile;
+  return parameters;
 }
 
 ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
@@ -68,6 +74,7 @@ ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
       input_node_(node),
       input_spinner_(1, &input_queue_),
       transform_listener_(transforms_),
+      tactile_(parameters.tactile),
       loop_(parameters.radii),
       fingers_{{{FingerTopics(node, Finger::kIndex), FingerTopics(node, Finger::kThumb)}}},
       diagnostics_(node, private_node),
@@ -157,6 +164,7 @@ void ForceRendererNode::takeState(const haptex::ClothState& message) {
 
 void ForceRendererNode::takeTransforms() {
   takeHandBase();
+  if (!tactile_) return;
   for (const Finger finger : kFingers) takeArray(finger);
 }
 
@@ -197,14 +205,21 @@ void ForceRendererNode::takeArray(Finger finger) {
 }
 
 void ForceRendererNode::work(Time now) {
+  exoskeleton::PerFinger<bool> has_contact_subscribers;
+  for (const Finger finger : kFingers) {
+    has_contact_subscribers[finger] = fingers_[finger].contact.getNumSubscribers() > 0;
+    loop_.wantContactors(finger, has_contact_subscribers[finger]);
+  }
   loop_.tick(now);
   const ros::Time stamp = ros::Time::now();
   for (const Finger finger : kFingers) {
     FingerTopics& topics = fingers_[finger];
     const ForceLoop::Rendered& rendered = loop_.rendered(finger);
-    fillServoForce(rendered.contact, rendered.gain, loop_.hand(), stamp, topics.force_message);
-    topics.force.publish(topics.force_message);
-    if (topics.contact.getNumSubscribers() == 0) continue;
+    if (topics.force.getNumSubscribers() > 0) {
+      fillServoForce(rendered.contact, rendered.gain, loop_.hand(), stamp, topics.force_message);
+      topics.force.publish(topics.force_message);
+    }
+    if (!has_contact_subscribers[finger]) continue;
     fillContact(rendered.contact, rendered.contactor_forces, rendered.array, rendered.gain, stamp,
                 topics.contact_message);
     topics.contact.publish(topics.contact_message);

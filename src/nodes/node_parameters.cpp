@@ -75,6 +75,14 @@ std::string readConfigPath(const ros::NodeHandle& private_node, const std::strin
   }
 }
 
+void requireListed(const std::string& scene_path, bool listed, const std::string& effect,
+                   const std::string& node) {
+  if (listed) return;
+  throw std::invalid_argument(scene_path + ": model: does not list " + effect +
+                              ", so there is nothing to do for " + node +
+                              ": list it, or do without " + node);
+}
+
 std::string readScenePath(const ros::NodeHandle& private_node) {
   return readConfigPath(private_node, "scene", "scenes");
 }

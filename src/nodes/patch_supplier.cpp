@@ -111,6 +111,7 @@ void PatchSupplier::buildLayer(const haptex::ClothMesh& message) {
 void PatchSupplier::publishForces(const LoopView& view) {
   if (view.states == states_published_) return;
   states_published_ = view.states;
+  if (force_publisher_.getNumSubscribers() == 0) return;
   const bool acts = layer_ != nullptr && view.load_gain > 0.0 && !view.loads.empty();
   if (!acts && !published_forces_) return;
   fillContactForces(view.loads, acts ? view.load_gain : 0.0, ros::Time::now(), forces_);

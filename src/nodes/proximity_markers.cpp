@@ -2,10 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <variant>
 
 #include "haptex/nodes/colour_map.h"
 #include "haptex/nodes/marker_shapes.h"
+#include "haptex/nodes/obstacle_marker.h"
 
 namespace haptex::nodes {
 namespace {
@@ -25,42 +25,6 @@ constexpr float kCursorOpacity = 0.5F;
 const Eigen::Vector3f kRed(0.9F, 0.05F, 0.05F);
 const Eigen::Vector3f kDarkRed(0.45F, 0.0F, 0.0F);
 const Eigen::Vector3f kCursorColour(0.35F, 0.6F, 1.0F);
-const Eigen::Vector3f kObstacleColour(0.75F, 0.76F, 0.78F);
-
-/// The shape of an obstacle in its own frame.
-struct AppendShape {
-  std::vector<geometry_msgs::Point>& corners;
-
-  void operator()(const cloth::ObstacleSphere& sphere) const {
-    const proximity::Sphere centred{Eigen::Vector3d::Zero(), sphere.radius};
-    appendSurface({centred, centred}, corners);
-  }
-  void operator()(const cloth::ObstacleBox& box) const { appendBox(box.sides, corners); }
-  void operator()(const cloth::ObstacleCapsule& capsule) const {
-    const Eigen::Vector3d end(0.0, 0.0, 0.5 * capsule.length);
-    appendSurface({{-end, capsule.radius}, {end, capsule.radius}}, corners);
-  }
-  void operator()(const cloth::ObstacleMesh& mesh) const {
-    for (const auto& triangle : mesh.triangles) {
-      for (const int vertex : triangle) {
-        corners.push_back(pointMessage(mesh.vertices[vertex]));
-      }
-    }
-  }
-};
-
-Marker obstacleMarker(const cloth::Obstacle& obstacle, int id) {
-  Marker marker = makeMarker("obstacles", id, Marker::TRIANGLE_LIST);
-  marker.pose.position = pointMessage(obstacle.pose.translation());
-  const Eigen::Quaterniond rotation = Eigen::Quaterniond(obstacle.pose.rotation()).normalized();
-  marker.pose.orientation.x = rotation.x();
-  marker.pose.orientation.y = rotation.y();
-  marker.pose.orientation.z = rotation.z();
-  marker.pose.orientation.w = rotation.w();
-  std::visit(AppendShape{marker.points}, obstacle.shape);
-  shadeTriangles(marker, kObstacleColour, 1.0F);
-  return marker;
-}
 
 void appendPolygon(const std::vector<Eigen::Vector3d>& polygon, Marker& faces, Marker& edges) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -86,7 +50,9 @@ ProximityMarkers::ProximityMarkers(const std::vector<cloth::Obstacle>& obstacles
   markers[kOutlines].color = colourMessage(kDarkRed);
   markers[kEdges].scale.x = kEdgeWidth;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    markers.push_back(obstacleMarker(obstacles[i], static_cast<int>(i)));
+    if (!obstacles[i].moves()) {
+      markers.push_back(obstacleMarker(obstacles[i], static_cast<int>(i)));
+    }
   }
 }
 

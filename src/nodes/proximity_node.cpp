@@ -5,9 +5,9 @@
 #include <string>
 
 #include "haptex/cloth/scene.h"
+#include "haptex/contact/obstacles.h"
 #include "haptex/nodes/cloth_messages.h"
 #include "haptex/nodes/node_parameters.h"
-#include "haptex/nodes/obstacles.h"
 #include "haptex/nodes/transforms.h"
 
 namespace haptex::nodes {
@@ -39,7 +39,7 @@ void requireVolumeLevel(const ros::NodeHandle& private_node) {
 ClothProximity::Obstacles makeObstacles(const std::vector<cloth::Obstacle>& obstacles) {
   ClothProximity::Obstacles made;
   for (const cloth::Obstacle& obstacle : obstacles) {
-    made.emplace(obstacle.name, makeObstacle(obstacle));
+    made.emplace(obstacle.name, contact::makeObstacle(obstacle));
   }
   return made;
 }
@@ -71,7 +71,7 @@ ProximityNode::ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle&
 ProximityNode::ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                              const ProximityNodeParameters& parameters)
     : node_(node),
-      proximity_(parameters.stale_after, makeObstacles(parameters.obstacles)),
+      proximity_(parameters.stale_after, makeObstacles(parameters.obstacles), parameters.obstacles),
       transform_listener_(transforms_),
       markers_(parameters.obstacles),
       reconfigure_(private_node),

@@ -223,6 +223,7 @@ void RealTimeLoop::closeWindow() {
 
 void RealTimeLoop::recordSimulation() {
   status_.last_step_rejected = simulation_.lastStepRejected();
+  status_.asleep = simulation_.asleep();
   status_.last_report = simulation_.lastReport();
   status_.steps = simulation_.steps();
   status_.simulated_time = simulation_.state().time;

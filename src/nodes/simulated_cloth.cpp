@@ -1,5 +1,7 @@
 #include "haptex/nodes/simulated_cloth.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -28,23 +30,113 @@ std::string element(const std::string& array, std::size_t index) {
   return array + "[" + std::to_string(index) + "]";
 }
 
+/// Of the substeps so far and the next one.
+cloth::StepReport sum(const cloth::StepReport& first, cloth::StepReport last) {
+  last.linear_converged = last.linear_converged && first.linear_converged;
+  last.linear_iterations += first.linear_iterations;
+  last.newton_iterations += first.newton_iterations;
+  last.newton_converged = last.newton_converged && first.newton_converged;
+  last.contact_rounds += first.contact_rounds;
+  last.assembly_seconds += first.assembly_seconds;
+  last.solve_seconds += first.solve_seconds;
+  last.total_seconds += first.total_seconds;
+  return last;
+}
+
 }  // namespace
 
 SimulatedCloth::SimulatedCloth(cloth::Scene scene, material::Fabric fabric)
+    : SimulatedCloth(std::move(scene), std::move(fabric), {{scene.step, 1}}) {}
+
+SimulatedCloth::SimulatedCloth(cloth::Scene scene, material::Fabric fabric,
+                               std::vector<StepPlan> plans)
     : cloth_(std::move(scene.mesh), std::move(fabric), scene.effects),
       state_(cloth_.initialState()),
-      step_settings_(scene.step),
-      integrator_(cloth_, step_settings_),
+      plans_(std::move(plans)),
       initially_attached_(std::move(scene.attached_particles)),
-      time_step_(scene.time_step) {
+      time_step_(scene.time_step),
+      disturbed_(scene.effects.contacts &&
+                 std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                             [](const cloth::Obstacle& obstacle) { return obstacle.moves(); })),
+      rest_(cloth_.particleCount()) {
+  if (plans_.empty()) refuse("plans is empty: allowed is at least one plan");
+  for (const StepPlan& plan : plans_) {
+    if (plan.substeps < 1) refuse("substeps = ", plan.substeps, ": allowed are numbers >= 1");
+  }
+  if (scene.effects.contacts) collision_.emplace(cloth_, std::move(scene.obstacles));
   attachInitially();
+  makeIntegrators();
 }
 
 bool SimulatedCloth::step() {
-  report_ = integrator_.step(cloth_, state_, time_step_);
+  if (asleep_) {
+    state_.time += time_step_;
+    ++steps_;
+    return true;
+  }
+  if (!controller_) {
+    takeSubsteps();
+  } else {
+    const auto begin = std::chrono::steady_clock::now();
+    takeSubsteps();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    plan_ = controller_->record(took.count());
+  }
   last_step_rejected_ = !report_.accepted;
-  if (report_.accepted) ++steps_;
-  return report_.accepted;
+  if (!report_.accepted) {
+    rest_.wake();
+    return false;
+  }
+  ++steps_;
+  ++computed_steps_;
+  sleepIfResting();
+  return true;
+}
+
+void SimulatedCloth::sleepIfResting() {
+  if (disturbed_) return;
+  rest_.observe(state_);
+  asleep_ = rest_.resting() && cloth::isUndisturbed(cloth_, state_.time);
+  if (!asleep_) return;
+  report_ = cloth::StepReport{};  // of the steps to come, which do nothing
+  report_.accepted = true;
+}
+
+void SimulatedCloth::wake() {
+  rest_.wake();
+  asleep_ = false;
+}
+
+void SimulatedCloth::takeSubsteps() {
+  const int substeps = plans_[plan_].substeps;
+  if (substeps > 1) before_ = state_;
+  report_ = takeSubstep(time_step_ / substeps);
+  for (int i = 1; i < substeps && report_.accepted; ++i) {
+    report_ = sum(report_, takeSubstep(time_step_ / substeps));
+  }
+  if (substeps > 1 && !report_.accepted) state_ = before_;
+}
+
+cloth::StepReport SimulatedCloth::takeSubstep(double duration) {
+  cloth::Integrator& integrator = integrators_[plan_];
+  return collision_ ? collision_->step(cloth_, integrator, state_, duration)
+                    : integrator.step(cloth_, state_, duration);
+}
+
+void SimulatedCloth::use(std::size_t plan) {
+  if (plan >= plans_.size()) {
+    refuse("plan = ", plan, ": allowed are 0 to ", plans_.size() - 1);
+  }
+  plan_ = plan;
+}
+
+void SimulatedCloth::setController(QualityController controller) {
+  if (controller.size() != plans_.size()) {
+    refuse("the controller chooses among ", controller.size(), " qualities: allowed are ",
+           plans_.size(), ", one per plan");
+  }
+  controller_.emplace(std::move(controller));
+  plan_ = controller_->running();
 }
 
 void SimulatedCloth::reset() {
@@ -52,24 +144,42 @@ void SimulatedCloth::reset() {
   cloth_.setPointLoads({});
   attachInitially();
   state_ = cloth_.initialState();
+  makeIntegrators();  // the old ones remember their last solutions and factors
   report_ = cloth::StepReport{};
   last_step_rejected_ = false;
   steps_ = 0;
+  wake();
+}
+
+void SimulatedCloth::makeIntegrators() {
+  integrators_.clear();
+  bool several = false;
+  for (const StepPlan& plan : plans_) {
+    integrators_.emplace_back(cloth_, plan.step);
+    several = several || plan.substeps > 1;
+  }
+  if (several) before_ = state_;
 }
 
 void SimulatedCloth::setFabric(material::Fabric fabric) {
+  if (collision_) collision_->requireFriction(fabric);
   cloth_.setFabric(std::move(fabric));
-  if (cloth_.bending()) integrator_ = cloth::Integrator(cloth_, step_settings_);
+  cloth_.forgetBending(state_);
+  if (cloth_.bending()) makeIntegrators();
+  wake();
 }
 
 void SimulatedCloth::setPointLoads(const std::vector<cloth::PointLoad>& loads) {
+  const bool changes = !loads.empty() || !cloth_.pointLoads().empty();
   cloth_.setPointLoads(loads);
+  if (changes) wake();
 }
 
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
   for (const int particle : requireParticles(particles)) {
     cloth_.attach(particle, {state_.positions[particle], Eigen::Vector3d::Zero(), state_.time, 0});
   }
+  wake();
 }
 
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,
@@ -85,6 +195,7 @@ void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,
   for (std::size_t i = 0; i < places.size(); ++i) {
     cloth_.attach(indices[i], {places[i], Eigen::Vector3d::Zero(), state_.time, 0});
   }
+  wake();
 }
 
 void SimulatedCloth::move(const std::vector<std::uint32_t>& particles,
@@ -105,10 +216,12 @@ void SimulatedCloth::move(const std::vector<std::uint32_t>& particles,
   for (std::size_t i = 0; i < indices.size(); ++i) {
     cloth_.attach(indices[i], {starts[i], displacement, state_.time, duration});
   }
+  wake();
 }
 
 void SimulatedCloth::release(const std::vector<std::uint32_t>& particles) {
   for (const int particle : requireAttached(particles)) cloth_.release(particle);
+  wake();
 }
 
 std::vector<cloth::JacobianBlock> SimulatedCloth::jacobian(

@@ -1,5 +1,6 @@
 #include "haptex/nodes/tactile_node.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "haptex/cloth/scene.h"
@@ -45,7 +46,10 @@ TactileParameters TactileParameters::read(const ros::NodeHandle& private_node) {
   TactileParameters parameters;
   parameters.limits = readLimits(private_node);
   if (private_node.hasParam("scene")) {
-    parameters.scene_fabric = cloth::loadScene(readScenePath(private_node)).fabric_path;
+    const std::string path = readScenePath(private_node);
+    const cloth::Scene scene = cloth::loadScene(path);
+    requireListed(path, scene.tactile, "tactile", "tactile_renderer");
+    parameters.scene_fabric = scene.fabric_path;
   }
   return parameters;
 }
@@ -103,9 +107,19 @@ bool TactileNode::setSurface(haptex::SetSurface::Request& request,
 
 void TactileNode::step() {
   const Time begin = steadyNow();
-  loop_.step(choice_.surface(), begin, ros::Time::now());
-  for (const Finger finger : kFingers) publishers_[finger].publish(loop_.messages()[finger]);
+  // For nobody it is as without a surface: contacts are taken, and nothing is computed.
+  loop_.step(isWatched() ? choice_.surface() : nullptr, begin, ros::Time::now());
+  for (const Finger finger : kFingers) {
+    if (publishers_[finger].getNumSubscribers() == 0) continue;
+    publishers_[finger].publish(loop_.messages()[finger]);
+  }
   computing_times_.add(steadyNow() - begin);
+}
+
+bool TactileNode::isWatched() const {
+  return marker_publisher_.getNumSubscribers() > 0 ||
+         std::any_of(kFingers.begin(), kFingers.end(),
+                     [this](Finger finger) { return publishers_[finger].getNumSubscribers() > 0; });
 }
 
 void TactileNode::publishMarkers() {

@@ -49,8 +49,12 @@ class NearestTriangle : public fcl::detail::BVHShapeDistanceTraversalNode<fcl::A
   NearestTriangle(const fcl::BVHModel<fcl::AABBd>& model, const Triangle& triangle)
       : triangle_(triangle) {
     model1 = &model;
+    corners_ = model.tri_indices;
     model2_bv = fcl::AABBd(triangle[0], triangle[1], triangle[2]);
   }
+
+  /// The triangle that it is the nearest to.
+  const fcl::Triangle& corners() const { return *corners_; }
 
   TrianglePoint find() {
     fcl::detail::distanceRecurse<double>(this, 0, 0, nullptr);
@@ -62,7 +66,9 @@ class NearestTriangle : public fcl::detail::BVHShapeDistanceTraversalNode<fcl::A
     const Vector3d* const places = model1->vertices;
     const TrianglePoint point = proximity::closestPoint(
         triangle_, Triangle{places[corners[0]], places[corners[1]], places[corners[2]]});
-    if (point.distance < nearest_.distance) nearest_ = point;
+    if (point.distance >= nearest_.distance) return;
+    nearest_ = point;
+    corners_ = &corners;
   }
 
   bool canStop(double distance) const override { return distance >= nearest_.distance; }
@@ -70,7 +76,22 @@ class NearestTriangle : public fcl::detail::BVHShapeDistanceTraversalNode<fcl::A
  private:
   const Triangle& triangle_;
   mutable TrianglePoint nearest_{std::numeric_limits<double>::infinity(), Vector3d::UnitX()};
+  mutable const fcl::Triangle* corners_;
 };
+
+/// Of a box around the origin.
+SurfaceDistance distanceToBox(const Vector3d& half_sides, const Vector3d& place) {
+  const Vector3d beyond = place.cwiseAbs() - half_sides;
+  const Vector3d outside = beyond.cwiseMax(0.0);
+  const auto withSigns = [&](const Vector3d& direction) {
+    return Vector3d(direction.array() * (place.array() < 0.0).select(-1.0, Eigen::Array3d::Ones()));
+  };
+  const double distance = outside.norm();
+  if (distance > 0.0) return {distance, withSigns(outside / distance)};
+  int axis = 0;
+  const double depth = beyond.maxCoeff(&axis);
+  return {depth, withSigns(Vector3d::Unit(axis))};
+}
 
 class ObstacleBody : public Body {
  public:
@@ -109,6 +130,24 @@ struct RigidObstacle::Shape {
     model.beginModel();
     model.addSubModel(vertices, model_triangles);
     model.endModel();
+  }
+
+  /// The point of the triangles that is nearest to a place.
+  Vector3d nearest(const Vector3d& place) const {
+    if (corners.size() == 1) return corners[0];
+    if (corners.size() == 2) {
+      const Vector3d along = corners[1] - corners[0];
+      const double length = along.squaredNorm();
+      const double share = length > 0.0 ? (place - corners[0]).dot(along) / length : 0.0;
+      return corners[0] + std::min(1.0, std::max(0.0, share)) * along;
+    }
+    const Triangle point = {place, place, place};
+    NearestTriangle search(model, point);
+    search.find();
+    const fcl::Triangle& found = search.corners();
+    const Triangle triangle = {model.vertices[found[0]], model.vertices[found[1]],
+                               model.vertices[found[2]]};
+    return proximity::closestPoint(triangle, place).on(triangle);
   }
 
   fcl::BVHModel<fcl::AABBd> model;
@@ -221,6 +260,24 @@ TrianglePoint RigidObstacle::closestPoint(const Triangle& triangle) const {
   point.distance -= shape_->radius;
   if (point.distance <= rounding) point.distance = 0.0;
   return point;
+}
+
+SurfaceDistance RigidObstacle::distance(const Vector3d& place) const {
+  const Vector3d own = pose_.linear().transpose() * (place - pose_.translation());
+  if (shape_->half_sides) {
+    const SurfaceDistance found = distanceToBox(*shape_->half_sides, own);
+    return {found.distance, pose_.linear() * found.normal};
+  }
+  const Vector3d way = own - shape_->nearest(own);
+  const double length = way.norm();
+  const Vector3d normal = length > 0.0 ? Vector3d(way / length) : Vector3d::UnitX();
+  return {length - shape_->radius, pose_.linear() * normal};
+}
+
+double RigidObstacle::boundingRadius() const {
+  double farthest = 0.0;
+  for (const Vector3d& corner : shape_->corners) farthest = std::max(farthest, corner.norm());
+  return farthest + shape_->radius;
 }
 
 void query(const KdopHierarchy& hierarchy, const RigidObstacle& obstacle, const Range& range,

@@ -20,9 +20,16 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
 #endif
   for (int newton_iterations : {1, 5}) {
     ModelledEffects effects;
-    effects.viscosity = true;
+    effects.viscosity = effects.point_loads = true;
     effects.gravity = {0.0, 0.0, -9.81};
-    Cloth cloth(square(16), stiffeningFabric(), effects);
+    effects.air = Air();
+    effects.air->wind.gusts = {{{1.0, 0.0, 0.0}, 1.0, 0.0}};
+    effects.bending = effects.bending_hysteresis = true;
+    effects.bending_settings.rest_curvature << 5.0, -2.0;
+    material::Fabric fabric = stiffeningFabric();
+    fabric.bending = {1e-5, 2e-5};
+    fabric.bending_hysteresis = {3e-4, 1e-4};
+    Cloth cloth(square(16), fabric, effects);
     for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
       AttachmentPath path;
       path.start = cloth.mesh().initial_positions[particle];
@@ -57,6 +64,32 @@ INSTANTIATE_TEST_SUITE_P(Methods, StepAllocation,
                                           testing::Values(LinearSolverMethod::kConjugateGradient,
                                                           LinearSolverMethod::kCholesky,
                                                           LinearSolverMethod::kAutomatic)));
+
+class StepAllocationOfOtherModels : public testing::TestWithParam<Elasticity> {};
+INSTANTIATE_TEST_SUITE_P(Models, StepAllocationOfOtherModels,
+                         testing::Values(Elasticity::kMassSpring, Elasticity::kCorotational));
+
+TEST_P(StepAllocationOfOtherModels, NoStepAllocatesAfterStartUp) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  ModelledEffects effects;
+  effects.elasticity = GetParam();
+  effects.viscosity = effects.bending = true;
+  material::Fabric fabric = stiffeningFabric();
+  fabric.bending = {1e-5, 1e-5};
+  const Cloth cloth(square(8), fabric, effects);
+  for (IntegrationMethod method : {IntegrationMethod::kTrBdf2, IntegrationMethod::kRungeKutta4}) {
+    StepSettings settings;
+    settings.method = method;
+    settings.newton_iterations = 5;
+    Integrator integrator(cloth, settings);
+    ClothState state = randomState(cloth, 1e-4, 0.1);
+    const long before = allocations;
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(integrator.step(cloth, state, 1e-5).accepted);
+    EXPECT_EQ(allocations - before, 0);
+  }
+}
 
 TEST(StepAllocation, ExplicitIntegratorsHoldNoMatrix) {
 #ifdef __SANITIZE_ADDRESS__

@@ -4,6 +4,7 @@
 
 #include "fixtures.h"
 #include "haptex/cloth/integrator.h"
+#include "haptex/cloth/stage_solver.h"
 
 namespace haptex::cloth {
 namespace {
@@ -185,7 +186,10 @@ TEST(BackwardEuler, ANewtonIterationNeverRaisesTheIncrementalPotential) {
       StepSettings settings;
       settings.newton_iterations = iterations;
       ClothState state = start;
-      Integrator(cloth, settings).step(cloth, state, h);
+      StepReport report;
+      StageSolver(cloth, settings)
+          .solve(cloth, {start, h, h, 1.0, Stage::Rates::kSinceBase},
+                 {start.positions, start.velocities, h}, state, report);
       double potential = cloth.membrane().incrementalPotential(state.positions, begin, h);
       for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
         potential +=
@@ -273,7 +277,32 @@ TEST(BackwardEuler, RefusesBadStepsAndSettings) {
   settings = {};
   settings.newton_iterations = 0;
   EXPECT_THROW(Integrator(cloth, settings), std::invalid_argument);
+  for (int threads : {-1, 0, kMostThreads + 1}) {
+    settings = {};
+    settings.threads = threads;
+    EXPECT_THROW(Integrator(cloth, settings), std::invalid_argument);
+  }
   EXPECT_EQ(state.time, 0.0);
+}
+
+TEST(BackwardEuler, ThreadsDoNotChangeTheMotion) {
+  std::vector<ClothState> ends;
+  for (int threads : {1, 2, 3}) {
+    // Large enough for the work to be shared.
+    Cloth cloth(square(50, 0.5), stiffeningFabric(), gravity());
+    StepSettings settings;
+    settings.threads = threads;
+    Integrator integrator(cloth, settings);
+    ClothState state = randomState(cloth, 1e-4, 0.1);
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_TRUE(integrator.step(cloth, state, 0.0125).linear_converged);
+    }
+    ends.push_back(state);
+  }
+  for (int run : {1, 2}) {
+    EXPECT_EQ(ends[run].positions, ends[0].positions);
+    EXPECT_EQ(ends[run].velocities, ends[0].velocities);
+  }
 }
 
 TEST(BackwardEuler, DocumentedDefaultsHold) {
@@ -283,6 +312,7 @@ TEST(BackwardEuler, DocumentedDefaultsHold) {
   EXPECT_EQ(settings.tolerance, 1e-6);
   EXPECT_EQ(settings.newton_iterations, 1);
   EXPECT_EQ(settings.newton_tolerance, 1e-8);
+  EXPECT_EQ(settings.threads, 1);
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 // Bending as a part of the cloth that is stepped.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
+#include "derivatives.h"
 #include "fixtures.h"
 #include "haptex/cloth/integrator.h"
 
@@ -52,6 +54,84 @@ TEST(BendingCloth, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce) {
       }
     }
   }
+}
+
+// Curved both ways and twisted at random. The forces are of linear hinges and of curvatures.
+TEST(BendingCloth, ARestCurvatureHasTheForceOfItsEnergyAndItsExactJacobian) {
+  for (BendingModel model : {BendingModel::kLinear, BendingModel::kQuadratic}) {
+    ModelledEffects effects = bendingAnd(Vector3d::Zero());
+    effects.bending_settings = {model, {30.0, -12.0}};
+    material::Fabric limp;  // bending alone
+    limp.areal_density = 0.1;
+    limp.bending = {2.0 * kRigidity, kRigidity};
+    const Cloth cloth(square(4), limp, effects);
+    const ClothState state = randomState(cloth, 4e-3, 0.0);
+    expectExactDerivatives(cloth, state, {0, 7, 12});
+  }
+}
+
+TEST(BendingCloth, ARestCurvatureTurnsWithTheSheet) {
+  ModelledEffects effects = bendingAnd(Vector3d::Zero());
+  effects.bending_settings.rest_curvature << 30.0, -12.0;
+  const Cloth cloth(square(4), stiffFabric(), effects);
+  const ClothState state = randomState(cloth, 2e-3, 0.0);
+  ClothState turned = state;
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(2.0, Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
+  for (Vector3d& place : turned.positions) place = rotation * place + Vector3d(0.3, -1.0, 2.0);
+  std::vector<Vector3d> forces, turned_forces;
+  cloth.computeForces(state, forces);
+  cloth.computeForces(turned, turned_forces);
+  Vector3d sum = Vector3d::Zero(), moment = Vector3d::Zero();
+  double scale = 0.0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    scale = std::max(scale, forces[i].norm());
+    sum += forces[i];
+    moment += state.positions[i].cross(forces[i]);
+  }
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    EXPECT_LT((turned_forces[i] - rotation * forces[i]).norm(), 1e-10 * scale);
+  }
+  EXPECT_LT(sum.norm(), 1e-12 * scale);
+  EXPECT_LT(moment.norm(), 1e-12 * scale);
+  const double energy = cloth.potentialEnergy(state);
+  EXPECT_NEAR(cloth.potentialEnergy(turned), energy, 1e-10 * energy);
+}
+
+// On a cylinder of the rest curvature hardly any energy is left, on its mirror image four times
+// that of the flat sheet.
+TEST(BendingCloth, ACylinderOfTheRestCurvatureIsAtRest) {
+  constexpr double kCurvature = 5.0;  // 1/m: an angle of 0.06 per cell
+  for (BendingModel model : {BendingModel::kLinear, BendingModel::kQuadratic}) {
+    ModelledEffects effects = bendingAnd(Vector3d::Zero());
+    effects.bending_settings = {model, {kCurvature, 0.0}};
+    const Cloth cloth(square(8), stiffFabric(), effects);
+    const auto energyOf = [&](double curvature) {
+      ClothState state = cloth.initialState();
+      for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+        const Eigen::Vector2d& rest = cloth.mesh().rest_coordinates[i];
+        const double angle = curvature * rest.x();  // the normal, weft x warp, points to +x
+        state.positions[i] = {(1.0 - std::cos(angle)) / curvature, std::sin(angle) / curvature,
+                              rest.y()};
+      }
+      return cloth.bending()->energy(state.positions);
+    };
+    const double flat = energyOf(1e-9);
+    // Across a free edge nothing is resisted: half a cell along both has no energy.
+    EXPECT_NEAR(flat, 0.5 * kRigidity * kCurvature * kCurvature * 0.1 * 0.1 * 7.0 / 8.0,
+                1e-6 * flat);
+    // Second order in that angle: a normal that is turned by half of it against the bending vector.
+    EXPECT_LT(energyOf(kCurvature), 1e-3 * flat);
+    EXPECT_NEAR(energyOf(-kCurvature), 4.0 * flat, 0.01 * flat);
+  }
+}
+
+TEST(BendingCloth, ARestCurvatureThatIsNotGivenIsNotThere) {
+  const Cloth flat(square(4), stiffFabric(), bendingAnd(Vector3d::Zero()));
+  EXPECT_EQ(flat.bending()->restCurvature(), nullptr);
+  ModelledEffects effects = bendingAnd(Vector3d::Zero());
+  effects.bending_settings.rest_curvature.x() = std::nan("");
+  EXPECT_THROW(Cloth(square(4), stiffFabric(), effects), std::invalid_argument);
 }
 
 // A strip clamped along two rows of particles and bent by its weight: for small loads the tip of a

@@ -9,6 +9,7 @@
 
 #include "fixtures.h"
 #include "haptex/cloth/integrator.h"
+#include "integrator_fixtures.h"
 
 namespace haptex::cloth {
 namespace {
@@ -16,16 +17,6 @@ namespace {
 using Eigen::Vector3d;
 using Complex = std::complex<double>;
 using Method = IntegrationMethod;
-
-StepSettings settingsOf(Method method, int newton_iterations = 1) {
-  StepSettings settings;
-  settings.method = method;
-  settings.solver = LinearSolverMethod::kCholesky;
-  settings.tolerance = 1e-12;
-  settings.newton_iterations = newton_iterations;
-  settings.newton_tolerance = 1e-12;
-  return settings;
-}
 
 void attachTop(Cloth& cloth) {
   for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
@@ -36,21 +27,24 @@ void attachTop(Cloth& cloth) {
 }
 
 class EveryIntegrator : public testing::TestWithParam<NamedIntegrationMethod> {};
-
-const auto kNameOf = [](const testing::TestParamInfo<NamedIntegrationMethod>& info) {
-  return std::string(info.param.name);
-};
-INSTANTIATE_TEST_SUITE_P(Methods, EveryIntegrator, testing::ValuesIn(kIntegrationMethods), kNameOf);
+INSTANTIATE_TEST_SUITE_P(Methods, EveryIntegrator, testing::ValuesIn(kIntegrationMethods),
+                         nameOfIntegrator);
 
 // ---- The harmonic oscillator: every particle on a spring of its own, moving as one, so that the
 // membrane has nothing to resist. With y = omega x + i v it is y' = -i omega y.
 
 constexpr double kOmega = 2.0 * M_PI;  // 1 Hz
 
+ModelledEffects loadedEffects() {
+  ModelledEffects effects;
+  effects.point_loads = true;
+  return effects;
+}
+
 class Oscillator {
  public:
   explicit Oscillator(Method method)
-      : cloth_(square(1), limpFabric(), {}),
+      : cloth_(square(1), limpFabric(), loadedEffects()),
         state_(cloth_.initialState()),
         integrator_(cloth_, settingsOf(method)) {
     std::vector<PointLoad> springs;
@@ -187,146 +181,6 @@ TEST_P(EveryIntegrator, KeepsOfTheEnergyOfA1HzOscillatorPerPeriodWhatItsTheorySa
 }
 
 // ---- Orders of convergence.
-
-/// A soft cloth in the middle of a motion, one corner of its bar moving, whose fastest vibration is
-/// resolved by the steps below.
-class SmoothMotion {
- public:
-  /// @param stretch at the start, which lasts for a few hundredths of a second
-  SmoothMotion(double stretch, bool viscosity, double duration)
-      : cloth_(square(2), fabric(), effects(viscosity)), duration_(duration) {
-    start_ = cloth_.initialState();
-    for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
-      Vector3d& position = start_.positions[i];
-      const double y = position.y(), z = position.z();
-      position = {0.2 * z * (1.0 + y), stretch * y, stretch * z};
-      start_.velocities[i] = {2.0 * z - y, 3.0 * z * y, -z};
-    }
-    for (int particle : sideParticles(cloth_.mesh(), Side::kTop)) {
-      AttachmentPath path;
-      path.start = start_.positions[particle];
-      path.duration = 0.2;
-      if (particle == 6) path.displacement = {0.01, -0.01, 0.02};
-      cloth_.attach(particle, path);
-      start_.velocities[particle].setZero();
-    }
-  }
-
-  /// @param uneven share of the step by which every other one is longer and the rest shorter
-  ClothState after(const StepSettings& settings, int steps, double uneven = 0.0) const {
-    Integrator integrator(cloth_, settings);
-    ClothState state = start_;
-    const double h = duration_ / steps;
-    for (int i = 0; i < steps; ++i) {
-      const StepReport report =
-          integrator.step(cloth_, state, h * (i % 2 == 0 ? 1.0 + uneven : 1.0 - uneven));
-      EXPECT_TRUE(report.accepted && report.linear_converged);
-    }
-    return state;
-  }
-
-  /// Of the free particles' positions and velocities, relative to the size and the speed.
-  double error(const ClothState& state) const {
-    static const StepSettings fine = settingsOf(Method::kRungeKutta4);
-    if (exact_.positions.empty()) exact_ = after(fine, 1 << 14);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
-      EXPECT_TRUE(!cloth_.isAttached(static_cast<int>(i)) ||
-                  (state.positions[i] - exact_.positions[i]).norm() < 1e-12);
-      if (cloth_.isAttached(static_cast<int>(i))) continue;
-      sum += (state.positions[i] - exact_.positions[i]).squaredNorm() / 0.01;
-      sum += (state.velocities[i] - exact_.velocities[i]).squaredNorm();
-    }
-    return std::sqrt(sum);
-  }
-
-  /// How often the error halves when the step does.
-  double order(const StepSettings& settings, int steps, double uneven = 0.0) const {
-    const double coarse = error(after(settings, steps, uneven));
-    const double fine = error(after(settings, 2 * steps, uneven));
-    EXPECT_LT(coarse, 0.1);
-    EXPECT_GT(fine, 1e-12);  // above rounding
-    return std::log2(coarse / fine);
-  }
-
- private:
-  static material::Fabric fabric() {
-    using material::StrainStressCurve;
-    material::Fabric fabric = linearFabric(0.02);
-    fabric.weft.elastic = StrainStressCurve::linear(2.0);
-    fabric.warp.elastic = StrainStressCurve::linear(3.0);
-    fabric.shear.elastic = StrainStressCurve::linear(1.0);
-    return fabric;
-  }
-  static ModelledEffects effects(bool viscosity) {
-    ModelledEffects effects;
-    effects.viscosity = viscosity;
-    effects.gravity = {0.0, 0.0, -9.81};
-    return effects;
-  }
-
-  Cloth cloth_;
-  double duration_;  // s
-  ClothState start_;
-  mutable ClothState exact_;
-};
-
-double orderOf(Method method) {
-  switch (method) {
-    case Method::kRungeKutta4:
-      return 4.0;
-    case Method::kBackwardEuler:
-    case Method::kExplicitEuler:
-    case Method::kTwoStepEuler:
-      return 1.0;
-    default:
-      return 2.0;
-  }
-}
-
-// Over halvings of the steps below the measured orders change by less than the tolerance, which is
-// what terms of higher order still contribute there.
-constexpr int kSteps = 256;
-constexpr double kOrderTolerance = 0.05;
-
-TEST_P(EveryIntegrator, ConvergesWithItsOrderInOneSolvePerStageInElasticTension) {
-  const SmoothMotion motion(1.2, false, 0.005);
-  const Method method = GetParam().method;
-  EXPECT_NEAR(motion.order(settingsOf(method), kSteps / 4), orderOf(method), kOrderTolerance);
-}
-
-// What the projection and the derivative of the strain rate by the position would add to the linear
-// systems is left out of them, which is of the first order in one solve and of the second in two.
-class EveryIntegratorInTwoSolves : public EveryIntegrator {};
-INSTANTIATE_TEST_SUITE_P(Methods, EveryIntegratorInTwoSolves,
-                         testing::ValuesIn(kIntegrationMethods), kNameOf);
-
-TEST_P(EveryIntegratorInTwoSolves, ConvergesWithItsOrderUnderViscosity) {
-  const SmoothMotion motion(1.1, true, 0.1);
-  const Method method = GetParam().method;
-  EXPECT_NEAR(motion.order(settingsOf(method, 2), kSteps), orderOf(method), kOrderTolerance);
-}
-
-TEST_P(EveryIntegratorInTwoSolves, ConvergesWithItsOrderInCompression) {
-  const SmoothMotion motion(0.8, true, 0.1);
-  const Method method = GetParam().method;
-  EXPECT_NEAR(motion.order(settingsOf(method, 2), kSteps), orderOf(method), kOrderTolerance);
-}
-
-TEST_P(EveryIntegratorInTwoSolves, ConvergesWithItsOrderForUnevenSteps) {
-  const SmoothMotion motion(1.1, true, 0.1);
-  const Method method = GetParam().method;
-  EXPECT_NEAR(motion.order(settingsOf(method, 2), kSteps, 0.3), orderOf(method), kOrderTolerance);
-}
-
-TEST_P(EveryIntegratorInTwoSolves, ConvergesWithItsOrderWhereMoreSolvesAreAllowed) {
-  const SmoothMotion motion(1.1, true, 0.1);
-  const Method method = GetParam().method;
-  EXPECT_NEAR(motion.order(settingsOf(method, 20), kSteps), orderOf(method), kOrderTolerance);
-}
-
-// ---- Attachments, momentum, energy.
-
 TEST_P(EveryIntegrator, PutsAttachedParticlesExactlyOnTheirPath) {
   ModelledEffects effects;
   effects.gravity = {0.0, 0.0, -9.81};

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -129,6 +131,32 @@ TEST(MeshDefects, RequireSoundNamesKindAndIndex) {
   }
   EXPECT_THROW(requireSound({}), std::invalid_argument);
   EXPECT_NO_THROW(requireSound(twoTriangles()));
+}
+
+TEST(Disc, IsSoundRoundAndOfNearlyEqualTriangles) {
+  constexpr int kRings = 24;
+  const ClothMesh mesh = makeDisc(0.127, kRings);
+  EXPECT_TRUE(findDefects(mesh).none());
+  double area = 0.0, least = 1.0, most = 0.0;
+  for (const auto& triangle : mesh.triangles) {
+    const Eigen::Vector2d& a = mesh.rest_coordinates[triangle[0]];
+    const Eigen::Vector2d ab = mesh.rest_coordinates[triangle[1]] - a;
+    const Eigen::Vector2d ac = mesh.rest_coordinates[triangle[2]] - a;
+    const double own = 0.5 * (ab.x() * ac.y() - ab.y() * ac.x());
+    area += own;
+    least = std::min(least, own);
+    most = std::max(most, own);
+  }
+  // All lie counter-clockwise; the edge is a polygon of 131 sides, which has 4e-4 less than the
+  // disc.
+  EXPECT_GT(least, 0.0);
+  EXPECT_NEAR(area, M_PI * 0.127 * 0.127, 5e-4 * area);
+  EXPECT_LT(most, 1.5 * least);
+  // Euler: V - E + F = 1 with 3 F = 2 E - rim.
+  const int rim = static_cast<int>(std::lround(M_PI * std::sqrt(3.0) * kRings));
+  EXPECT_EQ(mesh.triangles.size(), 2 * mesh.rest_coordinates.size() - 2 - rim);
+  EXPECT_THROW(makeDisc(-1.0, 3), std::invalid_argument);
+  EXPECT_THROW(makeDisc(1.0, 0), std::invalid_argument);
 }
 
 }  // namespace

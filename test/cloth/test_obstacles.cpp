@@ -114,6 +114,57 @@ TEST_F(ObstacleList, TurnsByRollPitchAndYawAboutTheFixedAxes) {
   EXPECT_TRUE(all.isApprox(yaw * pitch * roll, 1e-15));
 }
 
+TEST_F(ObstacleList, MoveAsTheySay) {
+  const auto obstacles = load(
+      "obstacles:\n"
+      "  - {name: a, sphere: 1, position: [2, 0, 0],\n"
+      "     orbit: {centre: [1, 0, 5], axis: [0, 0, 3], period: 4}}\n"
+      "  - {name: b, sphere: 1, position: [2, 0, 0], velocity: [0, 3, 0], friction: 0.4}\n"
+      "  - {name: c, sphere: 1, position: [2, 0, 0]}\n");
+  // A quarter of a turn to the right hand of the axis, after one and after five seconds.
+  for (const double time : {1.0, 5.0}) {
+    const Eigen::Isometry3d pose = obstacles[0].poseAt(time);
+    EXPECT_LT((pose.translation() - Eigen::Vector3d(1, 1, 0)).norm(), 1e-15);
+    EXPECT_LT((pose.linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+  }
+  EXPECT_EQ(obstacles[1].poseAt(2.0).translation(), Eigen::Vector3d(2, 6, 0));
+  EXPECT_EQ(obstacles[1].friction, 0.4);
+  EXPECT_EQ(obstacles[2].poseAt(2.0).translation(), Eigen::Vector3d(2, 0, 0));
+  EXPECT_FALSE(obstacles[2].friction);
+  EXPECT_TRUE(obstacles[0].moves() && obstacles[1].moves() && !obstacles[2].moves());
+}
+
+TEST_F(ObstacleList, RefusesMotionsNamingTheKey) {
+  const auto refusal = [&](const std::string& keys) {
+    return refusalOf("obstacles: [{name: a, sphere: 1, position: [2, 0, 0], " + keys + "}]\n");
+  };
+  const auto expect = [](const std::string& found, const std::string& part) {
+    EXPECT_NE(found.find(part), std::string::npos) << found;
+  };
+  expect(refusal("orbit: {centre: [0, 0, 0], axis: [0, 0, 0], period: 1}"),
+         "axis: must not be zero");
+  expect(refusal("orbit: {centre: [0, 0, 0], axis: [0, 0, 1], period: 0}"),
+         "period: '0' must be at least 1e-3 s");
+  expect(refusal("orbit: {centre: [0, 0, 0], axis: [0, 0, 1]}"), "'period' is missing");
+  expect(refusal("velocity: [0, 0, 1001]"), "must be from -1000 to 1000 m/s");
+  expect(refusal("friction: -0.1"), "must be >= 0");
+  expect(refusal("velocity: [0, 0, 1], orbit: {centre: [0, 0, 0], axis: [0, 0, 1], period: 1}"),
+         "at most one of orbit, velocity");
+}
+
+TEST_F(ObstacleList, MustNotBeEmptyIfTheModelListsObstacles) {
+  std::ofstream(path()) << "fabric: silk\n"
+                           "sheet: {size: [1, 1], cells: [1, 1], diagonals: one_way}\n"
+                           "attach: []\nmodel: [obstacles]\ntime_step: 0.01\nobstacles: []\n";
+  try {
+    loadScene(path());
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("must have at least one"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(ObstacleList, FindsMeshesByPath) {
   for (const std::string& name : {std::string("corner.obj"), std::string("../meshes/corner.obj"),
                                   (root_ / "meshes/corner.obj").string()}) {
@@ -185,7 +236,7 @@ INSTANTIATE_TEST_SUITE_P(
                 ": the key 'position' is missing, required here: name, position"},
         Refusal{"UnknownKey", "name: a, cone: 1" + kAtOrigin,
                 ".cone: unknown key, allowed here: name, position, sphere, box, capsule, mesh, "
-                "rpy"},
+                "rpy, orbit, velocity, friction"},
         Refusal{"NoShape", "name: a" + kAtOrigin,
                 ": must have exactly one of sphere, box, capsule, mesh"},
         Refusal{"TwoShapes", "name: a, sphere: 1, box: [1, 1, 1]" + kAtOrigin,
@@ -219,7 +270,7 @@ TEST_F(ObstacleList, MustBeAList) {
   EXPECT_EQ(refusalOf("obstacles: [ball]\n"),
             path() +
                 ": obstacles[0]: 'ball' must be a map with the keys name, position, sphere, "
-                "box, capsule, mesh, rpy");
+                "box, capsule, mesh, rpy, orbit, velocity, friction");
 }
 
 // What is wrong in an OBJ file of a surface.

@@ -3,6 +3,7 @@
 
 #include "../malloc_counter.h"
 #include "fixtures.h"
+#include "haptex/contact/obstacle_collision.h"
 
 namespace haptex::contact {
 namespace {
@@ -44,6 +45,36 @@ TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
     EXPECT_EQ(allocations - before, 0);
     EXPECT_GT(before, 0) << "the count does not work";
     EXPECT_TRUE(touched);
+  }
+}
+
+TEST(ContactAllocation, StepsAmongObstaclesAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  const Eigen::Isometry3d under(Eigen::Translation3d(0.0, 0.0, -0.12));
+  std::vector<cloth::Obstacle> obstacles = {
+      {"ball", cloth::ObstacleSphere{0.03}, under},
+      {"sheet", cloth::ObstacleMesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}}, under}};
+  obstacles[0].motion = cloth::ObstacleOrbit{{0.05, 0.0, -0.12}, Eigen::Vector3d::UnitZ(), 1.0};
+  for (const int newton_iterations : {1, 5}) {
+    cloth::ModelledEffects effects;
+    effects.gravity = {0.0, 0.0, -9.81};
+    effects.contacts = true;
+    cloth::Cloth cloth(smallSample(), wool(), effects);
+    cloth::StepSettings settings;
+    settings.newton_iterations = newton_iterations;
+    settings.method = cloth::IntegrationMethod::kBdf2;
+    cloth::Integrator integrator(cloth, settings);
+    ObstacleCollision collision(cloth, obstacles);
+    cloth::ClothState state = cloth.initialState();
+    int rounds = 0;
+    const long before = allocations;
+    for (int i = 0; i < 40; ++i) {
+      rounds += collision.step(cloth, integrator, state, 0.01).contact_rounds;
+    }
+    EXPECT_EQ(allocations - before, 0);
+    EXPECT_GT(rounds, 40);
   }
 }
 

@@ -86,8 +86,29 @@ TEST_F(HapticLayerTest, ItsLoadsAreWhatTheClothAccepts) {
   receiveRest();
   step({pressingMiddle(), std::nullopt}, 50);
   ASSERT_FALSE(layer_.loads().empty());
-  cloth::Cloth cloth(mesh_, wool(), {});
+  cloth::ModelledEffects effects;
+  effects.point_loads = true;
+  cloth::Cloth cloth(mesh_, wool(), effects);
   EXPECT_NO_THROW(cloth.setPointLoads(layer_.loads()));
+}
+
+TEST_F(HapticLayerTest, WithoutAFingertipNearThereIsNoPatchAndNothingToStep) {
+  receiveRest();
+  step({pressingMiddle(), std::nullopt}, 50);
+  EXPECT_GT(layer_.particleCount(), 0u);
+  std::unique_ptr<Patch> none = layer_.preparePatch({}, nothingAttached(mesh_));
+  EXPECT_EQ(none, nullptr);
+  const std::unique_ptr<Patch> left = layer_.exchange(std::move(none));
+  const std::vector<Vector3d> places = left->positions();
+  EXPECT_EQ(layer_.patch(), nullptr);
+  EXPECT_EQ(layer_.particleCount(), 0u);
+  step({pressingMiddle(), pressingMiddle()}, 50);  // the next patch has not come yet
+  for (const FingertipContact& contact : layer_.contacts()) {
+    EXPECT_FALSE(contact.touching);
+    EXPECT_EQ(contact.force, Vector3d::Zero());
+  }
+  EXPECT_TRUE(layer_.loads().empty());
+  EXPECT_EQ(left->positions(), places) << "nobody steps what was left";
 }
 
 TEST_F(HapticLayerTest, AFingertipWithANumberThatIsNoneIsTreatedAsAbsent) {

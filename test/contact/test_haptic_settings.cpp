@@ -42,11 +42,14 @@ TEST_F(HapticSettingsFile, HasItsDefaultsWhereTheSceneSaysNothing) {
 
 TEST_F(HapticSettingsFile, ReadsEveryKey) {
   const HapticSettings settings = load(
-      "fabric: wool\nhaptics: {layer: whole_cloth, refinement: 0, margin: 0.02, predict: false}\n");
-  EXPECT_EQ(settings.layer, Layer::kWholeCloth);
+      "fabric: wool\n"
+      "haptics: {layer: patch, refinement: 0, margin: 0.02, most_elements: 7, predict: false}\n");
+  EXPECT_EQ(settings.layer, Layer::kPatch);
   EXPECT_EQ(settings.refinement, 0);
   EXPECT_EQ(settings.margin, 0.02);
+  EXPECT_EQ(settings.most_elements, 7);
   EXPECT_FALSE(settings.predict);
+  EXPECT_EQ(load("haptics: {layer: whole_cloth}\n").layer, Layer::kWholeCloth);
 }
 
 TEST_F(HapticSettingsFile, LeavesOutWhatIsNotGiven) {
@@ -99,6 +102,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"SceneNotAMap", "- wool", "a list of 1 must be a map"},
                     Refusal{"UnknownLayer", "haptics: {layer: fine}",
                             "haptics.layer: 'fine' must be one of patch, whole_cloth"},
+                    Refusal{"RefinedWholeCloth", "haptics: {layer: whole_cloth, refinement: 0}",
+                            "haptics.refinement: '0' is not allowed with layer: whole_cloth, which "
+                            "has no patches"},
+                    Refusal{"PredictedWholeCloth", "haptics: {predict: false, layer: whole_cloth}",
+                            "haptics.predict: 'false' is not allowed with layer: whole_cloth, "
+                            "which has no patches"},
                     Refusal{"NegativeRefinement", "haptics: {refinement: -1}",
                             "haptics.refinement: '-1' must be an integer from 0 to 4"},
                     Refusal{"TooFine", "haptics: {refinement: 5}",

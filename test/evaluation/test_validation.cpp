@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "haptex/evaluation/cloth_swing.h"
+#include "haptex/evaluation/equilibrium.h"
 #include "haptex/evaluation/hanging_strip.h"
 #include "haptex/evaluation/validation.h"
 #include "haptex/evaluation/virtual_test.h"
@@ -79,6 +80,29 @@ TEST(ClothSwing, RefusesWhatItCannotBeMadeOf) {
   EXPECT_THROW(ClothSwing(linearFabric(), 0, 0.01), std::invalid_argument);
   EXPECT_THROW(ClothSwing(linearFabric(), 8, 0.11), std::invalid_argument);
   EXPECT_THROW(ClothSwing(linearFabric(), 8, std::nan("")), std::invalid_argument);
+}
+
+TEST(Equilibrium, IsStaticWhereViscosityCouldBalanceForAWhile) {
+  material::Fabric fabric = linearFabric();
+  fabric.weft.viscous = fabric.warp.viscous = material::StrainStressCurve::linear(1000.0);
+  fabric.shear.viscous = material::StrainStressCurve::linear(500.0);
+  cloth::ModelledEffects effects;
+  effects.viscosity = true;
+  effects.gravity = {0.0, 0.0, -9.81};
+  cloth::Cloth cloth(cloth::makeRectangle(0.1, 0.1, 4, 4, cloth::Triangulation::kAlternating),
+                     fabric, effects);
+  cloth::ClothState state = cloth.initialState();
+  for (int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) {
+    cloth.attach(particle, {state.positions[particle], Eigen::Vector3d::Zero(), 0.0, 0.0});
+  }
+  Equilibrium equilibrium(cloth);
+  equilibrium.settle(cloth, state, 0.01);
+  std::vector<Eigen::Vector3d> forces;
+  cloth.computeForces(state, forces);
+  double held = 0.0;
+  for (int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) held -= forces[particle].z();
+  const double weight = 0.1 * 0.01 * 9.81;
+  EXPECT_NEAR(held, weight, 1e-8 * weight);
 }
 
 TEST(HangingStrip, ExactElongationIsThePublishedOne) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -61,6 +63,62 @@ TEST(FabricFile, ReadsBendingCompressionAndFrictionWithTheirProvenance) {
   EXPECT_EQ(fabric.provenance.at("friction").kind, Provenance::Kind::kRepresentative);
 }
 
+/// As a key of the bending.
+std::string hysteresisOf(const std::string& unit, const std::string& weft) {
+  return "hysteresis: {unit: " + unit + ", provenance: measured, source: its loops, weft: " + weft +
+         ", warp: 2e-4}";
+}
+
+TEST(FabricFile, ReadsTheHysteresisOfBendingWithItsProvenance) {
+  EXPECT_FALSE(loadFabric(TemporaryFile(kFull).path()).bending_hysteresis);
+  std::string text = kFull;
+  const std::string rigidity = "warp: 9e-6";
+  text.replace(text.find(rigidity), rigidity.size(), rigidity + ", " + hysteresisOf("N", "1e-4"));
+  const Fabric fabric = loadFabric(TemporaryFile(text).path());
+  ASSERT_TRUE(fabric.bending_hysteresis);
+  EXPECT_EQ(fabric.bending_hysteresis->weft, 1e-4);
+  EXPECT_EQ(fabric.bending_hysteresis->warp, 2e-4);
+  EXPECT_EQ(fabric.provenance.at("bending.hysteresis").source, "its loops");
+}
+
+const std::string kContraction =
+    "contraction: {provenance: measured, source: video of a tensile test, value: 0.3}\n";
+
+TEST(FabricFile, ReadsContractionWithItsProvenance) {
+  EXPECT_FALSE(loadFabric(TemporaryFile(kFull).path()).contraction);
+  const TemporaryFile file(kFull + kContraction);
+  const Fabric fabric = loadFabric(file.path());
+  EXPECT_EQ(fabric.contraction, 0.3);
+  EXPECT_EQ(fabric.provenance.at("contraction").kind, Provenance::Kind::kMeasured);
+}
+
+// The weft is straight, so only the slopes of the warp count, which are sampled here.
+TEST(FabricFile, RefusesAContractionThatLeavesTheEnergyNotConvex) {
+  const StrainStressCurve warp = loadFabric(TemporaryFile(kFull).path()).warp.elastic;
+  double least = warp.evaluate(0.0).slope;
+  for (int i = 0; i <= 100000; ++i) {
+    least = std::min(least, warp.evaluate(0.25 * i / 100000).slope);
+  }
+  const double largest = std::sqrt(least / warp.evaluate(0.0).slope);
+  const auto with = [](const std::string& value) {
+    return replaced(kFull + kContraction, "value: 0.3", "value: " + value);
+  };
+  EXPECT_NO_THROW(loadFabric(TemporaryFile(with(std::to_string(largest - 1e-5))).path()));
+  for (const std::string& value :
+       {std::string("-0.1"), std::string(".nan"), std::to_string(largest + 1e-5)}) {
+    EXPECT_THROW(loadFabric(TemporaryFile(with(value)).path()), std::invalid_argument) << value;
+  }
+  const TemporaryFile file(with("1.2"));
+  try {
+    loadFabric(file.path());
+    FAIL() << "not refused";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(error.what(), file.path() + ": contraction.value: '1.2' must be >= 0 and < " +
+                                std::to_string(largest) +
+                                ": at more weft and warp of these curves would give way together");
+  }
+}
+
 TEST(FabricFile, ReadsCompressionPoints) {
   std::string text = replaced(kFull, "m and J/m2", "Pa and m");
   text = replaced(text, "kes: {T0: 7e-4, Tm: 4.5e-4, WC: 0.2}", "points: [[0, 1e-3], [800, 6e-4]]");
@@ -112,7 +170,8 @@ class FabricFileRefuses : public testing::TestWithParam<Refusal> {};
 TEST_P(FabricFileRefuses, NamingFileKeyValueAndWhatIsAllowed) { expectRefusal(kFull, GetParam()); }
 
 const std::string kRequired = "name, areal_density, weft, warp, shear";
-const std::string kAllowed = kRequired + ", description, bending, compression, friction, surface";
+const std::string kAllowed =
+    kRequired + ", description, bending, contraction, compression, friction, surface";
 const std::string kCurveKeys = "unit, provenance, source, modulus, points, polynomials, quantity";
 const std::string kPiola = "second_piola_kirchhoff_over_green_lagrange";
 const std::string kDissipate =
@@ -295,9 +354,23 @@ INSTANTIATE_TEST_SUITE_P(
                 "'gf.cm2/cm' must be N.m"},
         Refusal{"BendingInOneDirection", ", warp: 9e-6", "", "bending",
                 "the key 'warp' is missing, required here: unit, provenance, source, weft, warp"},
-        Refusal{"UnknownBendingKey", "weft: 6e-6", "weft: 6e-6, hysteresis: 1",
+        Refusal{"UnknownBendingKey", "weft: 6e-6", "weft: 6e-6, twist: 1", "bending.twist",
+                "unknown key, allowed here: unit, provenance, source, weft, warp, hysteresis"},
+        Refusal{"HysteresisOfNothing", "warp: 9e-6", "warp: 9e-6, hysteresis: 1",
                 "bending.hysteresis",
-                "unknown key, allowed here: unit, provenance, source, weft, warp"},
+                "'1' must be a map with the keys unit, provenance, source, weft, warp"},
+        Refusal{"HysteresisWithoutProvenance", "warp: 9e-6",
+                "warp: 9e-6, hysteresis: {unit: N, source: KES-FB2, weft: 1e-4, warp: 1e-4}",
+                "bending.hysteresis",
+                "the key 'provenance' is missing, required here: unit, provenance, source, weft, "
+                "warp"},
+        Refusal{"HysteresisInAnotherUnit", "warp: 9e-6",
+                "warp: 9e-6, " + hysteresisOf("gf.cm/cm", "1e-4"), "bending.hysteresis.unit",
+                "'gf.cm/cm' must be N"},
+        Refusal{"NegativeHysteresis", "warp: 9e-6", "warp: 9e-6, " + hysteresisOf("N", "-1e-4"),
+                "bending.hysteresis.weft", "'-1e-4' must be a finite number >= 0"},
+        Refusal{"HysteresisWithoutRigidity", "weft: 6e-6", "weft: 0, " + hysteresisOf("N", "1e-4"),
+                "bending.hysteresis.weft", "'1e-4' must be 0, as the rigidity is"},
         Refusal{"NegativeRigidity", "weft: 6e-6", "weft: -6e-6", "bending.weft",
                 "'-6e-6' must be a finite number >= 0"},
         Refusal{"NanRigidity", "warp: 9e-6", "warp: .nan", "bending.warp",

@@ -8,8 +8,8 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point, Vector3
 from haptex.msg import ClothMesh, ClothState, ContactForces
-from haptex.srv import (AttachParticles, GetJacobian, MoveParticles, ReleaseParticles, SetFabric,
-                        StepCloth)
+from haptex.srv import (AttachParticles, GetJacobian, MoveParticles, QueryBudget, ReleaseParticles,
+                        SetFabric, StepCloth)
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import MarkerArray
@@ -36,7 +36,8 @@ class ClothSimulation(unittest.TestCase):
     def setUpClass(cls):
         services = {'reset': Trigger, 'pause': SetBool, 'step': StepCloth,
                     'set_fabric': SetFabric, 'attach': AttachParticles, 'move': MoveParticles,
-                    'release': ReleaseParticles, 'get_jacobian': GetJacobian}
+                    'release': ReleaseParticles, 'get_jacobian': GetJacobian,
+                    'query_budget': QueryBudget}
         for name, service in services.items():
             rospy.wait_for_service('cloth/' + name, WAIT)
             setattr(cls, name, rospy.ServiceProxy('cloth/' + name, service))
@@ -109,6 +110,28 @@ class ClothSimulation(unittest.TestCase):
         self.assertEqual(int(values['triangles']), TRIANGLES)
         self.assertEqual(int(values['rejected steps']), 0)
         self.assertIn(values['linear solver'], ('Cholesky', 'conjugate gradient'))
+
+    def sleeps(self):
+        rospy.sleep(2.1)  # until diagnostics know
+        status = message('/diagnostics', DiagnosticArray).status[0]
+        return {item.key: item.value for item in status.values}['asleep']
+
+    def test_cloth_at_rest_sleeps_until_something_changes(self):
+        self.assertEqual(self.sleeps(), 'no')
+        self.accepted(self.step(1600))
+        self.assertEqual(self.sleeps(), 'yes')
+        before = self.state()
+        self.accepted(self.step(80))
+        after = self.state()
+        self.assertEqual(after.step, before.step + 80)
+        self.assertAlmostEqual(after.simulated_time, before.simulated_time + 1.0, delta=1e-9)
+        self.assertEqual((before.positions, before.velocities, before.forces, before.attached),
+                         (after.positions, after.velocities, after.forces, after.attached))
+        self.assertGreater(after.header.stamp, before.header.stamp)
+        self.accepted(self.move(WORLD, [TOP_CORNER], Vector3(0.01, 0, 0), 0.1))
+        self.accepted(self.step(8))
+        self.assertEqual(self.sleeps(), 'no')
+        self.assertNotEqual(positions(after).tolist(), positions(self.state()).tolist())
 
     def test_runs_and_pauses(self):
         self.accepted(self.pause(False))
@@ -349,6 +372,9 @@ class ClothSimulation(unittest.TestCase):
     def test_refuses_jacobians(self):
         self.refuses_particles(self.get_jacobian)
         self.assertEqual(len(self.get_jacobian([]).rows), 0)
+
+    def test_refuses_to_tell_of_budgets_without_quality(self):
+        self.refused(self.query_budget, 5.0, says='start it with ~quality or ~budget_ms')
 
 
 if __name__ == '__main__':

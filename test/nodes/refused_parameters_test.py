@@ -51,6 +51,15 @@ class RefusedParameters(unittest.TestCase):
                 self.refused('_scene:=wool_sample', f'_{name}:={value}',
                              says=[f'~{name}'])
 
+    def test_qualities_and_budgets(self):
+        scene = '_scene:=wool_sample'
+        self.refused(scene, '_quality:=best', says=['~quality', "there is no 'best'", 'balanced'])
+        self.refused(scene, '_quality:=3', says=['~quality', 'is not set to a string'])
+        self.refused(scene, '_quality:=front', says=['front.yaml', 'allowed is a file with one'])
+        self.refused(scene, '_quality:=fast', '_budget_ms:=5', says=['~quality', '~budget_ms'])
+        for value in ('0', '-1', 'much'):
+            self.refused(scene, f'_budget_ms:={value}', says=['~budget_ms'])
+
     def test_scenes_of_nodes_that_can_do_without(self):
         for node in ('proximity', 'tactile_renderer'):
             self.refused('_scene:=3', node=node, says=['~scene', 'is not set to a string'])
@@ -116,6 +125,21 @@ class RefusedParameters(unittest.TestCase):
     def test_renderer_scenes(self):
         self.refused(node='force_renderer', says=['~scene', 'is not set'])
         self.refused('_scene:=velvet', node='force_renderer', says=["there is no 'velvet'"])
+
+    def test_scenes_that_do_not_list_what_a_node_is_there_for(self):
+        for node, scene, effect in (('force_renderer', 'linear_sheet', 'fingers'),
+                                    ('tactile_renderer', 'acrylic_knit_sample', 'tactile')):
+            self.refused(f'_scene:={scene}', node=node,
+                         says=[f'{scene}.yaml', f'does not list {effect}', node])
+
+    def test_scene_whose_fabric_lacks_what_it_lists(self):
+        shipped = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'config')
+        text = (shipped / 'scenes' / 'wool_sample.yaml').read_text()
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
+            scene.write(text.replace('fabric: wool', f'fabric: {shipped}/fabrics/linear.yaml'))
+            scene.flush()
+            self.refused(f'_scene:={scene.name}',
+                         says=[scene.name, 'lists tactile', "fabric 'linear' has no surface"])
 
     def test_renderer_radii_that_no_fingertip_has(self):
         for name in ('index_radius', 'thumb_radius'):

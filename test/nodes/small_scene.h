@@ -8,20 +8,34 @@ namespace haptex::nodes {
 constexpr std::uint32_t kSmallParticles = 25;
 constexpr std::uint32_t kSmallTop = 20;  // an attached corner
 
-/// 4 x 4 cells of a linear fabric, 0.2 m wide, that hang from their top edge.
-inline SimulatedCloth smallSimulation() {
+/// Linear, with all that bends.
+inline material::Fabric smallFabric() {
   material::Fabric fabric;
   fabric.name = "test";
   fabric.areal_density = 0.1;
   for (material::MembraneCurves* curves : {&fabric.weft, &fabric.warp, &fabric.shear}) {
     curves->elastic = material::StrainStressCurve::linear(100.0);
   }
+  fabric.bending = {1e-5, 1e-5};
+  fabric.bending_hysteresis = {2e-4, 2e-4};
+  return fabric;
+}
+
+/// 4 x 4 cells, 0.2 m wide, that hang from their top edge.
+inline cloth::Scene smallScene() {
   cloth::Scene scene;
   scene.mesh = cloth::makeRectangle(0.2, 0.2, 4, 4, cloth::Triangulation::kOneWay);
   scene.effects.gravity = {0.0, 0.0, -9.80665};
+  scene.effects.point_loads = true;
   scene.attached_particles = cloth::sideParticles(scene.mesh, cloth::Side::kTop);
   scene.time_step = 0.005;
-  return SimulatedCloth(std::move(scene), std::move(fabric));
+  return scene;
+}
+
+inline SimulatedCloth smallSimulation(bool bending_hysteresis = false) {
+  cloth::Scene scene = smallScene();
+  scene.effects.bending = scene.effects.bending_hysteresis = bending_hysteresis;
+  return SimulatedCloth(std::move(scene), smallFabric());
 }
 
 }  // namespace haptex::nodes

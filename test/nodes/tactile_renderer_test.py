@@ -240,6 +240,19 @@ class TactileRenderer(NodeTest):
         before, after = self.diagnostics.values(STEPS), self.diagnostics.values(STEPS)
         self.assertEqual(after[computed], before[computed], 'it is idle')
 
+    def test_computes_nothing_for_nobody(self):
+        computed = 'steps of a finger that were computed'
+        with Contacts(self.contacts['index']):
+            self.eventually_vibrates()
+            for arrived in self.arrived.values():
+                arrived.close()
+            self.diagnostics.next(STEPS)  # until the node knows
+            before, after = self.diagnostics.values(STEPS), self.diagnostics.values(STEPS)
+            self.assertEqual(after[computed], before[computed])
+            self.assertEqual(self.diagnostics.next(INDEX).message, 'touches')
+            self.arrived['index'] = Arrived('index')
+            self.eventually_vibrates()
+
     def test_markers_show_pads_panels_and_captions(self):
         markers = rospy.wait_for_message('tactile/markers', MarkerArray, WAIT).markers
         self.assertEqual({marker.ns for marker in markers},

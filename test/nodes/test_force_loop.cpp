@@ -166,6 +166,10 @@ TEST(ForceLoop, ContactorsCarryTheForceOfTheContactOnceTheirPlaceIsKnown) {
   const ForceLoop::Rendered& rendered = sheet->loop().rendered(Finger::kIndex);
   EXPECT_LT((rendered.array.origin - rendered.contact.fabric_position).norm(), 1e-3);
   EXPECT_NEAR(std::abs(rendered.array.axes.determinant()), 1.0, 0.1);
+  sheet->loop().wantContactors(Finger::kIndex, false);
+  sheet->run(1);
+  EXPECT_EQ(sum(), 0.0) << "nobody looks";
+  EXPECT_GT(sheet->loop().rendered(Finger::kIndex).contact.normal_force, 0.9 * normal_force);
 }
 
 TEST(ForceLoop, AReplacedLayerStartsWithoutForceAndRises) {

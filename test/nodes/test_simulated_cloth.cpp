@@ -114,5 +114,23 @@ TEST(SimulatedCloth, KeepsPositionsAndVelocitiesWhenTheFabricChanges) {
   EXPECT_DOUBLE_EQ(simulation.cloth().masses()[0], 2 * mass);
 }
 
+// Friction remembers how the cloth was bent; another fabric and a reset do not.
+TEST(SimulatedCloth, AnotherFabricAndAResetForgetHowTheClothWasBent) {
+  SimulatedCloth simulation = smallSimulation(true);
+  const cloth::PlasticBends flat = simulation.state().plastic_bends;
+  ASSERT_FALSE(flat.empty());
+  simulation.move({kSmallTop}, {0.05, 0.1, 0.0}, 0.1);
+  for (int i = 0; i < 40; ++i) ASSERT_TRUE(simulation.step());
+  EXPECT_NE(simulation.state().plastic_bends, flat);
+  material::Fabric other = simulation.cloth().fabric();
+  other.bending_hysteresis->warp = 0.0;  // fewer hinges with friction
+  simulation.setFabric(other);
+  EXPECT_LT(simulation.state().plastic_bends.size(), flat.size());
+  ASSERT_TRUE(simulation.step());
+  simulation.setFabric(smallSimulation(true).cloth().fabric());
+  simulation.reset();
+  EXPECT_EQ(simulation.state().plastic_bends, flat);
+}
+
 }  // namespace
 }  // namespace haptex::nodes

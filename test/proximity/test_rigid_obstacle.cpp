@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -231,6 +232,36 @@ TEST(RigidObstacle, MeshHasTheLeastDistanceOfAllItsTriangles) {
     EXPECT_NEAR(point.distance, least, kRounding) << i;
     EXPECT_NEAR(least_of_point, least, kRounding) << i;
   }
+}
+
+// Outside the distance of a triangle that is a point; inside the way out, which ends on the
+// surface.
+TEST(RigidObstacle, DistanceOfAPlaceLeadsToTheSurfaceFromBothSides) {
+  std::vector<RigidObstacle> obstacles = {
+      RigidObstacle::sphere(0.3), RigidObstacle::capsule(0.2, 0.5),
+      RigidObstacle::box({0.4, 0.7, 0.2}),
+      RigidObstacle::mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5}}, {{0, 1, 2}})};
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> coordinate(-0.6, 0.6);
+  int inside = 0;
+  for (RigidObstacle& obstacle : obstacles) {
+    Eigen::Isometry3d pose(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+    pose.translation() = Eigen::Vector3d(0.1, -0.05, 0.02);
+    obstacle.setPose(pose);
+    for (int i = 0; i < 300; ++i) {
+      const Eigen::Vector3d place(coordinate(random), coordinate(random), coordinate(random));
+      const SurfaceDistance found = obstacle.distance(place);
+      EXPECT_NEAR(found.normal.norm(), 1.0, 1e-14);
+      const double from_triangle = obstacle.closestPoint({place, place, place}).distance;
+      EXPECT_NEAR(std::max(0.0, found.distance), from_triangle, 1e-12);
+      if (found.distance < 0.0) ++inside;
+      const Eigen::Vector3d surface = place - found.distance * found.normal;
+      EXPECT_NEAR(obstacle.distance(surface).distance, 0.0, 1e-14);
+    }
+    EXPECT_LE(obstacle.support(Eigen::Vector3d::UnitX()) - pose.translation().x(),
+              obstacle.boundingRadius() + 1e-15);
+  }
+  EXPECT_GT(inside, 50);
 }
 
 TEST(RigidObstacle, SupportIsTheFarthestPointAlongADirection) {

@@ -50,6 +50,14 @@ class SymmetricBlockMatrix {
   /// @param values the given unknowns; other columns are not read
   void eliminate(const std::vector<char>& fixed, const BlockVector& values, BlockVector& rhs);
 
+  /// Fixes the component along one direction of the unknowns of some particles, likewise: in the
+  /// solution it is zero and has to be set to its value afterwards.
+  /// @param confined per particle, nonzero where there is a direction
+  /// @param normals  the directions, of unit length; other columns are not read
+  /// @param values   the given components, times their direction; other columns are not read
+  void confine(const std::vector<char>& confined, const BlockVector& normals,
+               const BlockVector& values, BlockVector& rhs);
+
  private:
   std::vector<Eigen::Matrix3d> diagonal_;
   std::vector<Eigen::Matrix3d> lower_;

@@ -24,10 +24,16 @@ struct Elimination {
   std::vector<int> supernode_of;  ///< by column
 };
 
-/// Fill-reducing order by approximate minimum degree (Eigen's AMD), postordered elimination tree
-/// (Liu 1990), and supernodes that take up a child where the dense panel gains more than the
-/// explicit zeros cost (relaxed amalgamation, Ashcraft and Grimes 1989).
+/// Structure of the factor in a given order: postordered elimination tree (Liu 1990), and
+/// supernodes that take up a child where the dense panel gains more than the explicit zeros cost
+/// (relaxed amalgamation, Ashcraft and Grimes 1989).
+Elimination analyse(const SymmetricBlockMatrix& pattern, const std::vector<int>& order);
+
+/// The same in minimumDegreeOrder() or nestedDissectionOrder(), whichever needs fewer operations.
 Elimination analyse(const SymmetricBlockMatrix& pattern);
+
+/// Multiply-add operations that eliminate one supernode.
+double supernodeCost(const Supernode& supernode);
 
 /// Multiply-add operations of one numeric factorisation, from the structure.
 double factorisationCost(const Elimination& elimination);

@@ -10,7 +10,7 @@
 namespace haptex::cloth {
 
 /// Explicit Euler, midpoint, classical Runge-Kutta of order 4, and the two-step Euler of Provot
-/// 1995, which moves the particles with the velocities at the end of the step. Stable only while
+/// 1997, which moves the particles with the velocities at the end of the step. Stable only while
 /// the step is short against the period of the fastest vibration of the mesh; what that is, is not
 /// checked.
 ///

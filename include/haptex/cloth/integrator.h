@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "haptex/cloth/cloth.h"
+#include "haptex/cloth/energy_balance.h"
 #include "haptex/cloth/explicit_step.h"
 #include "haptex/cloth/stage_solver.h"
 #include "haptex/cloth/step.h"
@@ -19,12 +20,24 @@ namespace haptex::cloth {
 /// state other than the one it left, or more than twice the time step before (it is stable up to
 /// 1 + sqrt 2).
 ///
+/// Implicit methods keep the cloth's contacts. A particle that touches a body goes with it at the
+/// end of the step: along the normal where it slips, altogether where it sticks, so that impacts
+/// are inelastic. BDF-2 starts anew after a step in which something touched.
+///
+/// With StepSettings::keep_energy implicit methods gain no energy beyond the work that is done on
+/// the cloth (EnergyBalance). What
+/// a linearised stage, a buckling element or a solver's tolerance adds is taken out of the
+/// velocities. Where that would be more than a tenth of the kinetic energy, or a number is not
+/// finite, the step is taken anew: backward Euler by Newton iterations that begin at rest or lower
+/// (StageSolver::solveSafely()).
+///
 /// A step allocates nothing: all buffers are made by the constructor, and only those that the
 /// method needs.
 class Integrator {
  public:
-  /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1) or
-  ///   newton_iterations is less than 1
+  /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1),
+  ///   newton_iterations is less than 1, threads is not from 1 to kMostThreads, or an implicit
+  ///   method is to keep the energy of corotational elasticity
   Integrator(const Cloth& cloth, const StepSettings& settings);
 
   /// Advances `state` by `time_step` seconds; steps need not be uniform.
@@ -34,6 +47,11 @@ class Integrator {
   ///   differ in size from each other or from the constructor's; the state is then as before
   StepReport step(const Cloth& cloth, ClothState& state, double time_step);
 
+  /// What the contacts of the cloth did in the last step, in their order: in its last stage, whose
+  /// forces are those at the end of the step but for the midpoint method. Empty with an explicit
+  /// method or a cloth without contacts.
+  const std::vector<ContactReaction>& contactReactions() const;
+
  private:
   /// What BDF-2 needs of the past.
   struct History {
@@ -42,25 +60,30 @@ class Integrator {
     double time_step = 0.0;  // s, between the two; 0: nothing has been
   };
 
+  void keepEnergy(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
+  void slowDown(const Cloth& cloth, double energy, StepReport& report);
   void advance(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   void takeMidpoint(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
-  double attachmentWork(const Cloth& cloth, const ClothState& begin);
+  double outerWork(const Cloth& cloth, const ClothState& begin, double h, double theta);
   double blendAgainstGrowth(const Cloth& cloth, const ClothState& begin, double allowed) const;
   void extrapolate(const Cloth& cloth, const ClothState& begin, double theta);
   void takeTrBdf2(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   void takeBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,
                 double first, double second, StepReport& report);
   bool continuesHistory(const ClothState& begin, double h) const;
-  void keep(ClothState& state, double h);
+  bool touches() const;
+  void settle(Velocities& velocities) const;
+  void keep(const Cloth& cloth, ClothState& state, double h, bool anew);
 
   StepSettings settings_;
   std::size_t element_count_;
-  std::size_t coupling_count_;  // of bending
+  std::size_t coupling_count_;  // of bending or springs
   ClothState end_;              // the step's result before it is accepted
   std::optional<StageSolver> stages_;
   std::optional<ExplicitStep> explicit_step_;
-  ClothState base_;                      // of a stage that does not start at the beginning
-  std::vector<Eigen::Vector3d> forces_;  // N
+  std::optional<EnergyBalance> balance_;  // if energy is to be kept
+  ClothState base_;                       // of a stage that does not start at the beginning
+  std::vector<Eigen::Vector3d> forces_;   // N
   std::optional<History> history_;
 };
 

@@ -28,9 +28,10 @@ struct MembraneElement {
 
 /// Times (s) of an implicit stage, x = x* + a v, that is linearised about a state (Stage).
 struct StageTimes {
-  double a;      ///< > 0; the time step in backward Euler
-  double ahead;  ///< in which the state's velocities bring it to the stage: a in backward
-                 ///< Euler, 0 if it is there already
+  double a;           ///< > 0; the time step in backward Euler
+  double ahead;       ///< in which the state's velocities bring it to the stage: a in backward
+                      ///< Euler, 0 if it is there already
+  double time = 0.0;  ///< simulated, of the stage: when forces act that depend on time
 };
 
 /// Green-Lagrange strains or their rates (1/s) in the order weft (U.U-1)/2, warp (V.V-1)/2,
@@ -46,10 +47,13 @@ Eigen::Vector3d projectStress(const Eigen::Vector3d& stress);
 class Membrane {
  public:
   /// @param mesh without defects (findDefects())
-  /// @param viscosity whether the viscous curves of the fabric act
-  Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool viscosity);
+  /// @param viscosity   whether the viscous curves of the fabric act
+  /// @param contraction whether its transverse contraction does: suu += c evv, svv += c euu with
+  ///   c of material::contractionModulus()
+  Membrane(const ClothMesh& mesh, const material::Fabric& fabric, bool viscosity,
+           bool contraction = false);
 
-  /// Takes the curves of another fabric.
+  /// Takes the curves and the contraction of another fabric.
   void setFabric(const material::Fabric& fabric);
 
   /// Looks up the elements' slots in a matrix whose pattern has more than the mesh's edges.
@@ -70,8 +74,9 @@ class Membrane {
 
   /// Adds what the membrane contributes to a linearised stage (Stage),
   ///   matrix += -a D - a^2 K,  rhs += a (F + ahead K v),
-  /// with the exact projection: slopes of the curves clamped to >= 0 and the stress of the
-  /// geometric part by projectStress(), the same K on both sides.
+  /// with the exact projection: slopes of the curves clamped to >= 0, those of weft and warp
+  /// together with the contraction by projectStress(), as the stress of the geometric part is; the
+  /// same K on both sides.
   void addStep(const Positions& positions, const Velocities& velocities, const StageTimes& times,
                SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
 
@@ -93,6 +98,8 @@ class Membrane {
   double incrementalPotential(const Positions& positions,
                               const std::vector<MembraneStrain>& begin_strains, double h) const;
 
+  /// How many strains the functions below make.
+  std::size_t strainCount() const { return elements_.size(); }
   /// Strains of all elements. @param strains resized to the number of elements
   void computeStrains(const Positions& positions, std::vector<MembraneStrain>& strains) const;
   /// What the strains would have been at their present rates `interval` seconds before.
@@ -113,19 +120,23 @@ class Membrane {
  private:
   using Curves = std::array<material::StrainStressCurve, 3>;  // weft, warp, shear
   struct Frame;                                               // U, V of an element, or their rates
-  struct Response;  // stress and slope of all three curves
+  struct Response;                                            // stress and slopes
   static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
   template <bool kViscous>
   void addStepOf(const MembraneElement& element, const Positions& positions,
                  const Velocities& velocities, const StageTimes& times,
                  SymmetricBlockMatrix& matrix, BlockVector& rhs) const;
   static Response respond(const Curves& curves, const MembraneStrain& strain);
+  Response respondElastic(const MembraneStrain& strain) const;
+  double elasticDensity(const MembraneStrain& strain) const;
 
   std::vector<MembraneElement> elements_;
   std::vector<kernels::MembraneBatch> batches_;  // empty where the processor cannot use them
   Curves elastic_;
   Curves viscous_;
   bool viscosity_;
+  bool contraction_;
+  double coupling_ = 0.0;  // N/m, of weft and warp
 };
 
 }  // namespace haptex::cloth

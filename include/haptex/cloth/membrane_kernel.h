@@ -27,6 +27,7 @@ struct MembraneStep {
   double ahead;                                               ///< s
   const std::array<material::StrainStressCurve, 3>* elastic;  ///< weft, warp, shear
   const std::array<material::StrainStressCurve, 3>* viscous;  ///< null: none
+  double coupling;                                            ///< N/m, of weft and warp; 0: none
   double* diagonal;
   double* lower;
   double* rhs;
@@ -34,6 +35,11 @@ struct MembraneStep {
 
 /// Whether this processor can run addStep().
 bool canAddBatches();
+
+/// Elastic energy of the elements (J).
+/// @param positions three doubles per particle
+double elasticEnergy(const MembraneBatch* batches, int count, const double* positions,
+                     const std::array<material::StrainStressCurve, 3>& elastic, double coupling);
 
 /// Adds the elements one after the other, so that the sums are the same in every run.
 void addStep(const MembraneBatch* batches, int count, const MembraneStep& step);

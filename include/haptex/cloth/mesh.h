@@ -32,6 +32,16 @@ enum class Triangulation {
 ClothMesh makeRectangle(double width, double height, int cells_u, int cells_v,
                         Triangulation triangulation);
 
+/// A disc of `rings` rings of triangles that are nearly equilateral and equal, about 11 rings^2
+/// / 2. It has no rotational symmetry that folds could keep to: the particles of each circle are
+/// turned against those of the next by the golden angle. Particle 0 is the middle, the others
+/// follow from circle to circle. Rest coordinates are (x, y) of the initial positions, which lie in
+/// the plane z = 0 of the world frame around the origin.
+/// @param radius m, finite and > 0
+/// @param rings  >= 1
+/// @throws std::invalid_argument naming the parameter and its value
+ClothMesh makeDisc(double radius, int rings);
+
 /// The particles on one side of the bounding rectangle of the rest coordinates, in ascending order:
 /// those within 1e-9 of its diagonal.
 enum class Side { kBottom, kTop, kLeft, kRight };  // v min, v max, u min, u max

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -31,11 +32,30 @@ struct ObstacleMesh {
   std::vector<std::array<int, 3>> triangles;  ///< vertex indices
 };
 
-/// Data only: what is near an obstacle is told by the room proximity.
+/// Turns about an axis like a stone on a rope: the obstacle keeps the same side to the axis.
+struct ObstacleOrbit {
+  Eigen::Vector3d centre;  ///< m, on the axis
+  Eigen::Vector3d axis;    ///< unit; the turn is right-handed about it
+  double period;           ///< s, > 0
+};
+
+/// Goes on in a straight line.
+struct ObstacleDrift {
+  Eigen::Vector3d velocity;  ///< m/s
+};
+
+/// Data only: what is near an obstacle is told by the room proximity, what it does to the cloth by
+/// the room contact.
 struct Obstacle {
   std::string name;  ///< unique in its scene
   std::variant<ObstacleSphere, ObstacleBox, ObstacleCapsule, ObstacleMesh> shape;
-  Eigen::Isometry3d pose;  ///< from the obstacle's frame to the world frame
+  Eigen::Isometry3d pose;  ///< at time 0, from the obstacle's frame to the world frame
+  std::variant<std::monostate, ObstacleOrbit, ObstacleDrift> motion = {};  ///< rests without one
+  std::optional<double> friction = {};  ///< of the cloth on it, >= 0; the fabric's if not given
+
+  /// @param time s, simulated
+  Eigen::Isometry3d poseAt(double time) const;
+  bool moves() const { return motion.index() != 0; }
 };
 
 }  // namespace haptex::cloth

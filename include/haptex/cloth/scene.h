@@ -19,7 +19,14 @@ struct Scene {
   std::vector<int> attached_particles;  ///< at their initial positions
   double time_step = 0.0;               ///< s
   StepSettings step;
-  std::vector<Obstacle> obstacles;  ///< names unique; the cloth does not collide with them
+  std::vector<Obstacle> obstacles;  ///< names unique; the cloth collides with them if
+                                    ///< effects has contacts
+  /// A sheet that is attached by nothing but its sides: it may have any cells.
+  bool any_cells = false;
+  // What is modelled beside the cloth.
+  bool fingers = false;    ///< touch the cloth; effects has point loads then
+  bool tactile = false;    ///< the surface under the fingertips, only with fingers
+  bool recording = false;  ///< a bag is recorded without being asked for
 };
 
 /// Reads a scene file; docs/scene_files.md describes the format. A fabric or mesh name without a
@@ -30,5 +37,12 @@ struct Scene {
 /// @throws std::invalid_argument naming file, key, value and what is allowed, or what loadObj()
 /// says
 Scene loadScene(const std::string& path);
+
+/// The same, but a sheet of a scene with any_cells has as few cells as make no edge along weft or
+/// warp longer than `cell_size` (m). Other scenes keep their mesh.
+/// @throws std::invalid_argument also if the cell size is not finite and > 0, or so small that
+/// there
+///   would be too many triangles
+Scene loadScene(const std::string& path, double cell_size);
 
 }  // namespace haptex::cloth

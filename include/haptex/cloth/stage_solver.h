@@ -2,22 +2,28 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "haptex/cloth/block_matrix.h"
 #include "haptex/cloth/cloth.h"
+#include "haptex/cloth/contact_step.h"
 #include "haptex/cloth/linear_solver.h"
 #include "haptex/cloth/step.h"
+#include "haptex/cloth/thread_pool.h"
 
 namespace haptex::cloth {
 
 /// Find (x, v) with
 ///   M (v - v*) = a F(x, v),  x = x* + a v.
 struct Stage {
-  const ClothState& base;  ///< x*, v*; its time is not read
+  const ClothState& base;  ///< x*, v*, the time from which share counts, and the plastic bends of
+                           ///< the step's beginning
   double a;                ///< s, finite and > 0
   double end;              ///< s, simulated, of the places of the attached particles
-  double share;            ///< of the way from x* to their place that they go in the stage
+  double share;            ///< of the way from x* to their place that they go in the stage, and of
+                           ///< the time from base's to end at which its forces act
   /// Strain rates of Newton iterations.
   enum class Rates {
     kSinceBase,     ///< (e - e*) / a, which vanishes under every rigid motion from x*
@@ -40,14 +46,18 @@ struct StageGuess {
 /// every state and a (Baraff and Witkin 1998). With more than one Newton iteration it goes on from
 /// there to the minimum of the incremental potential
 ///   |M^(1/2) (v - v*)|^2 / 2 + Membrane::incrementalPotential(x) - external forces . x
-///   + pointLoadEnergy(x),
+///   + pointLoadEnergy(x) + Aerodynamics::incrementalPotential(v),
 /// by Newton iterations with a backtracking line search. They use the projected Hessian as long as
-/// the residual is large, and then the exact one where it is positive definite.
+/// the residual is large, and then the exact one where it is positive definite. The air's normals,
+/// areas and lift are those of the first solve, right to the second order.
 ///
 /// With xg and vg right to the first order in time the first solve is right to the second where
 /// nothing had to be projected. It linearises about a state that has been reached, not about
 /// xg + ahead vg: what turns is stretched there, and stiff fabrics that do not resist compression
 /// then gain energy without bounds.
+///
+/// Contacts of the cloth hold as ContactStep says; the linear solve of a stage is then repeated
+/// until they are found. Newton iterations look for them anew by their own residual.
 ///
 /// Allocates nothing after construction.
 class StageSolver {
@@ -63,16 +73,35 @@ class StageSolver {
   void solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess, ClothState& result,
              StepReport& report);
 
+  /// As solve() with Newton iterations whatever the settings say, from the solution of the
+  /// linearised stage or from rest where that has the lower incremental potential: so the result's
+  /// is at most that of rest. The air's areas are those of the base, and it does not lift: a lift
+  /// that is held fixed for long does work, which the true one in still air does not. For cloth
+  /// without contacts that hold, where rest is none of their states, and settings that keep energy.
+  void solveSafely(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                   ClothState& result, StepReport& report);
+
   /// The next solve starts from zero, not from the solution of the last.
   void forget() { solution_.setZero(); }
+
+  /// Null if the cloth has been modelled without contacts.
+  const ContactStep* contacts() const { return contacts_ ? &*contacts_ : nullptr; }
 
  private:
   enum class Descent { kFound, kBelowRounding, kNone };
 
+  void takeFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                 ClothState& result, StepReport& report);
+  void fixPast(const Cloth& cloth, const Stage& stage, const ClothState& at);
+  void startFromRest(const Cloth& cloth, const Stage& stage, ClothState& result);
   void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
   void prescribe(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
+  void eliminate();
+  bool solveFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                  StepReport& report);
   bool solveLinear(StepReport& report);
-  void iterateNewton(const Cloth& cloth, const Stage& stage, ClothState& result,
+  bool touching() const { return contacts_ && !contacts_->empty(); }
+  void iterateNewton(const Cloth& cloth, const Stage& stage, int most_solves, ClothState& result,
                      StepReport& report);
   void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at,
                       Membrane::Hessian hessian, StepReport& report);
@@ -81,6 +110,7 @@ class StageSolver {
   double incrementalPotential(const Cloth& cloth, const Stage& stage, const ClothState& at) const;
 
   StepSettings settings_;
+  std::unique_ptr<ThreadPool> pool_;  // null with one thread
   SymmetricBlockMatrix matrix_;
   LinearSolver solver_;
   BlockVector rhs_;
@@ -88,8 +118,11 @@ class StageSolver {
   BlockVector prescribed_;  // velocity changes of the attached particles
   std::vector<char> fixed_;
   bool any_fixed_ = false;
-  ClothState trial_;  // of a line search; empty with one Newton iteration
+  std::optional<ContactStep> contacts_;
+  bool contacts_change_ = false;  // in this Newton iteration
+  ClothState trial_;              // of a line search; empty where there is none
   std::vector<MembraneStrain> base_strains_;
+  FixedAir fixed_air_;
 };
 
 }  // namespace haptex::cloth

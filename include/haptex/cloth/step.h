@@ -16,7 +16,7 @@ enum class IntegrationMethod {
   kExplicitEuler,     ///< order 1
   kExplicitMidpoint,  ///< order 2
   kRungeKutta4,       ///< order 4
-  kTwoStepEuler,      ///< Provot 1995: velocities, then positions from the new ones; order 1
+  kTwoStepEuler,      ///< Provot 1997: velocities, then positions from the new ones; order 1
 };
 
 struct NamedIntegrationMethod {
@@ -43,6 +43,9 @@ constexpr bool isImplicit(IntegrationMethod method) {
          method == IntegrationMethod::kTrBdf2;
 }
 
+/// Threads that a step may have.
+constexpr int kMostThreads = 64;
+
 struct StepSettings {
   IntegrationMethod method = IntegrationMethod::kBackwardEuler;
   // What follows is for the implicit methods.
@@ -55,13 +58,21 @@ struct StepSettings {
   /// linearised one, or cannot fall any more for rounding, or this number is spent.
   int newton_iterations = 1;
   double newton_tolerance = 1e-8;
+  /// Whether every step is held to gain no energy beyond the work that is done on the cloth
+  /// (EnergyBalance). Where the linearised step would gain much, as in stiff cloth that turns
+  /// quickly, it costs up to 20 linear solves. Not with Elasticity::kCorotational.
+  bool keep_energy = false;
+  /// Threads that share the work of a step, 1 to 64, with the one that calls it. The results are
+  /// the same for any number.
+  int threads = 1;
 };
 
 /// What a step did and took. An explicit one solves nothing: its numbers of solves are zero.
 struct StepReport {
   bool accepted = false;         ///< false: system or result was not finite, the state is as before
   bool linear_converged = true;  ///< in every stage
-  LinearSolverMethod solver = LinearSolverMethod::kCholesky;  ///< that gave the last solution
+  /// That gave the last solution; kCholesky stands for any factor, kept ones included.
+  LinearSolverMethod solver = LinearSolverMethod::kCholesky;
   int linear_iterations = 0;     ///< conjugate gradient iterations of all solves
   double linear_residual = 0;    ///< relative, of the last solve
   int newton_iterations = 0;     ///< linear solves of all stages
@@ -71,6 +82,9 @@ struct StepReport {
   bool newton_converged = true;  ///< in every stage, to newton_tolerance or to rounding
   double blend = 0;              ///< backward midpoint: how far it went from the midpoint, 0, to
                                  ///< the end of the step, 1/2, which is backward Euler
+  double energy_taken = 0;  ///< J, that the step had gained and was taken out of its velocities
+  bool taken_anew = false;  ///< by backward Euler, because it had gained much (Integrator)
+  int contact_rounds = 0;   ///< linear solves among them that looked for what touches
   double assembly_seconds = 0;
   double solve_seconds = 0;
   double total_seconds = 0;

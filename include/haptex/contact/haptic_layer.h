@@ -18,6 +18,10 @@
 
 namespace haptex::contact {
 
+/// @throws std::invalid_argument if the fabric lacks a property that contact needs: friction,
+///   compression; bending for a patch
+void requireTouchable(const material::Fabric& fabric, const HapticSettings& settings);
+
 /// Where a fingertip touches a particle of the layer.
 struct ContactPoint {
   Eigen::Vector3d position;          ///< m, of the particle, world frame
@@ -61,8 +65,7 @@ class HapticLayer {
   static constexpr std::size_t kMostContactPoints = 1024;
 
   /// @param mesh, fabric, effects those of the large-scale layer
-  /// @throws std::invalid_argument if the fabric lacks a property that contact needs (friction,
-  ///   compression; bending for a patch), or what cloth::Cloth throws
+  /// @throws std::invalid_argument what requireTouchable() or cloth::Cloth throws
   HapticLayer(cloth::ClothMesh mesh, material::Fabric fabric, const cloth::ModelledEffects& effects,
               const HapticSettings& settings);
 

@@ -15,4 +15,7 @@ void validateContactFriction(const material::Fabric& fabric, const Sink& sink);
 /// Ripple, steps when the patch moves on, energy at the fingertip, the whole cloth at 1 kHz.
 void validateContactFeel(const material::Fabric& fabric, const Sink& sink);
 
+/// The large-scale cloth among rigid obstacles.
+void validateContactObstacles(const Sink& sink);
+
 }  // namespace haptex::evaluation

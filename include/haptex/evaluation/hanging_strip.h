@@ -1,6 +1,8 @@
 // A strip of linear modulus that hangs under its own weight: exact and simulated.
 #pragma once
 
+#include "haptex/material/strain_stress_curve.h"
+
 namespace haptex::evaluation {
 
 /// Strip of length L (m), areal density w (kg/m^2) and modulus k (N/m) hanging from its top edge
@@ -23,5 +25,8 @@ double exactElongation(const HangingStrip& strip);
 /// @param time_step s, of backward Euler with one linear solve per step
 /// @throws std::invalid_argument if cells is not a positive multiple of 5
 double simulatedElongation(const HangingStrip& strip, int cells, double time_step);
+
+/// Stretch l under a load (N/m), from 1 to 2: l s((l^2 - 1) / 2) = load with a curve that rises.
+double stretchUnder(double load, const material::StrainStressCurve& curve);
 
 }  // namespace haptex::evaluation

@@ -33,6 +33,12 @@ struct BendingRigidity {
   double warp;  ///< when the warp is curved, >= 0
 };
 
+/// Hysteresis of bending: width of the loop of moment per width over curvature (N), KES value 2HB.
+struct BendingHysteresis {
+  double weft;  ///< when the weft is curved, >= 0, 0 if the rigidity is
+  double warp;  ///< likewise
+};
+
 /// Lateral compression between two plates.
 struct Compression {
   double thickness;  ///< m, without pressure, > 0
@@ -49,6 +55,9 @@ struct Fabric {
   MembraneCurves shear;        ///< against U.V, without the factor 1/2
   // What a scene without bending, contact or tactile rendering does not need.
   std::optional<BendingRigidity> bending;
+  std::optional<BendingHysteresis> bending_hysteresis;  ///< only with bending
+  /// Coupling of weft and warp like a Poisson ratio, >= 0: haptex/material/contraction.h
+  std::optional<double> contraction;
   std::optional<Compression> compression;
   std::optional<double> friction;  ///< coefficient of kinetic friction against skin, KES MIU, > 0
   std::optional<Surface> surface;

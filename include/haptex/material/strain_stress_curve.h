@@ -88,7 +88,10 @@ class StrainStressCurve {
   }
 
   /// Energy per rest area (J/m^2): the integral of stress from 0 to `strain`.
-  double energy(double strain) const;
+  double energy(double strain) const {
+    const std::size_t segment = segmentIndex(strain);
+    return segments_[segment].energy_at_begin + energyFromBegin(segment, strain);
+  }
 
   /// True if the stress is zero for every strain.
   bool isZero() const;
@@ -114,7 +117,11 @@ class StrainStressCurve {
   StrainStressCurve(const std::vector<double>& knots,
                     const std::vector<std::array<double, 4>>& coefficients);
 
-  double energyFromBegin(std::size_t segment, double strain) const;
+  double energyFromBegin(std::size_t segment, double strain) const {
+    const std::array<double, 4>& c = segments_[segment].coefficients;
+    const double x = strain - segments_[segment].begin;
+    return x * (c[0] + x * (0.5 * c[1] + x * (1.0 / 3.0 * c[2] + x * 0.25 * c[3])));
+  }
   void integrateEnergy();
   void makeBins();
 

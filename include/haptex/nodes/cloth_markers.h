@@ -10,6 +10,7 @@
 
 #include "haptex/cloth/membrane.h"
 #include "haptex/cloth/mesh.h"
+#include "haptex/cloth/obstacle.h"
 #include "haptex/nodes/simulated_cloth.h"
 
 namespace haptex::nodes {
@@ -21,11 +22,13 @@ namespace haptex::nodes {
 /// "scale": the colours of the last four decades to the full scale with numbers in percent, beside
 /// the place
 ///   where the cloth starts.
+/// "obstacles": those that move; the proximity node shows those that rest.
 /// "attachments": attached particles as bars along the edges that join them, or as balls.
 class ClothMarkers {
  public:
   /// @param full_scale strain with the last colour of the scale, finite and > 0
-  ClothMarkers(const cloth::ClothMesh& mesh, double full_scale);
+  ClothMarkers(const cloth::ClothMesh& mesh, double full_scale,
+               const std::vector<cloth::Obstacle>& obstacles = {});
 
   /// The markers of the present state, valid until the next call. Allocates nothing once the
   /// number of attached particles has been met.
@@ -38,6 +41,7 @@ class ClothMarkers {
   void computeStrainColours(const SimulatedCloth& simulation);
   void computeNormals(const std::vector<Eigen::Vector3d>& positions);
   void updateCloth(const SimulatedCloth& simulation);
+  void updateObstacles(double time);
   void updateAttachments(const SimulatedCloth& simulation);
 
   std::vector<std::array<int, 3>> triangles_;
@@ -53,6 +57,8 @@ class ClothMarkers {
   std::vector<Eigen::Vector3d> normals_;        // per particle, unit length
   std::vector<Eigen::Vector3f> colours_;        // per particle
   std::vector<bool> joined_;                    // per particle: end of a bar
+  std::vector<cloth::Obstacle> moving_;         // obstacles
+  std::size_t first_obstacle_ = 0;              // in markers_
   visualization_msgs::MarkerArray markers_;
 };
 

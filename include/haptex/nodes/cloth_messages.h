@@ -28,6 +28,11 @@ haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, const ros::Time& stamp)
 void fillStateMessage(const SimulatedCloth& simulation, const ros::Time& stamp,
                       std::vector<Eigen::Vector3d>& forces, haptex::ClothState& message);
 
+/// Only what changes while the cloth sleeps: stamp, step and simulated time.
+/// @param message filled with the same state before
+void restampStateMessage(const SimulatedCloth& simulation, const ros::Time& stamp,
+                         haptex::ClothState& message);
+
 /// Writes blocks into the arrays of a response.
 void fillJacobianResponse(const std::vector<cloth::JacobianBlock>& blocks,
                           haptex::GetJacobian::Response& response);

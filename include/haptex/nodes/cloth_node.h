@@ -6,6 +6,7 @@
 #include <haptex/ClothState.h>
 #include <haptex/GetJacobian.h>
 #include <haptex/MoveParticles.h>
+#include <haptex/QueryBudget.h>
 #include <haptex/ReleaseParticles.h>
 #include <haptex/SetFabric.h>
 #include <haptex/StepCloth.h>
@@ -14,7 +15,11 @@
 #include <std_srvs/Trigger.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +28,7 @@
 #include "haptex/nodes/contact_input.h"
 #include "haptex/nodes/heartbeat.h"
 #include "haptex/nodes/real_time_loop.h"
+#include "haptex/nodes/runtime_quality.h"
 
 namespace haptex::nodes {
 
@@ -32,6 +38,7 @@ struct ClothNodeParameters {
   double state_rate = 0.0;    ///< ~state_rate: Hz of simulated time; 0, the default: every step
   double marker_rate = 0.0;   ///< ~marker_rate: Hz of simulated time, default 25
   double strain_scale = 0.0;  ///< ~strain_scale: strain with the last colour, default 0.01
+  QualityRequest quality;     ///< ~quality, ~budget_ms; by default the scene's own settings
 
   /// Rates are rounded to whole numbers of steps between two messages.
   /// @throws std::invalid_argument naming the parameter, its value and what is allowed
@@ -43,9 +50,12 @@ struct ClothNodeParameters {
 ///   cloth/markers (visualization_msgs/MarkerArray), each filled only for subscribers, and while
 ///   the simulation is paused or its steps are rejected ten times a second;
 ///   cloth/heartbeat (std_msgs/Header, 200 Hz), whether it is paused or not;
+///   cloth/quality (ClothQuality, latched), with ~quality or ~budget_ms;
 ///   services cloth/reset (std_srvs/Trigger), cloth/pause (std_srvs/SetBool), cloth/step,
-///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian (srv/).
-/// Subscribes to cloth/contact_forces (ContactForces), which act for NewestLoads::kLifetime.
+///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian,
+///   cloth/query_budget (srv/).
+/// In a scene with fingers it subscribes to cloth/contact_forces (ContactForces), which act for
+/// NewestLoads::kLifetime.
 /// A refused request is answered with success = false and changes nothing. The services may be
 /// called from several threads at once.
 class ClothNode {
@@ -58,15 +68,22 @@ class ClothNode {
   ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
             const ClothNodeParameters& parameters);
   ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
-            const ClothNodeParameters& parameters, cloth::Scene scene);
+            const ClothNodeParameters& parameters, const std::optional<RuntimeQuality>& quality);
+  ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+            const ClothNodeParameters& parameters, const std::optional<RuntimeQuality>& quality,
+            const cloth::Scene& scene);
 
   void advertiseTopics();
   void advertiseServices();
   void publishMesh(const cloth::Cloth& cloth);
   void publishStep(const SimulatedCloth& simulation, bool rests);
+  void publishState(const SimulatedCloth& simulation);
   void republishIfResting();
+  void publishQuality(const SimulatedCloth& simulation);
+  void publishQualityIfDue(const SimulatedCloth& simulation);
   void takeContactForces(SimulatedCloth& simulation);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   bool reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
   bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
@@ -76,12 +93,14 @@ class ClothNode {
   bool move(MoveParticles::Request& request, MoveParticles::Response& response);
   bool release(ReleaseParticles::Request& request, ReleaseParticles::Response& response);
   bool getJacobian(GetJacobian::Request& request, GetJacobian::Response& response);
+  bool queryBudget(QueryBudget::Request& request, QueryBudget::Response& response);
 
   ros::NodeHandle node_;
   std::vector<ros::ServiceServer> services_;
   ros::Publisher mesh_publisher_;
   ros::Publisher state_publisher_;
   ros::Publisher marker_publisher_;
+  ros::Publisher quality_publisher_;
   diagnostic_updater::Updater diagnostics_;
   ros::Timer diagnostics_timer_;
   ros::SteadyTimer rest_timer_;
@@ -94,15 +113,22 @@ class ClothNode {
   std::vector<Eigen::Vector3d> forces_;
   ros::Time state_stamp_;
   std::uint64_t stamped_step_ = 0;
+  std::uint64_t filled_step_ = 0;  // SimulatedCloth::computedSteps() in state_message_
   std::vector<cloth::PointLoad> loads_;
+  std::size_t published_changes_ = 0;  // of the quality
+  exoskeleton::Time quality_due_{0};   // when its message is published without a change
+
+  mutable std::mutex quality_mutex_;
+  haptex::ClothQuality quality_message_;  // the last; guarded by quality_mutex_
 
   // Constant.
+  std::optional<RuntimeQuality> quality_;
   double time_step_;  // s
   double tolerance_;
   std::size_t particle_count_;
   std::size_t triangle_count_;
 
-  ContactInput contact_input_;
+  std::unique_ptr<ContactInput> contact_input_;  // null in a scene without fingers
   Heartbeat heartbeat_;
 
   RealTimeLoop loop_;  // last: its thread uses the members above

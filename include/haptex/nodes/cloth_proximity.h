@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/cloth/obstacle.h"
 #include "haptex/nodes/fitted_cloth.h"
 #include "haptex/proximity/kdop.h"
 #include "haptex/proximity/rigid_obstacle.h"
@@ -63,7 +64,10 @@ class ClothProximity {
   using FrameLookup = std::function<Eigen::Isometry3d()>;
 
   /// @param stale_after s, > 0: older states are not answered from
-  ClothProximity(double stale_after, Obstacles obstacles);
+  /// @param moving those of the obstacles that move: they are asked about where they are at the
+  ///   simulated time of the state
+  ClothProximity(double stale_after, Obstacles obstacles,
+                 const std::vector<cloth::Obstacle>& moving = {});
 
   /// A mesh with the same triangles and rest coordinates, as comes with a change of the fabric,
   /// changes nothing.
@@ -98,13 +102,15 @@ class ClothProximity {
   std::string trouble(Clock::time_point now) const;
   Cloth requireLive(Clock::time_point now) const;
   FittedCloth::View look(const Cloth& cloth);
-  const proximity::RigidObstacle& requireObstacle(const std::string& name) const;
+  proximity::RigidObstacle requireObstacle(const std::string& name) const;
+  void moveObstacle(const std::string& name, double time, proximity::RigidObstacle& obstacle) const;
   haptex::QueryProximity::Response compute(const haptex::QueryProximity::Request& request,
                                            const FrameLookup& world_from_frame,
                                            Clock::time_point now);
 
   const double stale_after_;  // s
   const Obstacles obstacles_;
+  std::map<std::string, cloth::Obstacle> moving_;
 
   mutable std::mutex mutex_;  // guards all below; never held while something is computed
   Cloth latest_;

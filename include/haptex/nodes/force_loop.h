@@ -123,7 +123,9 @@ class ForceLoop {
   bool waitForState(Time patience) { return state_taken_.waitFor(patience); }
   const LoopView& view();
 
-  /// By one thread, once per kPeriod.
+  /// By one thread, once per kPeriod, and by it before: whether anybody looks at what is of the
+  /// contactors; at first somebody does.
+  void wantContactors(Finger finger, bool wanted) { contactors_wanted_[finger] = wanted; }
   void tick(Time now);
   /// By the same thread, of the last tick.
   const Rendered& rendered(Finger finger) const { return rendered_[finger]; }
@@ -189,6 +191,7 @@ class ForceLoop {
   FrameMotion hand_;
   contact::PerFingertip<std::optional<contact::Fingertip>> fingertips_;
   exoskeleton::PerFinger<Rendered> rendered_;
+  exoskeleton::PerFinger<bool> contactors_wanted_{{{true, true}}};
   std::optional<double> simulated_time_;  // of the last state taken
   double state_period_;                   // s, of simulated time
   LoopView view_;

@@ -40,6 +40,7 @@ struct ForceRendererParameters {
   /// ~index_radius, ~thumb_radius: m, > 0, at most 0.1; default 0.0075 and 0.009, the round ends
   /// in urdf/hand_exoskeleton.urdf
   exoskeleton::PerFinger<double> radii;
+  bool tactile = false;  ///< whether the scene lists it: forces under contactors are needed
 
   /// @throws std::invalid_argument naming the parameter, its value and what is allowed
   static ForceRendererParameters read(const ros::NodeHandle& private_node);
@@ -107,6 +108,7 @@ class ForceRendererNode {
   tf2_ros::Buffer transforms_;
   tf2_ros::TransformListener transform_listener_;
 
+  const bool tactile_;  // the scene lists it
   ForceLoop loop_;
   exoskeleton::PerFinger<FingerTopics> fingers_;
   DurationHistogram tick_durations_;

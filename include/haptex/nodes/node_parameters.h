@@ -43,4 +43,9 @@ std::string readConfigPath(const ros::NodeHandle& private_node, const std::strin
 /// The path of a scene file: ~scene, as readConfigPath().
 std::string readScenePath(const ros::NodeHandle& private_node);
 
+/// @param listed whether the scene lists the effect that the node is there for
+/// @throws std::invalid_argument if not, naming scene, effect and node
+void requireListed(const std::string& scene_path, bool listed, const std::string& effect,
+                   const std::string& node);
+
 }  // namespace haptex::nodes

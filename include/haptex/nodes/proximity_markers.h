@@ -24,7 +24,7 @@ struct ShownAnswer {
 /// "cursor": the volume that was asked about, translucent; a point as a small ball.
 /// "volumes": polytopes of the hierarchy with translucent faces and their edges, each volume in a
 ///   colour of its own.
-/// "obstacles": the rigid bodies of the scene.
+/// "obstacles": the rigid bodies of the scene that rest; ClothMarkers shows those that move.
 class ProximityMarkers {
  public:
   /// @param obstacles in the world frame

@@ -18,6 +18,7 @@ namespace haptex::nodes {
 struct LoopStatus {
   bool paused = false;
   bool last_step_rejected = false;
+  bool asleep = false;             ///< SimulatedCloth::asleep()
   double step_rate = 0.0;          ///< accepted steps per second of the steady clock, Hz
   double real_time_factor = 0.0;   ///< simulated seconds per second of the steady clock
   double mean_step_seconds = 0.0;  ///< computing time of a step

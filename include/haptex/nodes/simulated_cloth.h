@@ -2,13 +2,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "haptex/cloth/cloth.h"
 #include "haptex/cloth/integrator.h"
+#include "haptex/cloth/rest_detector.h"
 #include "haptex/cloth/scene.h"
+#include "haptex/contact/obstacle_collision.h"
 #include "haptex/material/fabric.h"
+#include "haptex/nodes/quality_controller.h"
 
 namespace haptex::nodes {
 
@@ -16,28 +21,65 @@ namespace haptex::nodes {
 /// beyond any workspace, but near enough to keep the numbers of a step finite.
 constexpr double kLargestCoordinate = 100.0;
 
+/// How a step of the scene is taken: in equal substeps, each by these settings.
+struct StepPlan {
+  cloth::StepSettings step;
+  int substeps = 1;  ///< > 0
+};
+
 /// Steps a scene and changes it between two steps. Every change checks its whole request first and
 /// throws without having changed anything. Units SI, places in the world frame.
+///
+/// Cloth that has come to rest (cloth::RestDetector) sleeps: its steps only let the time pass.
+/// Every change wakes it, and it goes on from the state in which it fell asleep. It does not fall
+/// asleep as long as something outside moves: an attachment on its way, wind that changes, or an
+/// obstacle that moves.
 class SimulatedCloth {
  public:
-  /// @throws std::invalid_argument what cloth::Cloth throws for the scene
+  /// @throws std::invalid_argument what cloth::Cloth throws for the scene, and
+  ///   contact::ObstacleCollision if the cloth collides with its obstacles
   SimulatedCloth(cloth::Scene scene, material::Fabric fabric);
+
+  /// Can take its steps by any of these plans, at first by number 0, instead of by the scene's
+  /// settings.
+  /// @throws std::invalid_argument also if there is no plan or one has no substep, and what
+  ///   cloth::Integrator throws for their settings
+  SimulatedCloth(cloth::Scene scene, material::Fabric fabric, std::vector<StepPlan> plans);
 
   const cloth::Cloth& cloth() const { return cloth_; }
   const cloth::ClothState& state() const { return state_; }
-  double timeStep() const { return time_step_; }  ///< s
+  double timeStep() const { return time_step_; }  ///< s, of all substeps together
   std::uint64_t steps() const { return steps_; }  ///< accepted since the start or reset()
+  /// Of the last step: sums of counts and times over its substeps, the rest of the last of them.
   const cloth::StepReport& lastReport() const { return report_; }
   /// False again after reset().
   bool lastStepRejected() const { return last_step_rejected_; }
 
-  /// Takes one step. @returns false if it was rejected and the state is as before
+  /// Takes one step, with all its substeps. @returns false if one was rejected and the state is as
+  /// before the first
   bool step();
+  bool asleep() const { return asleep_; }
+  /// Accepted since the construction, without those that were slept through.
+  std::uint64_t computedSteps() const { return computed_steps_; }
+
+  /// The next steps are taken by this plan. Positions, velocities and all else stay; a method that
+  /// needs more than one state of the past starts anew. Allocates nothing.
+  /// @throws std::invalid_argument if there is no such plan
+  void use(std::size_t plan);
+  std::size_t plan() const { return plan_; }  ///< of the next step
+
+  /// From now on every step is timed and told to the controller, which chooses the plan of the
+  /// next.
+  /// @throws std::invalid_argument unless it chooses among as many qualities as there are plans
+  void setController(QualityController controller);
+  /// Null without one.
+  const QualityController* controller() const { return controller_ ? &*controller_ : nullptr; }
 
   /// Positions, velocities, attachments and time as at the start, without loads. The fabric stays.
   void reset();
 
   /// Takes effect in the next step; positions and velocities stay.
+  /// @throws std::invalid_argument if the cloth cannot be made of it; nothing has changed then
   void setFabric(material::Fabric fabric);
 
   /// Act until replaced. @throws std::invalid_argument what Cloth::setPointLoads() throws
@@ -72,16 +114,29 @@ class SimulatedCloth {
   std::vector<int> requireParticles(const std::vector<std::uint32_t>& particles) const;
   std::vector<int> requireAttached(const std::vector<std::uint32_t>& particles) const;
   void attachInitially();
+  void makeIntegrators();
+  void takeSubsteps();
+  cloth::StepReport takeSubstep(double duration);
+  void wake();
+  void sleepIfResting();
 
   cloth::Cloth cloth_;
   cloth::ClothState state_;
-  cloth::StepSettings step_settings_;
-  cloth::Integrator integrator_;
+  cloth::ClothState before_;  // the step, if a plan has several substeps
+  std::vector<StepPlan> plans_;
+  std::vector<cloth::Integrator> integrators_;  // one per plan
+  std::size_t plan_ = 0;
+  std::optional<QualityController> controller_;
+  std::optional<contact::ObstacleCollision> collision_;
   std::vector<int> initially_attached_;
   double time_step_;
   cloth::StepReport report_;
   bool last_step_rejected_ = false;
   std::uint64_t steps_ = 0;
+  std::uint64_t computed_steps_ = 0;
+  bool disturbed_;  // for ever, by an obstacle that moves
+  cloth::RestDetector rest_;
+  bool asleep_ = false;
 };
 
 }  // namespace haptex::nodes

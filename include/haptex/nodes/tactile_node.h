@@ -53,6 +53,7 @@ class TactileNode {
   void takeMesh(const haptex::ClothMesh& message);
   bool setSurface(haptex::SetSurface::Request& request, haptex::SetSurface::Response& response);
   void step();
+  bool isWatched() const;  // whether anybody looks at what is computed
   void publishMarkers();
 
   void addDiagnostics();

@@ -13,6 +13,12 @@ namespace haptex::proximity {
 
 class KdopHierarchy;
 
+/// How far a place is from a surface, and where to.
+struct SurfaceDistance {
+  double distance;         ///< m, negative inside of a solid
+  Eigen::Vector3d normal;  ///< unit, away from the nearest point of the surface, out of a solid
+};
+
 /// A rigid body with a pose. Copies share the shape. Distances are found through a bounding volume
 /// hierarchy of FCL and are right to 1e-9 m at sizes and places of up to some metres, for
 /// degenerate triangles too.
@@ -47,6 +53,11 @@ class RigidObstacle {
   /// touch or overlap, closer than the rounding of the coordinates, the distance is exactly 0 and
   /// the point is any that they have in common. Does not allocate.
   TrianglePoint closestPoint(const Triangle& triangle) const;
+  /// Distance of a finite place to the surface. Where several points are nearest, or the place is
+  /// on a mesh, the normal is any of those that there are; a mesh has no inside. Does not allocate.
+  SurfaceDistance distance(const Eigen::Vector3d& place) const;
+  /// Radius of a ball around the origin of the obstacle's frame that holds the obstacle (m).
+  double boundingRadius() const;
 
  private:
   struct Shape;

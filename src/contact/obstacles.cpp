@@ -1,8 +1,8 @@
-#include "haptex/nodes/obstacles.h"
+#include "haptex/contact/obstacles.h"
 
 #include <variant>
 
-namespace haptex::nodes {
+namespace haptex::contact {
 namespace {
 
 using proximity::RigidObstacle;
@@ -30,4 +30,4 @@ RigidObstacle makeObstacle(const cloth::Obstacle& obstacle) {
   return made;
 }
 
-}  // namespace haptex::nodes
+}  // namespace haptex::contact

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "haptex/cloth/scene.h"
-#include "haptex/nodes/obstacles.h"
+#include "haptex/contact/obstacles.h"
 
-namespace haptex::nodes {
+namespace haptex::contact {
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,4 +50,4 @@ TEST(MakeObstacle, RefusesWhatTheSceneFileWouldNotHaveLetThrough) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::contact

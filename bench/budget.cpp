@@ -1,0 +1,292 @@
+// Does a budget of computing time hold while other programs come and go, and is the error that it
+// promises the one that there is? A sample of wool and one of the linear reference swing as in the
+// trade-off study, over and over, in real time with a budget; every three seconds twice as many
+// busy threads as there are cores begin or stop to compete. Prints the share of cycles inside the
+// budget from a second after each such change on, how often the quality was changed, and the error
+// of positions against the study's reference beside what the qualities that ran had been measured
+// to miss.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "haptex/cloth/quality_file.h"
+#include "haptex/evaluation/equilibrium.h"
+#include "haptex/evaluation/trade_off_study.h"
+#include "haptex/material/fabric_file.h"
+#include "haptex/nodes/quality_choice.h"
+#include "haptex/nodes/real_time_loop.h"
+#include "haptex/nodes/studied_fabrics.h"
+#include "tab_lines.h"
+
+namespace {
+
+using namespace haptex;
+using Clock = std::chrono::steady_clock;
+using evaluation::kCycle;
+
+constexpr double kBudget = 4e-3;   // s of a cycle of 12.5 ms
+constexpr double kPhase = 3.0;     // s, between two changes of the load
+constexpr double kSettling = 1.0;  // s
+constexpr int kPhases = 4;
+constexpr int kSwingCycles = 100;  // of the study's swing
+
+double since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Twice as many threads as cores, that compute or sleep.
+class CompetingLoad {
+ public:
+  CompetingLoad() {
+    const unsigned count = 2 * std::max(1u, std::thread::hardware_concurrency());
+    for (unsigned i = 0; i < count; ++i) threads_.emplace_back([this] { work(); });
+  }
+  ~CompetingLoad() {
+    ended_ = true;
+    for (std::thread& thread : threads_) thread.join();
+  }
+  void set(bool busy) { busy_ = busy; }
+
+ private:
+  void work() {
+    while (!ended_) {
+      if (!busy_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+
+  std::atomic<bool> busy_{false};
+  std::atomic<bool> ended_{false};
+  std::vector<std::thread> threads_;
+};
+
+/// The sample of the study, hanging at rest.
+cloth::Scene swingScene(const material::Fabric& fabric, double cell_size) {
+  cloth::Scene scene;
+  const int cells = static_cast<int>(std::lround(evaluation::kSampleSize / cell_size));
+  scene.mesh = cloth::makeRectangle(evaluation::kSampleSize, evaluation::kSampleSize, cells, cells,
+                                    cloth::Triangulation::kAlternating);
+  scene.effects.viscosity = true;
+  scene.effects.gravity = {0.0, 0.0, -9.80665};
+  scene.effects.bending = fabric.bending.has_value();
+  scene.attached_particles = sideParticles(scene.mesh, cloth::Side::kTop);
+  scene.time_step = kCycle;
+  cloth::Cloth cloth(scene.mesh, fabric, scene.effects);
+  for (const int particle : scene.attached_particles) {
+    cloth.attach(particle, {scene.mesh.initial_positions[particle], Eigen::Vector3d::Zero(), 0, 0});
+  }
+  cloth::ClothState state = cloth.initialState();
+  evaluation::Equilibrium(cloth).settle(cloth, state, 0.1);
+  scene.mesh.initial_positions = state.positions;
+  return scene;
+}
+
+/// Moves the bar as in the study, and starts anew when the swing is over.
+void direct(nodes::SimulatedCloth& simulation, const std::vector<std::uint32_t>& bar) {
+  if (simulation.steps() == kSwingCycles) simulation.reset();
+  if (simulation.steps() == 0) simulation.move(bar, {0.08, 0.0, 0.0}, 32 * kCycle);
+  if (simulation.steps() == 40) simulation.move(bar, {-0.16, 0.0, 0.0}, 40 * kCycle);
+}
+
+std::vector<std::uint32_t> barOf(const cloth::Scene& scene) {
+  return {scene.attached_particles.begin(), scene.attached_particles.end()};
+}
+
+/// The median cycle of a swing.
+nodes::MeasuredCycle measureSwing(const material::Fabric& fabric, const cloth::Quality& quality,
+                                  int substeps) {
+  const Clock::time_point begin = Clock::now();
+  cloth::Scene scene = swingScene(fabric, quality.cell_size);
+  const std::vector<std::uint32_t> bar = barOf(scene);
+  nodes::SimulatedCloth simulation(std::move(scene), fabric, {{quality.step, substeps}});
+  std::vector<double> cycles;
+  while (simulation.steps() < kSwingCycles) {
+    direct(simulation, bar);
+    const Clock::time_point step_begin = Clock::now();
+    if (!simulation.step()) return {std::numeric_limits<double>::infinity(), since(begin)};
+    cycles.push_back(since(step_begin));
+  }
+  std::nth_element(cycles.begin(), cycles.begin() + kSwingCycles / 2, cycles.end());
+  return {cycles[kSwingCycles / 2], since(begin)};
+}
+
+/// Mean squared distance (m^2) of the particles from where they are to be, of those that lie where
+/// the study compares.
+double squaredError(const nodes::SimulatedCloth& simulation, int cells,
+                    const evaluation::Snapshot& reference) {
+  constexpr int kCompared = evaluation::kComparedIntervals;
+  double sum = 0.0;
+  int count = 0;
+  for (int j = 0; j <= kCompared; ++j) {
+    for (int i = 0; i <= kCompared; ++i) {
+      if (i * cells % kCompared != 0 || j * cells % kCompared != 0) continue;
+      const int particle = j * cells / kCompared * (cells + 1) + i * cells / kCompared;
+      const Eigen::Vector3d& position = simulation.state().positions[particle];
+      sum += (position - reference.positions[j * (kCompared + 1) + i]).squaredNorm();
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+/// What the loop's thread notes down.
+struct Record {
+  int cycles = 0;
+  double squared_error = 0.0;           // m^2, sum over cycles
+  double expected_squared_error = 0.0;  // m^2, likewise
+  int settled[2] = {0, 0};              // cycles without and with load, settled
+  int within[2] = {0, 0};               // those inside the budget
+  double quality[2] = {0.0, 0.0};       // sum of their places on the ladder
+  std::size_t changes = 0;
+};
+
+class BudgetRun {
+ public:
+  BudgetRun(const std::string& fabric, std::vector<nodes::Candidate> rungs, std::size_t first)
+      : fabric_(material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + fabric + ".yaml")),
+        rungs_(std::move(rungs)),
+        first_(first),
+        scene_(swingScene(fabric_, rungs_[first].quality.cell_size)),
+        bar_(barOf(scene_)),
+        cells_(static_cast<int>(
+            std::lround(evaluation::kSampleSize / rungs_[first].quality.cell_size))) {
+    for (const nodes::Candidate& rung : rungs_) {
+      expected_.push_back(nodes::measurementsOf(rung.quality, fabric));
+    }
+  }
+
+  Record run(const evaluation::Trajectory& reference) {
+    CompetingLoad load;
+    nodes::RealTimeLoop loop(
+        simulation(),
+        [&](const nodes::SimulatedCloth& simulation, bool) { note(simulation, reference); },
+        [&](nodes::SimulatedCloth& simulation) {
+          direct(simulation, bar_);
+          plan_ = simulation.plan();
+          step_begin_ = Clock::now();
+        });
+    begin_ = Clock::now();
+    loop.start();
+    for (int phase = 0; phase < kPhases; ++phase) {
+      load.set(phase % 2 == 1);
+      std::this_thread::sleep_until(begin_ +
+                                    std::chrono::duration_cast<Clock::duration>(
+                                        std::chrono::duration<double>((phase + 1) * kPhase)));
+      std::fprintf(stderr, "%s: %.0f of %.0f s\n", fabric_.name.c_str(), (phase + 1) * kPhase,
+                   kPhases * kPhase);
+    }
+    load.set(false);
+    loop.execute([&](nodes::SimulatedCloth& simulation) {
+      record_.changes = simulation.controller()->changes();
+    });
+    loop.stop();
+    return record_;
+  }
+
+ private:
+  nodes::SimulatedCloth simulation() const {
+    std::vector<nodes::StepPlan> plans;
+    std::vector<double> costs;
+    for (const nodes::Candidate& rung : rungs_) {
+      plans.push_back(planOf(rung, 1));
+      costs.push_back(rung.seconds);
+    }
+    nodes::SimulatedCloth simulation(scene_, fabric_, std::move(plans));
+    simulation.setController(nodes::QualityController(std::move(costs), kBudget, kCycle, first_));
+    return simulation;
+  }
+
+  void note(const nodes::SimulatedCloth& simulation, const evaluation::Trajectory& reference) {
+    const double took = since(step_begin_);
+    const double time = std::chrono::duration<double>(step_begin_ - begin_).count();
+    ++record_.cycles;
+    record_.squared_error +=
+        squaredError(simulation, cells_, reference.snapshots.at(simulation.steps() - 1));
+    for (const cloth::MeasuredQuality& measured : expected_[plan_]) {
+      if (measured.motion != "swing") continue;
+      record_.expected_squared_error += measured.position_error * measured.position_error;
+    }
+    if (std::fmod(time, kPhase) < kSettling || time >= kPhases * kPhase) return;
+    const int loaded = static_cast<int>(time / kPhase) % 2;
+    ++record_.settled[loaded];
+    record_.within[loaded] += took <= kBudget ? 1 : 0;
+    record_.quality[loaded] += static_cast<double>(plan_);
+  }
+
+  material::Fabric fabric_;
+  std::vector<nodes::Candidate> rungs_;
+  std::size_t first_;
+  cloth::Scene scene_;
+  std::vector<std::uint32_t> bar_;
+  int cells_;
+  std::vector<std::vector<cloth::MeasuredQuality>> expected_;
+  // Touched by the loop's thread.
+  Record record_;
+  std::size_t plan_ = 0;
+  Clock::time_point step_begin_, begin_;
+};
+
+void print(const std::string& fabric, const Record& record) {
+  const std::string name = "budget/" + fabric + "/";
+  const double settled = record.settled[0] + record.settled[1];
+  bench::printLine(name + "budget", 1e3 * kBudget, "ms");
+  bench::printLine(name + "within_budget", 100.0 * (record.within[0] + record.within[1]) / settled,
+                   "%");
+  for (const int loaded : {0, 1}) {
+    const std::string which = loaded ? "with_load/" : "without_load/";
+    const double cycles = record.settled[loaded];
+    bench::printLine(name + which + "within_budget", 100.0 * record.within[loaded] / cycles, "%");
+    bench::printLine(name + which + "mean_rung", record.quality[loaded] / cycles, "");
+  }
+  bench::printLine(name + "changes", static_cast<double>(record.changes), "");
+  const double expected = std::sqrt(record.expected_squared_error / record.cycles);
+  const double measured = std::sqrt(record.squared_error / record.cycles);
+  bench::printLine(name + "expected_position_error", 1e3 * expected, "mm");
+  bench::printLine(name + "position_error", 1e3 * measured, "mm");
+  bench::printLine(name + "error_over_expected", measured / expected, "");
+}
+
+void runBench(const std::string& name) {
+  const material::Fabric fabric =
+      material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + name + ".yaml");
+  const auto front = cloth::loadQualities(HAPTEX_CONFIG_DIRECTORY "/presets/front.yaml");
+  std::fprintf(stderr, "%s: calibrating\n", name.c_str());
+  const auto measure = [&](const cloth::Quality& quality, int substeps) {
+    return measureSwing(fabric, quality, substeps);
+  };
+  const std::vector<nodes::Candidate> candidates =
+      nodes::calibrate(front, kCycle, measure, {5.0, 4.0 * kBudget});
+  const std::size_t chosen =
+      mostAccurateWithin(candidates, kBudget, 1.0).value_or(cheapest(candidates));
+  const double cell_size = candidates[chosen].quality.cell_size;
+  std::vector<nodes::Candidate> borrowed;
+  for (const cloth::Quality& quality : nodes::borrowedSettings(front, chosen)) {
+    cloth::Quality on_cells = quality;
+    on_cells.cell_size = cell_size;
+    borrowed.push_back(nodes::calibrate({on_cells}, kCycle, measure, {}).front());
+  }
+  const std::vector<nodes::Candidate> rungs = nodes::ladder(candidates, cell_size, borrowed);
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < rungs.size(); ++i) {
+    if (rungs[i].quality.name == candidates[chosen].quality.name) first = i;
+    bench::printLine("budget/" + name + "/cycle/" + rungs[i].quality.name, 1e3 * rungs[i].seconds,
+                     "ms");
+  }
+  std::fprintf(stderr, "%s: reference\n", name.c_str());
+  const evaluation::Reference reference =
+      evaluation::computeReference({evaluation::Motion::kSwing, fabric}, {32, 16});
+  print(name, BudgetRun(name, rungs, first).run(reference.trajectory));
+}
+
+}  // namespace
+
+int main() {
+  for (const char* fabric : {"linear", "wool"}) runBench(fabric);
+}

@@ -1,0 +1,86 @@
+// What do the three models of stretch and shear deliver of a fabric, and what does a step of each
+// cost? The virtual tensile test with free sides (2500 elements) of wool and the linear reference,
+// forces in N; and 12.5 ms steps of a sheet of 2048 triangles that falls from the horizontal for
+// one simulated second: mean time of the assembly and of the whole step.
+#include <array>
+#include <string>
+
+#include "haptex/cloth/integrator.h"
+#include "haptex/evaluation/cloth_oracles.h"
+#include "haptex/evaluation/virtual_test.h"
+#include "haptex/material/fabric_file.h"
+#include "tab_lines.h"
+
+namespace {
+
+using namespace haptex;
+using cloth::Elasticity;
+
+struct Named {
+  const char* name;
+  Elasticity elasticity;
+};
+constexpr std::array<Named, 3> kModels = {{{"green_lagrange", Elasticity::kGreenLagrange},
+                                           {"mass_spring", Elasticity::kMassSpring},
+                                           {"corotational", Elasticity::kCorotational}}};
+
+void printTensileTests(const material::Fabric& fabric, const std::vector<double>& weft_strains,
+                       const std::vector<double>& warp_strains) {
+  for (bool weft : {true, false}) {
+    const auto direction = weft ? evaluation::Direction::kWeft : evaluation::Direction::kWarp;
+    const std::string of = fabric.name + (weft ? "_weft_" : "_warp_");
+    for (double strain : weft ? weft_strains : warp_strains) {
+      const std::string at = "/" + of + evaluation::numbered(strain) + "/2500";
+      bench::printLine("models/fabric" + at,
+                       evaluation::exactTensileForce(fabric, direction, strain), "N");
+      for (const Named& model : kModels) {
+        const auto readings =
+            evaluation::tensileTest(fabric, direction, {strain}, model.elasticity);
+        bench::printLine(std::string("models/") + model.name + at, readings.back().force, "N");
+      }
+    }
+  }
+}
+
+void printStep(const material::Fabric& fabric, const Named& model) {
+  cloth::ModelledEffects effects;
+  effects.elasticity = model.elasticity;
+  effects.gravity = {0.0, 0.0, -9.80665};
+  cloth::ClothMesh mesh =
+      cloth::makeRectangle(0.5, 0.5, 32, 32, cloth::Triangulation::kAlternating);
+  for (Eigen::Vector3d& position : mesh.initial_positions) {
+    position = {position.z(), position.y(), 0.0};
+  }
+  cloth::Cloth cloth(std::move(mesh), fabric, effects);
+  cloth::ClothState state = cloth.initialState();
+  for (int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) {
+    cloth::AttachmentPath place;
+    place.start = state.positions[particle];
+    cloth.attach(particle, place);
+  }
+  cloth::Integrator integrator(cloth, {});
+  double assembly = 0.0, total = 0.0;
+  constexpr int kSteps = 80;
+  for (int i = 0; i < kSteps; ++i) {
+    const cloth::StepReport report = integrator.step(cloth, state, 0.0125);
+    assembly += report.assembly_seconds / kSteps;
+    total += report.total_seconds / kSteps;
+  }
+  const std::string of = std::string(model.name) + "_" + fabric.name + "/2048";
+  bench::printLine("models/assembly_" + of, 1e3 * assembly, "ms");
+  bench::printLine("models/step_" + of, 1e3 * total, "ms");
+}
+
+}  // namespace
+
+int main() {
+  const std::string fabrics = HAPTEX_CONFIG_DIRECTORY "/fabrics/";
+  const material::Fabric linear = material::loadFabric(fabrics + "linear.yaml");
+  const material::Fabric wool = material::loadFabric(fabrics + "wool.yaml");
+  printTensileTests(linear, {0.1, 0.5}, {0.1, 0.5});
+  printTensileTests(wool, {0.01, 0.05, 0.1}, {0.001, 0.006, 0.0135});
+  for (const Named& model : kModels) {
+    printStep(linear, model);
+    printStep(wool, model);
+  }
+}

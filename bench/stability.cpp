@@ -1,0 +1,189 @@
+// How does cloth behave at the extremes? bench_stability [--cases N] [--seed S] [--maps CSV]
+// Runs N generated cases (evaluation/extreme_case.h) on two threads, by default 50000 from seed 1,
+// and prints how many failed and by how much the worst missed its rest state, all together and by
+// kind. A failed case is shrunk, and printed on standard error as text that a test can take.
+// Then the limits of the explicit integrators, as longest step times highest angular frequency,
+// beside those of theory; and into the CSV what becomes of a vibrating sheet for each integrator,
+// time step and stiffness, which scripts/plot_stability draws.
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "haptex/evaluation/extreme_run.h"
+#include "haptex/evaluation/extreme_shrink.h"
+#include "haptex/evaluation/quantity.h"
+#include "haptex/evaluation/stability_map.h"
+#include "tab_lines.h"
+
+namespace {
+
+using namespace haptex;
+using evaluation::ExtremeCase;
+using evaluation::ExtremeFailure;
+using evaluation::ExtremeOutcome;
+
+constexpr double kMapStiffness = 100.0;  // N/m, of the limits; they do not depend on it
+
+struct Arguments {
+  long cases = 50000;
+  std::uint64_t seed = 1;
+  std::string maps;
+};
+
+Arguments parse(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 1; i < argc; i += 2) {
+    const std::string key = argv[i];
+    if (i + 1 == argc) throw std::invalid_argument(key + " lacks a value");
+    if (key == "--cases") {
+      arguments.cases = std::stol(argv[i + 1]);
+    } else if (key == "--seed") {
+      arguments.seed = std::stoull(argv[i + 1]);
+    } else if (key == "--maps") {
+      arguments.maps = argv[i + 1];
+    } else {
+      throw std::invalid_argument("unknown argument " + key + "; --cases, --seed, --maps");
+    }
+  }
+  return arguments;
+}
+
+struct Tally {
+  long cases = 0;
+  long failures = 0;
+  long other_rests = 0;
+  long slow = 0;
+  long rejected = 0;
+  double growth = 0.0;
+  double return_error = 0.0;
+
+  void add(const ExtremeOutcome& outcome) {
+    ++cases;
+    failures += outcome.failure != ExtremeFailure::kNone;
+    other_rests += outcome.other_rest;
+    slow += outcome.slow;
+    rejected += outcome.rejected;
+    growth = evaluation::largerOrNaN(growth, outcome.growth);
+    if (outcome.other_rest) return;
+    return_error = evaluation::largerOrNaN(return_error, outcome.return_error);
+  }
+};
+
+void print(const std::string& name, const Tally& tally) {
+  using bench::printLine;
+  printLine(name + "cases", static_cast<double>(tally.cases), "cases");
+  printLine(name + "failures", static_cast<double>(tally.failures), "cases");
+  printLine(name + "other_rests", static_cast<double>(tally.other_rests), "cases");
+  printLine(name + "slow_returns", static_cast<double>(tally.slow), "cases");
+  printLine(name + "rejected_steps", static_cast<double>(tally.rejected), "steps");
+  printLine(name + "worst_growth", tally.growth, "of_energy");
+  printLine(name + "worst_return_error", tally.return_error, "of_extent");
+}
+
+void printFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome) {
+  const ExtremeCase small = shrinkExtremeCase(extreme, [&](const ExtremeCase& candidate) {
+    return evaluation::runExtremeCase(candidate).failure == outcome.failure;
+  });
+  std::fprintf(stderr, "seed %llu: %s %s, growth %g, return error %g, shrunk to\n  %s\n",
+               static_cast<unsigned long long>(extreme.seed), nameOf(outcome.failure),
+               outcome.message.c_str(), outcome.growth, outcome.return_error,
+               toText(small).c_str());
+}
+
+class Cases {
+ public:
+  explicit Cases(const Arguments& arguments) : arguments_(arguments) {}
+
+  void run() {
+    std::thread other([this] { work(); });
+    work();
+    other.join();
+    print("stability/", all_);
+    for (const auto& [kind, tally] : by_kind_) print("stability/" + kind + "/", tally);
+    print("stability/explicit_integrators/", explicit_);
+  }
+
+ private:
+  void work() {
+    for (long i; (i = next_++) < arguments_.cases;) {
+      const ExtremeCase extreme = evaluation::drawExtremeCase(arguments_.seed + i);
+      const ExtremeOutcome outcome = evaluation::runExtremeCase(extreme);
+      add(extreme, outcome);
+      if (outcome.failure != ExtremeFailure::kNone) printFailure(extreme, outcome);
+    }
+  }
+
+  void add(const ExtremeCase& extreme, const ExtremeOutcome& outcome) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (cloth::isImplicit(extreme.method)) {
+      all_.add(outcome);
+      by_kind_[nameOf(extreme.kind)].add(outcome);
+    } else {
+      explicit_.add(outcome);
+    }
+    const long done = all_.cases + explicit_.cases;
+    if (done % 1000 != 0) return;
+    std::fprintf(stderr, "%ld of %ld cases, %ld failures\n", done, arguments_.cases,
+                 all_.failures + explicit_.failures);
+  }
+
+  const Arguments& arguments_;
+  std::atomic<long> next_{0};
+  std::mutex mutex_;
+  Tally all_;  // with implicit integrators
+  Tally explicit_;
+  std::map<std::string, Tally> by_kind_;
+};
+
+void printLimits() {
+  for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
+    if (cloth::isImplicit(named.method)) continue;
+    const evaluation::StabilityLimit limit =
+        evaluation::findStabilityLimit(named.method, kMapStiffness);
+    bench::printLine(std::string("stability/limit/") + named.name, limit.measured, "h_omega");
+    bench::printLine(std::string("stability/limit_of_theory/") + named.name, limit.theory,
+                     "h_omega");
+  }
+}
+
+void writeMaps(const std::string& path) {
+  constexpr int kStepsPerDecade = 4;
+  constexpr int kStiffnessesPerDecade = 3;
+  std::ofstream file(path);
+  if (!file) throw std::runtime_error("cannot write " + path);
+  file << "method,time_step,stiffness,frequency,stability,energy_left\n";
+  for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
+    std::fprintf(stderr, "map of %s\n", named.name);
+    for (int k = -3 * kStiffnessesPerDecade; k <= 7 * kStiffnessesPerDecade; ++k) {
+      const double stiffness = std::pow(10.0, static_cast<double>(k) / kStiffnessesPerDecade);
+      const double frequency = evaluation::highestFrequency(stiffness);
+      for (int s = -6 * kStepsPerDecade; s <= kStepsPerDecade; ++s) {
+        const double time_step = std::pow(10.0, static_cast<double>(s) / kStepsPerDecade);
+        const auto cell = evaluation::findStability(named.method, 1, time_step, stiffness);
+        file << named.name << ',' << time_step << ',' << stiffness << ',' << frequency << ','
+             << nameOf(cell.stability) << ',' << cell.energy_left << '\n';
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const Arguments arguments = parse(argc, argv);
+    Cases(arguments).run();
+    printLimits();
+    if (!arguments.maps.empty()) writeMaps(arguments.maps);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_stability: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,194 @@
+// What does accuracy cost? Four motions of two fabrics, computed in many ways (elasticity,
+// integrator, time step, resolution, solver, tolerance) beside converged references: errors in
+// position, force and energy, and computing time. docs/trade_off.md defines all of it.
+//
+// bench_trade_off [CSV [DIRECTORY]] prints a line per motion, fabric, point and measure, shows its
+// progress on standard error, and writes the table, to build/trade_off.csv if not told. Only with a
+// DIRECTORY, config/presets for scripts/update_presets, it writes the presets there.
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "haptex/evaluation/quality_choice.h"
+#include "haptex/evaluation/trade_off_study.h"
+#include "haptex/material/fabric_file.h"
+#include "tab_lines.h"
+
+namespace {
+
+using namespace haptex;
+using cloth::Elasticity;
+using cloth::IntegrationMethod;
+using cloth::LinearSolverMethod;
+using evaluation::TradeOffPoint;
+
+constexpr int kThreads = 2;
+constexpr double kMostCost = 3.0;  // computing time over simulated time, beyond which nobody goes
+
+TradeOffPoint pointOf(IntegrationMethod method, int cells, int steps_per_cycle, int solves) {
+  TradeOffPoint point;
+  point.step.method = method;
+  point.step.newton_iterations = solves;
+  point.cells = cells;
+  point.steps_per_cycle = steps_per_cycle;
+  return point;
+}
+
+/// Implicit methods with Green-Lagrange elements: every resolution with every step.
+void addGrid(std::vector<TradeOffPoint>& points) {
+  for (int cells : {16, 12, 8}) {
+    for (int steps : {4, 2, 1}) {
+      for (int solves : {1, 2, 3}) {
+        points.push_back(pointOf(IntegrationMethod::kBackwardEuler, cells, steps, solves));
+      }
+      points.push_back(pointOf(IntegrationMethod::kBackwardMidpoint, cells, steps, 2));
+      if (steps == 2) continue;  // two steps show what the others are like
+      points.push_back(pointOf(IntegrationMethod::kBdf2, cells, steps, 2));
+      points.push_back(pointOf(IntegrationMethod::kTrBdf2, cells, steps, 2));
+    }
+  }
+}
+
+/// Tolerances and solvers, which is precision, too: automatic preconditions by a factor in single
+/// precision, the others compute in double precision.
+void addSolvers(std::vector<TradeOffPoint>& points) {
+  const std::vector<TradeOffPoint> bases = {pointOf(IntegrationMethod::kBackwardEuler, 16, 1, 2),
+                                            pointOf(IntegrationMethod::kBackwardEuler, 12, 4, 2)};
+  for (const TradeOffPoint& base : bases) {
+    for (double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-10}) {
+      points.push_back(base);
+      points.back().step.tolerance = tolerance;
+    }
+    for (LinearSolverMethod solver :
+         {LinearSolverMethod::kCholesky, LinearSolverMethod::kConjugateGradient}) {
+      points.push_back(base);
+      points.back().step.solver = solver;
+    }
+  }
+}
+
+void addModels(std::vector<TradeOffPoint>& points) {
+  for (Elasticity elasticity : {Elasticity::kMassSpring, Elasticity::kCorotational}) {
+    for (int cells : {16, 8}) {
+      for (int steps : {4, 1}) {
+        points.push_back(pointOf(IntegrationMethod::kBackwardEuler, cells, steps, 2));
+        points.back().elasticity = elasticity;
+      }
+    }
+  }
+}
+
+/// With the coarsest mesh, and steps of 0.39 and 0.1 ms.
+void addExplicit(std::vector<TradeOffPoint>& points) {
+  for (IntegrationMethod method :
+       {IntegrationMethod::kExplicitEuler, IntegrationMethod::kExplicitMidpoint,
+        IntegrationMethod::kRungeKutta4, IntegrationMethod::kTwoStepEuler}) {
+    for (int steps : {32, 128}) points.push_back(pointOf(method, 8, steps, 1));
+  }
+}
+
+std::vector<TradeOffPoint> allPoints() {
+  std::vector<TradeOffPoint> points;
+  addSolvers(points);
+  addModels(points);
+  addGrid(points);
+  addExplicit(points);
+  return points;
+}
+
+std::vector<evaluation::TradeOffCase> allCases() {
+  std::vector<evaluation::TradeOffCase> cases;
+  for (evaluation::Motion motion : {evaluation::Motion::kDrape, evaluation::Motion::kSwing,
+                                    evaluation::Motion::kStretch, evaluation::Motion::kHang}) {
+    for (const char* fabric : {"wool", "linear"}) {
+      cases.push_back({motion, material::loadFabric(std::string(HAPTEX_CONFIG_DIRECTORY) +
+                                                    "/fabrics/" + fabric + ".yaml")});
+    }
+  }
+  return cases;
+}
+
+void printTable(const evaluation::TradeOffTable& table) {
+  for (std::size_t i = 0; i < table.cases.size(); ++i) {
+    const std::string of = std::string("trade_off/") + nameOf(table.cases[i].motion) + "/" +
+                           table.cases[i].fabric.name + "/";
+    const evaluation::TradeOffErrors& own = table.references[i].own_error;
+    bench::printLine(of + "reference/position_error", own.position, "m");
+    bench::printLine(of + "reference/force_error", own.force, "N");
+    bench::printLine(of + "reference/energy_error", own.energy, "J");
+    for (std::size_t k = 0; k < table.points.size(); ++k) {
+      const evaluation::TradeOffResult& result = table.results[k][i];
+      if (!result.followed) continue;
+      const std::string name = of + nameOf(table.points[k]);
+      bench::printLine(name + "/position_error", result.error.position, "m");
+      bench::printLine(name + "/force_error", result.error.force, "N");
+      bench::printLine(name + "/energy_error", result.error.energy, "J");
+      bench::printLine(name + "/cost", 1e3 * result.cost, "ms/s");
+      bench::printLine(name + "/stable", result.stable, "1");
+    }
+  }
+}
+
+/// The processor as the kernel calls it, or "unknown".
+std::string machine() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
+      return line.substr(colon + 2);
+    }
+  }
+  return "unknown";
+}
+
+/// Counts what is done on standard error.
+evaluation::Progress counter(std::size_t of) {
+  return [of, done = std::size_t{0}](const std::string& what) mutable {
+    std::fprintf(stderr, "%zu of %zu: %s\n", ++done, of, what.c_str());
+  };
+}
+
+bool writePresets(const std::string& directory, const std::vector<cloth::Quality>& qualities) {
+  const auto write = [&](const std::string& name, const std::vector<cloth::Quality>& content) {
+    std::ofstream file(directory + "/" + name + ".yaml");
+    evaluation::writeQualities(file, content, machine());
+    return static_cast<bool>(file.flush());
+  };
+  bool written = write("front", qualities);
+  for (const cloth::Quality& quality : qualities) {
+    if (quality.name.rfind("point_", 0) != 0) written = write(quality.name, {quality}) && written;
+  }
+  return written;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc > 3) {
+    std::fprintf(stderr, "usage: bench_trade_off [CSV [DIRECTORY]]\n");
+    return 1;
+  }
+  const std::string path = argc > 1 ? argv[1] : HAPTEX_CONFIG_DIRECTORY "/../build/trade_off.csv";
+  evaluation::TradeOffTable table;
+  table.cases = allCases();
+  table.points = allPoints();
+  table.references = computeReferences(table.cases, {}, kThreads, counter(2 * table.cases.size()));
+  table.results = followPoints(table.points, table.cases, table.references, kMostCost, kThreads,
+                               counter(table.points.size()));
+  const std::vector<cloth::Quality> qualities = chooseQualities(table);
+  printTable(table);
+  std::ofstream csv(path);
+  writeTable(csv, table, qualities);
+  if (!csv.flush()) {
+    std::fprintf(stderr, "bench_trade_off: cannot write %s\n", path.c_str());
+    return 1;
+  }
+  if (argc > 2 && !writePresets(argv[2], qualities)) {
+    std::fprintf(stderr, "bench_trade_off: cannot write to %s\n", argv[2]);
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,53 @@
+// The cloth of an extreme case, at rest, disturbed and at rest again.
+#pragma once
+
+#include <vector>
+
+#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/integrator.h"
+#include "haptex/evaluation/extreme_case.h"
+#include "haptex/evaluation/extreme_run.h"
+
+namespace haptex::evaluation {
+
+/// Particles of the sheet of a case that are attached: its top edge, or all sides.
+std::vector<int> attachedParticles(const ExtremeCase& extreme, const cloth::ClothMesh& mesh);
+
+/// A cloth that is held where it is as the case says.
+cloth::Cloth clothOf(const ExtremeCase& extreme, const cloth::ClothMesh& mesh,
+                     const std::optional<cloth::Air>& air);
+
+/// Kinetic energy of the free particles and potential energy (J).
+double energyOf(const cloth::Cloth& cloth, const cloth::ClothState& state);
+/// What kRoundingGrowth refers to (J), but for the energies themselves.
+double weightScale(const cloth::Cloth& cloth, const cloth::ClothState& state);
+bool isFinite(const cloth::ClothState& state);
+
+/// The cloth's rest state, from its initial positions.
+/// @throws std::runtime_error if it does not come to rest
+cloth::ClothState restOf(const cloth::Cloth& cloth);
+
+/// Largest distance of a particle of the state from that of the other, over the largest extent of
+/// the other.
+double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& other);
+
+/// Lets the state come to rest by backward Euler, in steps that grow up to a sixth of the cloth's
+/// slowest period: with the solves per step of the case, and if that is too slow with as many as a
+/// step needs. What a linearised step stretches while it turns resists the turning, so stiff light
+/// cloth creeps.
+struct Settling {
+  double error = 0.0;  ///< distanceBetween() state and rest at the end
+  int steps = 0;
+  int rejected = 0;
+  bool slow = false;  ///< the case's own solves did not suffice
+  /// Largest force on a free particle at the end, over the largest on an attached one.
+  double unbalanced = 0.0;
+};
+Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
+                const cloth::ClothState& rest, cloth::ClothState& state);
+/// Lets it settle and tells what came out.
+void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
+                    const cloth::ClothState& rest, cloth::ClothState& state,
+                    ExtremeOutcome& outcome);
+
+}  // namespace haptex::evaluation

@@ -1,0 +1,56 @@
+// What becomes of an extreme case.
+#pragma once
+
+#include <string>
+
+#include "haptex/evaluation/extreme_case.h"
+
+namespace haptex::evaluation {
+
+/// How a case with an implicit integrator failed, the gravest first.
+enum class ExtremeFailure {
+  kThrew,       ///< an exception
+  kNotFinite,   ///< a number of the state, an energy or a fingertip's force is not finite
+  kStuck,       ///< the last steps were rejected: the simulation did not go on
+  kEnergyGrew,  ///< in a step in which nothing did work on the cloth
+  kNoReturn,    ///< neither at the rest state at the end nor, if it hangs, at another one
+  kNone,
+};
+
+const char* nameOf(ExtremeFailure failure);
+
+/// Largest growth of energy in a step without work that counts as rounding, over the scale of the
+/// energies: kinetic and potential before and after, and what the sheet weighs times how far it
+/// hangs from the origin, to which gravity's energy refers.
+constexpr double kRoundingGrowth = 1e-10;
+/// Largest distance of a particle from its place at rest, over the sheet's largest extent at rest,
+/// that counts as returned.
+constexpr double kReturnTolerance = 1e-3;
+
+/// Largest force on a free particle, over the largest on an attached one, of a cloth that counts as
+/// at rest elsewhere.
+constexpr double kBalanced = 1e-3;
+
+struct ExtremeOutcome {
+  ExtremeFailure failure = ExtremeFailure::kNone;
+  std::string message;        ///< of an exception
+  int steps = 0;              ///< until the cloth was let settle
+  int rejected = 0;           ///< steps, of all
+  double growth = 0.0;        ///< largest of steps without work, over the scale of the energies
+  double return_error = 0.0;  ///< over the extent at rest; 0 if it was not looked at
+  int settling_steps = 0;     ///< until the cloth was back
+  bool slow = false;          ///< it came back with more solves per step only
+  bool other_rest = false;    ///< a hanging sheet has come to rest elsewhere: folded
+};
+
+/// Runs a case: the cloth at rest, the disturbance, free steps with the energy watched, then larger
+/// steps until it is at rest. An explicit method is held to finite numbers only, whatever number of
+/// its steps is rejected.
+///
+/// A taut sheet has one rest state to return to. A hanging one has others: strains do not tell a
+/// triangle from its mirror image, so folds cost nothing, and in a sheet that resists stretch and
+/// shear but not bending folds may lock each other as in crumpled paper. A disturbance that turns
+/// elements over may leave it there; it counts as at rest if its forces are balanced.
+ExtremeOutcome runExtremeCase(const ExtremeCase& extreme);
+
+}  // namespace haptex::evaluation

@@ -1,0 +1,74 @@
+// The qualities that a simulated cloth may run by, and what is known about them.
+#pragma once
+
+#include <haptex/ClothQuality.h>
+#include <haptex/QualityPoint.h>
+#include <haptex/QueryBudget.h>
+#include <ros/node_handle.h>
+#include <ros/time.h>
+
+#include <string>
+#include <vector>
+
+#include "haptex/cloth/scene.h"
+#include "haptex/material/fabric.h"
+#include "haptex/nodes/quality_choice.h"
+#include "haptex/nodes/simulated_cloth.h"
+#include "haptex/nodes/studied_fabrics.h"
+
+namespace haptex::nodes {
+
+/// What a person asks for; at most one of the two.
+struct QualityRequest {
+  std::string preset_path;  ///< ~quality: of a file with one quality; empty: none
+  double budget = 0.0;      ///< ~budget_ms: s of computing time per cycle; 0: none
+
+  bool any() const { return !preset_path.empty() || budget > 0.0; }
+
+  /// @throws std::invalid_argument naming the parameter, its value and what is allowed
+  static QualityRequest read(const ros::NodeHandle& private_node);
+};
+
+/// Made at the start of a node: measures on this machine what the points of the front take for the
+/// scene's cloth, and chooses.
+class RuntimeQuality {
+ public:
+  // The constructor measures for as long as that, and the time of two measurements.
+  static constexpr double kAllowance = 1.5;          ///< s, for the front
+  static constexpr double kBorrowedAllowance = 0.5;  ///< s, for borrowedSettings()
+
+  /// @param request for one of the two
+  /// @throws std::exception naming what was wrong with a file
+  RuntimeQuality(const std::string& scene_path, const QualityRequest& request);
+
+  /// With the cells that were chosen.
+  const cloth::Scene& scene() const { return scene_; }
+
+  /// Can take its steps by everything that it may switch to, and has a controller.
+  SimulatedCloth simulate() const;
+
+  /// @param simulation of simulate(); here and below
+  haptex::ClothQuality message(const SimulatedCloth& simulation, const ros::Time& stamp) const;
+
+  /// Fills in all but success. @param budget s @returns the message
+  /// @throws std::invalid_argument naming the budget unless it is finite and > 0
+  std::string query(const SimulatedCloth& simulation, double budget,
+                    haptex::QueryBudget::Response& response) const;
+
+ private:
+  void choose(const std::string& scene_path);
+  std::vector<Candidate> borrowed(const std::string& scene_path, std::size_t chosen) const;
+  haptex::QualityPoint pointMessage(const Candidate& candidate,
+                                    const material::Fabric& fabric) const;
+
+  cloth::Scene scene_;
+  material::Fabric fabric_;
+  double budget_;                      // s, infinity: none
+  std::vector<Candidate> candidates_;  // the front, from the cheapest to the most accurate
+  std::vector<Candidate> rungs_;       // what a running cloth switches among
+  std::size_t first_ = 0;              // of rungs_, to begin with
+  double cell_size_ = 0.0;             // m, of its cells, which the mesh has if it may have any
+  std::vector<StudiedFabric> studied_;
+};
+
+}  // namespace haptex::nodes

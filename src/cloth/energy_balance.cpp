@@ -1,0 +1,109 @@
+#include "haptex/cloth/energy_balance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptex::cloth {
+
+using Eigen::Vector3d;
+
+namespace {
+
+double freeKineticEnergy(const Cloth& cloth, const Velocities& velocities) {
+  double twice = 0.0;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (!cloth.attachments()[i]) twice += cloth.masses()[i] * velocities[i].squaredNorm();
+  }
+  return 0.5 * twice;
+}
+
+/// Of the attachments' forces over their ways (J).
+double workOf(const Cloth& cloth, const std::vector<Vector3d>& forces, const Positions& begin,
+              const Positions& end) {
+  double work = 0.0;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (cloth.attachments()[i]) work -= forces[i].dot(end[i] - begin[i]);
+  }
+  return work;
+}
+
+double contactWork(const Cloth& cloth, const std::vector<ContactReaction>& reactions,
+                   const Positions& begin, const Positions& end) {
+  double work = 0.0;
+  for (std::size_t c = 0; c < reactions.size(); ++c) {
+    const int particle = cloth.contacts()[c].particle;
+    work += reactions[c].force.dot(end[particle] - begin[particle]);
+  }
+  return work;
+}
+
+}  // namespace
+
+EnergyBalance::EnergyBalance(const Cloth& cloth)
+    : last_positions_(cloth.initialState().positions),
+      forces_(cloth.particleCount()),
+      jumped_(cloth.initialState()) {}
+
+void EnergyBalance::begin(const Cloth& cloth, const ClothState& begin) {
+  const bool known = revision_ == cloth.revision() && !cloth.bendingFriction() &&
+                     begin.positions == last_positions_;
+  potential_begin_ = known ? potential_end_ : cloth.potentialEnergy(begin);
+  kinetic_begin_ = freeKineticEnergy(cloth, begin.velocities);
+}
+
+double EnergyBalance::growth(const Cloth& cloth, const ClothState& begin, const ClothState& end,
+                             const std::vector<ContactReaction>& reactions) {
+  constexpr double kRounding = 1e-12;
+  potential_end_ = cloth.potentialEnergy(end);
+  kinetic_end_ = freeKineticEnergy(cloth, end.velocities);
+  double growth = potential_end_ - potential_begin_ + (kinetic_end_ - kinetic_begin_);
+  growth -= kRounding *
+            (std::abs(potential_end_) + std::abs(potential_begin_) + kinetic_begin_ + kinetic_end_);
+  if (growth <= 0.0) return growth;
+  growth -= std::max(0.0, attachmentWork(cloth, begin, end));
+  growth -= std::max(0.0, contactWork(cloth, reactions, begin.positions, end.positions));
+  if (cloth.air()) {
+    growth -=
+        (end.time - begin.time) * std::max({0.0, airPower(cloth, begin), airPower(cloth, end)});
+  }
+  return growth;
+}
+
+void EnergyBalance::keep(const Cloth& cloth, const ClothState& end) {
+  last_positions_ = end.positions;
+  revision_ = cloth.revision();
+}
+
+double EnergyBalance::attachmentWork(const Cloth& cloth, const ClothState& begin,
+                                     const ClothState& end) {
+  jumped_.positions = begin.positions;
+  jumped_.plastic_bends = begin.plastic_bends;
+  bool moved = false;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (!cloth.attachments()[i]) continue;
+    moved = moved || end.positions[i] != begin.positions[i];
+    jumped_.positions[i] = end.positions[i];
+  }
+  if (!moved) return 0.0;
+  cloth.computeForces(end, forces_);
+  const double at_end = workOf(cloth, forces_, begin.positions, end.positions);
+  cloth.computeForces(begin, forces_);
+  const double at_begin = workOf(cloth, forces_, begin.positions, end.positions);
+  const double of_jump = cloth.potentialEnergy(jumped_) - potential_begin_;
+  return std::min(std::max(at_end, 0.5 * (at_begin + at_end)),
+                  2.0 * std::max(0.0, of_jump) + kinetic_begin_);
+}
+
+/// Of all forces of the air on the free particles (W).
+double EnergyBalance::airPower(const Cloth& cloth, const ClothState& state) {
+  std::fill(forces_.begin(), forces_.end(), Vector3d::Zero());
+  cloth.air()->addForces(cloth.membrane().elements(), state.positions, state.velocities, state.time,
+                         forces_);
+  double power = 0.0;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (!cloth.attachments()[i]) power += forces_[i].dot(state.velocities[i]);
+  }
+  return power;
+}
+
+}  // namespace haptex::cloth

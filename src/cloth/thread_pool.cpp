@@ -1,0 +1,55 @@
+#include "haptex/cloth/thread_pool.h"
+
+namespace haptex::cloth {
+
+ThreadPool::ThreadPool(int threads) {
+  for (int thread = 1; thread < threads; ++thread) {
+    workers_.emplace_back([this, thread] { work(thread); });
+  }
+}
+
+ThreadPool::~ThreadPool() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stop_ = true;
+  }
+  start_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+void ThreadPool::share(int tasks, const void* context, Call call) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    tasks_ = tasks;
+    context_ = context;
+    call_ = call;
+    next_task_ = 0;
+    busy_ = static_cast<int>(workers_.size());
+    ++job_;
+  }
+  start_.notify_all();
+  takeTasks(0);
+  std::unique_lock<std::mutex> lock(mutex_);
+  done_.wait(lock, [this] { return busy_ == 0; });
+}
+
+void ThreadPool::work(int thread) {
+  long last_job = 0;
+  while (true) {
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      start_.wait(lock, [&] { return stop_ || job_ != last_job; });
+      if (stop_) return;
+      last_job = job_;
+    }
+    takeTasks(thread);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (--busy_ == 0) done_.notify_one();
+  }
+}
+
+void ThreadPool::takeTasks(int thread) {
+  for (int task = next_task_++; task < tasks_; task = next_task_++) call_(context_, task, thread);
+}
+
+}  // namespace haptex::cloth

@@ -1,0 +1,102 @@
+// The oracles of bending: strips at rest.
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "haptex/evaluation/cloth_oracles.h"
+#include "haptex/evaluation/strip_statics.h"
+
+namespace haptex::evaluation {
+namespace {
+
+constexpr double kDropTolerance = 0.02;
+constexpr double kElasticaTolerance = 1e-4;  // of the table, which has six digits after the point
+constexpr double kBucklingTolerance = 0.05;
+constexpr double kSagTolerance = 0.005;
+constexpr double kCircleTolerance = 0.02;
+
+constexpr std::array<std::pair<cloth::BendingModel, const char*>, 2> kModels = {
+    {{cloth::BendingModel::kLinear, "linear"}, {cloth::BendingModel::kQuadratic, "quadratic"}}};
+
+struct NamedMesh {
+  const char* name;
+  StripMesh mesh;
+};
+constexpr std::array<NamedMesh, 3> kMeshes = {{{"one_way", StripMesh::kOneWay},
+                                               {"alternating", StripMesh::kAlternating},
+                                               {"irregular", StripMesh::kIrregular}}};
+
+/// Gamma and drop over reach of the elastica, solved as a boundary value problem; within 0.15 % of
+/// the published master curve of Romero et al. 2021 (doi 10.1145/3450626.3459939).
+constexpr std::array<std::array<double, 2>, 4> kElastica = {
+    {{0.1, 0.012500}, {1.0, 0.124562}, {10.0, 1.066802}, {100.0, 5.888105}}};
+
+std::string gammaName(double gamma) {
+  return gamma < 1.0 ? "gamma0.1" : "gamma" + std::to_string(static_cast<int>(gamma));
+}
+
+void validateCantilevers(const Sink& sink) {
+  for (const auto& [gamma, exact] : kElastica) {
+    sink(relativeTo(exact, "cloth/elastica/" + gammaName(gamma), exact, exactDropOverReach(gamma),
+                    kElasticaTolerance));
+    for (const NamedMesh& mesh : kMeshes) {
+      for (const auto& [model, model_name] : kModels) {
+        for (Direction along : {Direction::kWeft, Direction::kWarp}) {
+          Cantilever cantilever{gamma, mesh.mesh, along};
+          cantilever.model = model;
+          const bool weft = along == Direction::kWeft;
+          sink(relativeTo(exact,
+                          std::string("cloth/cantilever/") + model_name + "/" + mesh.name +
+                              (weft ? "/weft/" : "/warp/") + gammaName(gamma),
+                          exact, simulatedDropOverReach(cantilever), kDropTolerance));
+        }
+      }
+    }
+  }
+}
+
+/// The circle of 1 / curvature on which a free strip settles, both ways.
+void validateRestCurvature(const NamedMesh& mesh, const Sink& sink) {
+  for (const auto& [model, model_name] : kModels) {
+    for (const auto& [along, curvature] :
+         {std::pair(Direction::kWeft, 20.0), std::pair(Direction::kWarp, -40.0)}) {
+      sink(relativeTo(curvature,
+                      std::string("cloth/rest_curvature/") + model_name + "/" + mesh.name +
+                          (along == Direction::kWeft ? "/weft" : "/warp"),
+                      curvature, simulatedRestCurvature(mesh.mesh, along, model, curvature),
+                      kCircleTolerance));
+    }
+  }
+}
+
+/// What is left of the curvature of a free strip that was bent further than friction holds.
+void validateResidualCurvature(const NamedMesh& mesh, const Sink& sink) {
+  for (const auto& [model, model_name] : kModels) {
+    for (const auto& [along, held] :
+         {std::pair(Direction::kWeft, 20.0), std::pair(Direction::kWarp, 10.0)}) {
+      sink(relativeTo(held,
+                      std::string("cloth/residual_curvature/") + model_name + "/" + mesh.name +
+                          (along == Direction::kWeft ? "/weft" : "/warp"),
+                      held, simulatedResidualCurvature(mesh.mesh, along, model, held),
+                      kCircleTolerance));
+    }
+  }
+}
+
+}  // namespace
+
+void validateBending(const Sink& sink) {
+  validateCantilevers(sink);
+  for (const NamedMesh& mesh : kMeshes) {
+    validateRestCurvature(mesh, sink);
+    validateResidualCurvature(mesh, sink);
+    sink(relativeTo(kLateralBucklingLoad, std::string("cloth/lateral_buckling/") + mesh.name,
+                    kLateralBucklingLoad, simulatedLateralBucklingLoad(mesh.mesh, 90),
+                    kBucklingTolerance));
+    sink(relativeTo(exactSagOverSpan(), std::string("cloth/catenary/") + mesh.name,
+                    exactSagOverSpan(), simulatedSagOverSpan(mesh.mesh, 60), kSagTolerance));
+  }
+}
+
+}  // namespace haptex::evaluation

@@ -1,0 +1,216 @@
+#include "haptex/nodes/runtime_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "haptex/cloth/quality_file.h"
+#include "haptex/contact/scene_fabric.h"
+#include "haptex/material/fabric_file.h"
+#include "haptex/nodes/cloth_messages.h"
+#include "haptex/nodes/config_files.h"
+#include "haptex/nodes/node_parameters.h"
+#include "haptex/nodes/quality_calibration.h"
+#include "haptex/nodes/quality_controller.h"
+
+namespace haptex::nodes {
+namespace {
+
+// What takes longer than this many budgets is not worth measuring.
+constexpr double kLongestInBudgets = 4.0;
+
+/// Legs of right-angled triangles of the mean area, m.
+double meanCellSize(const cloth::ClothMesh& mesh) {
+  double doubled_area = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector2d first = mesh.rest_coordinates[b] - mesh.rest_coordinates[a];
+    const Eigen::Vector2d second = mesh.rest_coordinates[c] - mesh.rest_coordinates[a];
+    doubled_area += std::abs(first.x() * second.y() - first.y() * second.x());
+  }
+  return std::sqrt(doubled_area / static_cast<double>(mesh.triangles.size()));
+}
+
+cloth::Quality loadPreset(const std::string& path) {
+  const std::vector<cloth::Quality> qualities = cloth::loadQualities(path);
+  if (qualities.size() != 1) {
+    throw std::invalid_argument(path + ": has " + std::to_string(qualities.size()) +
+                                " qualities: allowed is a file with one");
+  }
+  return qualities.front();
+}
+
+const char* nameOf(cloth::IntegrationMethod method) {
+  const auto named = std::find_if(
+      cloth::kIntegrationMethods.begin(), cloth::kIntegrationMethods.end(),
+      [&](const cloth::NamedIntegrationMethod& other) { return other.method == method; });
+  return named->name;
+}
+
+double milliseconds(double seconds) { return 1e3 * seconds; }
+
+}  // namespace
+
+QualityRequest QualityRequest::read(const ros::NodeHandle& private_node) {
+  QualityRequest request;
+  request.budget = 1e-3 * readPositive(private_node, "budget_ms", 0.0);
+  if (!private_node.hasParam("quality")) return request;
+  request.preset_path = readConfigPath(private_node, "quality", "presets");
+  if (request.budget > 0.0) {
+    throw std::invalid_argument("parameters " + private_node.resolveName("quality") + " and " +
+                                private_node.resolveName("budget_ms") +
+                                " are both set: allowed is one of them");
+  }
+  return request;
+}
+
+RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityRequest& request)
+    : scene_(cloth::loadScene(scene_path)),
+      fabric_(contact::loadSceneFabric(scene_path, scene_)),
+      budget_(request.budget > 0.0 ? request.budget : std::numeric_limits<double>::infinity()) {
+  std::vector<cloth::Quality> preset;
+  if (!request.preset_path.empty()) preset.push_back(loadPreset(request.preset_path));
+  std::vector<cloth::Quality> front = cloth::loadQualities(findConfigFile("presets", "front"));
+  if (!scene_.any_cells) front = settingsAlone(front, meanCellSize(scene_.mesh));
+  const auto measure = [&](const cloth::Quality& quality, int substeps) {
+    return measureCycle(scene_path, fabric_, quality, substeps);
+  };
+  const double cycle = scene_.time_step;
+  candidates_ =
+      calibrate(front, cycle, measure, {kAllowance, kLongestInBudgets * std::min(budget_, cycle)});
+  if (!scene_.any_cells) sortByTime(candidates_);
+  if (preset.empty()) {
+    choose(scene_path);
+  } else {
+    rungs_ = calibrate(preset, cycle, measure, {});
+  }
+  if (!std::isfinite(rungs_[first_].seconds)) {
+    throw std::invalid_argument("quality '" + rungs_[first_].quality.name +
+                                "' cannot compute this scene: its steps are not finite");
+  }
+  cell_size_ = rungs_[first_].quality.cell_size;
+  if (scene_.any_cells) scene_ = cloth::loadScene(scene_path, cell_size_);
+  front.insert(front.end(), preset.begin(), preset.end());
+  for (const std::string& name : studiedFabricNames(front)) {
+    const material::Fabric fabric = material::loadFabric(findConfigFile("fabrics", name));
+    studied_.push_back({name, tensileModulus(fabric)});
+  }
+}
+
+void RuntimeQuality::choose(const std::string& scene_path) {
+  const std::size_t chosen =
+      mostAccurateWithin(candidates_, budget_, 1.0).value_or(cheapest(candidates_));
+  const std::string name = candidates_[chosen].quality.name;
+  if (scene_.any_cells) {
+    const double cell_size = candidates_[chosen].quality.cell_size;
+    rungs_ = ladder(candidates_, cell_size, borrowed(scene_path, chosen));
+  } else {
+    rungs_ = ladder(candidates_);
+  }
+  const auto found = std::find_if(rungs_.begin(), rungs_.end(),
+                                  [&](const Candidate& rung) { return rung.quality.name == name; });
+  if (found == rungs_.end()) {
+    throw std::invalid_argument("no quality can compute this scene: their steps are not finite");
+  }
+  first_ = static_cast<std::size_t>(found - rungs_.begin());
+}
+
+/// Ways down from the chosen quality, measured on its cells.
+std::vector<Candidate> RuntimeQuality::borrowed(const std::string& scene_path,
+                                                std::size_t chosen) const {
+  std::vector<cloth::Quality> front;
+  for (const Candidate& candidate : candidates_) front.push_back(candidate.quality);
+  const std::vector<cloth::Quality> settings = borrowedSettings(front, chosen);
+  if (settings.empty()) return {};
+  const auto measure = [&](cloth::Quality quality, int substeps) {
+    quality.cell_size = front[chosen].cell_size;
+    return measureCycle(scene_path, fabric_, quality, substeps);
+  };
+  return calibrate(settings, scene_.time_step, measure,
+                   {kBorrowedAllowance, std::numeric_limits<double>::infinity()});
+}
+
+SimulatedCloth RuntimeQuality::simulate() const {
+  std::vector<StepPlan> plans;
+  std::vector<double> costs;
+  for (const Candidate& rung : rungs_) {
+    plans.push_back(planOf(rung, scene_.step.threads));
+    costs.push_back(rung.seconds);
+  }
+  SimulatedCloth simulation(scene_, fabric_, std::move(plans));
+  simulation.setController(QualityController(std::move(costs), budget_, scene_.time_step, first_));
+  return simulation;
+}
+
+haptex::QualityPoint RuntimeQuality::pointMessage(const Candidate& candidate,
+                                                  const material::Fabric& fabric) const {
+  const cloth::Quality& quality = candidate.quality;
+  haptex::QualityPoint point;
+  point.name = quality.name;
+  point.integrator = nameOf(quality.step.method);
+  point.time_step = scene_.time_step / candidate.substeps;
+  point.substeps = static_cast<std::uint32_t>(candidate.substeps);
+  point.solver_tolerance = quality.step.tolerance;
+  point.newton_iterations = static_cast<std::uint32_t>(quality.step.newton_iterations);
+  point.cell_size = quality.cell_size;
+  point.cells_as_measured = scene_.any_cells;  // if need be after a restart
+  point.fabric = nearestStudied(fabric, studied_).name;
+  for (const cloth::MeasuredQuality& measured : measurementsOf(quality, point.fabric)) {
+    point.motion.push_back(measured.motion);
+    point.position_error.push_back(measured.position_error);
+    point.force_error.push_back(measured.force_error);
+    point.energy_error.push_back(measured.energy_error);
+  }
+  return point;
+}
+
+haptex::ClothQuality RuntimeQuality::message(const SimulatedCloth& simulation,
+                                             const ros::Time& stamp) const {
+  const QualityController& controller = *simulation.controller();
+  const CycleTimes times = controller.times();
+  haptex::ClothQuality message;
+  message.header.stamp = stamp;
+  message.header.frame_id = kFixedFrame;
+  const Candidate& running = rungs_[simulation.plan()];
+  message.quality = pointMessage(running, simulation.cloth().fabric());
+  message.quality.cells_as_measured = scene_.any_cells && running.quality.cell_size == cell_size_;
+  message.budget_ms = std::isinf(budget_) ? 0.0 : milliseconds(budget_);
+  message.cycle_ms = milliseconds(times.smoothed);
+  message.worst_cycle_ms = milliseconds(times.worst);
+  message.within_budget = times.within_budget;
+  message.load = controller.load();
+  message.changes = static_cast<std::uint32_t>(controller.changes());
+  return message;
+}
+
+std::string RuntimeQuality::query(const SimulatedCloth& simulation, double budget,
+                                  haptex::QueryBudget::Response& response) const {
+  if (!std::isfinite(budget) || budget <= 0.0) {
+    std::ostringstream message;
+    message << "budget_ms = " << milliseconds(budget) << ": allowed are finite numbers > 0";
+    throw std::invalid_argument(message.str());
+  }
+  const double load = simulation.controller()->load();
+  const std::optional<std::size_t> fits = mostAccurateWithin(candidates_, budget, load);
+  const Candidate& candidate = candidates_[fits.value_or(cheapest(candidates_))];
+  response.quality = pointMessage(candidate, simulation.cloth().fabric());
+  response.affordable = fits.has_value();
+  response.cycle_ms = milliseconds(load * candidate.seconds);
+  response.measured = candidate.measured;
+  response.needs_restart = scene_.any_cells && candidate.quality.cell_size != cell_size_;
+  std::ostringstream message;
+  if (fits) {
+    message << milliseconds(budget) << " ms buy " << candidate.quality.name << ", which takes "
+            << response.cycle_ms << " ms";
+  } else {
+    message << milliseconds(budget) << " ms buy nothing: the cheapest, " << candidate.quality.name
+            << ", takes " << response.cycle_ms << " ms";
+  }
+  if (response.needs_restart) message << "; it has other cells, so the node has to start anew";
+  return message.str();
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "haptex/cloth/quality_file.h"
+#include "haptex/nodes/runtime_quality.h"
+
+namespace haptex::nodes {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kConfig = HAPTEX_SOURCE_DIRECTORY "/config/";
+const std::string kFast = kConfig + "presets/fast.yaml";
+
+/// A sheet so small that it takes no time to calibrate.
+class RuntimeQualityOfAScene : public testing::Test {
+ protected:
+  ~RuntimeQualityOfAScene() override { fs::remove(path_); }
+
+  std::string scene(const std::string& attached) const {
+    std::ofstream(path_) << "fabric: " << kConfig << "fabrics/linear.yaml\n"
+                         << "sheet: {size: [0.05, 0.05], cells: [3, 3], diagonals: one_way}\n"
+                         << "attach: [" << attached << "]\nmodel: [gravity]\ntime_step: 0.0125\n";
+    return path_.string();
+  }
+
+  const fs::path path_ =
+      fs::path(testing::TempDir()) / ("haptex_runtime_" + std::to_string(getpid()) + ".yaml");
+};
+
+TEST_F(RuntimeQualityOfAScene, APresetRunsOnItsCellsAndStays) {
+  const cloth::Quality fast = cloth::loadQualities(kFast).front();
+  const RuntimeQuality quality(scene("top"), {kFast, 0.0});
+  SimulatedCloth simulation = quality.simulate();
+  const auto cells = static_cast<std::size_t>(std::ceil(0.05 / fast.cell_size - 1e-6));
+  EXPECT_EQ(simulation.cloth().mesh().triangles.size(), 2 * cells * cells);
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(simulation.step());
+  const haptex::ClothQuality message = quality.message(simulation, ros::Time(1.0));
+  EXPECT_EQ(message.quality.name, "fast");
+  EXPECT_EQ(message.quality.fabric, "linear");
+  EXPECT_TRUE(message.quality.cells_as_measured);
+  EXPECT_EQ(message.budget_ms, 0.0);
+  EXPECT_EQ(message.changes, 0u);
+  EXPECT_EQ(message.within_budget, 1.0);
+  EXPECT_GT(message.cycle_ms, 0.0);
+}
+
+TEST_F(RuntimeQualityOfAScene, AMeshWithParticlesByIndexStaysAsItIs) {
+  const RuntimeQuality quality(scene("{particles: [12, 15]}"), {"", 5e-3});
+  const SimulatedCloth simulation = quality.simulate();
+  EXPECT_EQ(simulation.cloth().mesh().triangles.size(), 2u * 3u * 3u);
+  const haptex::ClothQuality message = quality.message(simulation, ros::Time(1.0));
+  EXPECT_FALSE(message.quality.cells_as_measured);
+  EXPECT_EQ(message.budget_ms, 5.0);
+  haptex::QueryBudget::Response response;
+  quality.query(simulation, 1e9, response);
+  EXPECT_FALSE(response.needs_restart);
+  EXPECT_FALSE(response.quality.cells_as_measured);
+}
+
+TEST_F(RuntimeQualityOfAScene, ABudgetThatNothingKeepsRunsByTheCheapest) {
+  const RuntimeQuality quality(scene("top"), {"", 1e-9});
+  SimulatedCloth simulation = quality.simulate();
+  EXPECT_EQ(simulation.plan(), 0u);
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(simulation.step());
+  EXPECT_EQ(simulation.plan(), 0u);
+  EXPECT_EQ(quality.message(simulation, ros::Time(1.0)).within_budget, 0.0);
+  haptex::QueryBudget::Response response;
+  const std::string answer = quality.query(simulation, 1e-9, response);
+  EXPECT_FALSE(response.affordable);
+  EXPECT_NE(answer.find("buy nothing"), std::string::npos) << answer;
+}
+
+TEST_F(RuntimeQualityOfAScene, RefusesFilesWithSeveralQualitiesAndBudgetsThatAreNone) {
+  const std::string path = scene("top");
+  EXPECT_THROW(RuntimeQuality(path, {kConfig + "presets/front.yaml", 0.0}), std::invalid_argument);
+  const RuntimeQuality quality(path, {kFast, 0.0});
+  const SimulatedCloth simulation = quality.simulate();
+  haptex::QueryBudget::Response response;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double budget : {0.0, -1.0, kInfinity, std::nan("")}) {
+    EXPECT_THROW(quality.query(simulation, budget, response), std::invalid_argument) << budget;
+  }
+}
+
+}  // namespace
+}  // namespace haptex::nodes
