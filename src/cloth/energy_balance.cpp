@@ -45,10 +45,29 @@ EnergyBalance::EnergyBalance(const Cloth& cloth)
       jumped_(cloth.initialState()) {}
 
 void EnergyBalance::begin(const Cloth& cloth, const ClothState& begin) {
-  const bool known = revision_ == cloth.revision() && !cloth.bendingFriction() &&
-                     begin.positions == last_positions_;
+  const bool goes_on = begin.positions == last_positions_;
+  if (!goes_on) forget();
+  const bool known = goes_on && revision_ == cloth.revision() && !cloth.bendingFriction();
   potential_begin_ = known ? potential_end_ : cloth.potentialEnergy(begin);
   kinetic_begin_ = freeKineticEnergy(cloth, begin.velocities);
+}
+
+double EnergyBalance::excess(const Cloth& cloth, const ClothState& begin, const ClothState& end,
+                             const std::vector<ContactReaction>& reactions) {
+  growth_ = growth(cloth, begin, end, reactions);
+  return growth_ - reserve();
+}
+
+void EnergyBalance::forget() {
+  remembered_ = 0;
+  next_ = 0;
+}
+
+/// The most that a row of steps up to the last one has lost (J).
+double EnergyBalance::reserve() const {
+  double most = 0.0;
+  for (int i = 0; i < remembered_; ++i) most = std::max(most, lost_[i]);
+  return most;
 }
 
 double EnergyBalance::growth(const Cloth& cloth, const ClothState& begin, const ClothState& end,
@@ -66,10 +85,16 @@ double EnergyBalance::growth(const Cloth& cloth, const ClothState& begin, const 
     growth -=
         (end.time - begin.time) * std::max({0.0, airPower(cloth, begin), airPower(cloth, end)});
   }
-  return growth;
+  return growth > 0.0 ? growth : 0.0;  // work that is left over is not for later steps
 }
 
-void EnergyBalance::keep(const Cloth& cloth, const ClothState& end) {
+void EnergyBalance::keep(const Cloth& cloth, const ClothState& end, double taken) {
+  const double lost = taken - growth_;
+  if (!std::isfinite(lost)) return forget();
+  for (double& since : lost_) since += lost;
+  lost_[next_] = lost;
+  next_ = (next_ + 1) % kRemembered;
+  remembered_ = std::min(remembered_ + 1, kRemembered);
   last_positions_ = end.positions;
   revision_ = cloth.revision();
 }
@@ -94,14 +119,15 @@ double EnergyBalance::attachmentWork(const Cloth& cloth, const ClothState& begin
                   2.0 * std::max(0.0, of_jump) + kinetic_begin_);
 }
 
-/// Of all forces of the air on the free particles (W).
+/// Of the forces of the air (W). Those on attached particles count here, because the attachments'
+/// work is that of all forces on them.
 double EnergyBalance::airPower(const Cloth& cloth, const ClothState& state) {
   std::fill(forces_.begin(), forces_.end(), Vector3d::Zero());
   cloth.air()->addForces(cloth.membrane().elements(), state.positions, state.velocities, state.time,
                          forces_);
   double power = 0.0;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (!cloth.attachments()[i]) power += forces_[i].dot(state.velocities[i]);
+    power += forces_[i].dot(state.velocities[i]);
   }
   return power;
 }

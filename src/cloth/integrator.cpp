@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 
@@ -65,12 +66,7 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
     return;
   }
   stages_.emplace(cloth, settings);
-  if (settings.keep_energy) {
-    if (cloth.effects().elasticity == Elasticity::kCorotational) {
-      throw std::invalid_argument("keep_energy is not to be had with corotational elasticity");
-    }
-    balance_.emplace(cloth);
-  }
+  balance_.emplace(cloth);
   if (method == IntegrationMethod::kBackwardEuler) return;
   forces_.resize(cloth.particleCount());
   if (method != IntegrationMethod::kBackwardMidpoint) base_ = end_;
@@ -103,7 +99,7 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
                     allFinite(end_.positions) && allFinite(end_.velocities);
   if (report.accepted) {
     cloth.yieldBending(end_);
-    keep(cloth, state, time_step, touches() || report.taken_anew);
+    keep(cloth, state, time_step, touches() || report.taken_anew, report.energy_taken);
   } else if (stages_) {
     stages_->forget();
   }
@@ -115,16 +111,22 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
                             StepReport& report) {
   constexpr double kMostTaken = 0.1;  // of the kinetic energy
   balance_->begin(cloth, begin);
-  const auto growth = [&] { return balance_->growth(cloth, begin, end_, contactReactions()); };
-  double gained = growth();
-  if (gained <= 0.0) return;
-  if (!(gained <= kMostTaken * balance_->kineticAtEnd())) {
+  double gained = 0.0;
+  const auto isSmall = [&] {
+    gained = balance_->excess(cloth, begin, end_, contactReactions());
+    return gained <= 0.0 || gained <= kMostTaken * balance_->kineticAtEnd();
+  };
+  if (!isSmall()) {
     report.taken_anew = true;
+    const Stage stage{begin, h, end_.time, 1.0, Stage::Rates::kSinceBase};
+    if (settings_.method != IntegrationMethod::kBackwardEuler) {
+      stages_->forget();
+      stages_->solveLinearised(cloth, stage, {begin.positions, begin.velocities, h}, end_, report);
+    }
+    stages_->descend(cloth, stage, std::ref(isSmall), end_, report);
     stages_->forget();
-    stages_->solveSafely(cloth, {begin, h, end_.time, 1.0, Stage::Rates::kSinceBase},
-                         {begin.positions, begin.velocities, h}, end_, report);
     settle(end_.velocities);
-    gained = growth();
+    isSmall();
   }
   if (gained > 0.0) slowDown(cloth, gained, report);
 }
@@ -160,8 +162,9 @@ void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
 }
 
 /// Takes the state over from end_. @param anew the next step of BDF-2 is to start anew
-void Integrator::keep(const Cloth& cloth, ClothState& state, double h, bool anew) {
-  if (balance_) balance_->keep(cloth, end_);
+void Integrator::keep(const Cloth& cloth, ClothState& state, double h, bool anew,
+                      double energy_taken) {
+  if (balance_) balance_->keep(cloth, end_, energy_taken);
   if (history_) std::swap(history_->before, state);
   std::swap(state.positions, end_.positions);
   std::swap(state.velocities, end_.velocities);

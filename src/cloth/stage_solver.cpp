@@ -35,7 +35,6 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
       prescribed_(BlockVector::Zero(3, cloth.particleCount())),
       fixed_(cloth.particleCount(), 0) {
   if (cloth.effects().contacts) contacts_.emplace(matrix_);
-  if (settings.newton_iterations == 1 && !settings.keep_energy) return;
   trial_ = cloth.initialState();
   base_strains_.resize(cloth.strainCount());
   if (cloth.air()) fixed_air_.panels.resize(cloth.membrane().elements().size());
@@ -43,29 +42,30 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
 
 void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                         ClothState& result, StepReport& report) {
-  takeFirst(cloth, stage, guess, result, report);
+  solveLinearised(cloth, stage, guess, result, report);
   if (settings_.newton_iterations == 1) return;
   fixPast(cloth, stage, result);
-  iterateNewton(cloth, stage, settings_.newton_iterations - 1, result, report);
+  iterateNewton(cloth, stage, settings_.newton_iterations - 1, {}, result, report);
 }
 
-void StageSolver::solveSafely(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
-                              ClothState& result, StepReport& report) {
+void StageSolver::descend(const Cloth& cloth, const Stage& stage,
+                          const std::function<bool()>& enough, ClothState& result,
+                          StepReport& report) {
   constexpr int kLeastSolves = 20;
-  takeFirst(cloth, stage, guess, result, report);
   fixPast(cloth, stage, stage.base);
   for (AirPanel& panel : fixed_air_.panels) panel.lift.setZero();
-  if (!touching()) startFromRest(cloth, stage, result);
-  iterateNewton(cloth, stage, std::max(kLeastSolves, settings_.newton_iterations), result, report);
+  if (!touching()) retreatTowardsRest(cloth, stage, result);
+  iterateNewton(cloth, stage, std::max(kLeastSolves, settings_.newton_iterations), enough, result,
+                report);
 }
 
-/// The linearised stage.
-void StageSolver::takeFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
-                            ClothState& result, StepReport& report) {
+void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                                  ClothState& result, StepReport& report) {
   const Clock::time_point start = Clock::now();
   linearise(cloth, stage, guess);
   report.assembly_seconds += seconds(Clock::now() - start);
   report.linear_converged = solveFirst(cloth, stage, guess, report) && report.linear_converged;
+  linearised_norm_ = rhs_.norm();
   for (int i = 0; i < matrix_.size(); ++i) {
     const auto& attachment = cloth.attachments()[i];
     result.velocities[i] = guess.velocities[i] + solution_.col(i);
@@ -84,14 +84,25 @@ void StageSolver::fixPast(const Cloth& cloth, const Stage& stage, const ClothSta
   cloth.fixAir(at.positions, at.velocities, timeOf(stage), fixed_air_);
 }
 
-/// Takes the free particles to x*, without velocity, if the potential is lower there.
-void StageSolver::startFromRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
-  for (int i = 0; i < matrix_.size(); ++i) {
-    trial_.positions[i] = fixed_[i] ? result.positions[i] : stage.base.positions[i];
-    trial_.velocities[i] = fixed_[i] ? result.velocities[i] : Vector3d::Zero();
-  }
-  const double at_rest = incrementalPotential(cloth, stage, trial_);
+/// If the potential of the free particles at x*, without velocity, is lower, halves their way from
+/// there until it is not.
+void StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
+  constexpr double kLeastShare = 1e-9;
+  const auto placeAt = [&](double share) {
+    for (int i = 0; i < matrix_.size(); ++i) {
+      const Vector3d velocity = result.velocities[i];
+      trial_.velocities[i] = fixed_[i] ? velocity : Vector3d::Zero();
+      if (!fixed_[i] && share > 0.0) trial_.velocities[i] = share * velocity;
+      trial_.positions[i] = fixed_[i] ? result.positions[i]
+                                      : stage.base.positions[i] + stage.a * trial_.velocities[i];
+    }
+    return incrementalPotential(cloth, stage, trial_);
+  };
+  const double at_rest = placeAt(0.0);
   if (incrementalPotential(cloth, stage, result) <= at_rest) return;
+  double share = 0.5;
+  while (share > 0.0 && !(placeAt(share) <= at_rest))
+    share = share > kLeastShare ? 0.5 * share : 0.0;
   std::swap(result.positions, trial_.positions);
   std::swap(result.velocities, trial_.velocities);
 }
@@ -198,10 +209,12 @@ void StageSolver::assembleNewton(const Cloth& cloth, const Stage& stage, const C
 }
 
 /// @param most_solves linear ones
+/// @param enough may be empty
 void StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, int most_solves,
-                                ClothState& result, StepReport& report) {
+                                const std::function<bool()>& enough, ClothState& result,
+                                StepReport& report) {
   constexpr double kNearMinimum = 1e-2;  // relative residual from which the exact Hessian is tried
-  const double reference = rhs_.norm();
+  const double reference = linearised_norm_;
   const int last_solve = report.newton_iterations + most_solves;
   double potential = incrementalPotential(cloth, stage, result);
   prescribed_.setZero();  // the fixed particles have reached their places
@@ -220,6 +233,7 @@ void StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, int most
     if (!exact) report.linear_converged = report.linear_converged && solved;
     const Descent descent = solved ? searchLine(cloth, stage, result, potential) : Descent::kNone;
     if (descent == Descent::kFound) {
+      if (enough && enough()) break;
       hessian = norm <= kNearMinimum * reference ? Membrane::Hessian::kExact
                                                  : Membrane::Hessian::kProjected;
     } else if (descent == Descent::kNone && exact) {  // not positive definite here

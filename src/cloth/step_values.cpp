@@ -30,7 +30,7 @@ LinearSolverMethod readMethod(const YamlValue& value) {
 }
 
 void readSolver(const YamlValue& value, StepSettings& settings) {
-  value.requireKeys({}, {"method", "tolerance", "newton_iterations", "keep_energy", "threads"});
+  value.requireKeys({}, {"method", "tolerance", "newton_iterations", "threads"});
   if (value.has("method")) settings.solver = readMethod(value.at("method"));
   if (value.has("tolerance")) {
     settings.tolerance = value.at("tolerance").number();
@@ -43,9 +43,6 @@ void readSolver(const YamlValue& value, StepSettings& settings) {
     if (settings.newton_iterations < 1 || settings.newton_iterations > kMostNewtonIterations) {
       value.at("newton_iterations").refuse("must be an integer from 1 to 1000");
     }
-  }
-  if (value.has("keep_energy")) {
-    settings.keep_energy = value.at("keep_energy").oneOf({"true", "false"}) == "true";
   }
   if (value.has("threads")) {
     settings.threads = value.at("threads").integer();

@@ -212,7 +212,7 @@ ExtremeCase drawExtremeCase(std::uint64_t seed, ExtremeKind kind) {
     std::swap(extreme.shortest_step, extreme.longest_step);
   }
   extreme.disturbed_steps = 1 + random.below(8);
-  extreme.free_steps = 10 + random.below(20);
+  extreme.free_steps = 20 + random.below(20);
   extreme.magnitude = drawMagnitude(random, kind);
   if (kind == ExtremeKind::kFingertips) drawTouched(random, extreme);
   return extreme;

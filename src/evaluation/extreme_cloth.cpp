@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "haptex/evaluation/extreme_run.h"
@@ -21,7 +22,6 @@ cloth::StepSettings solvedSettings() {
   settings.solver = cloth::LinearSolverMethod::kCholesky;
   settings.tolerance = 1e-9;
   settings.newton_iterations = 100;
-  settings.keep_energy = true;
   settings.newton_tolerance = 1e-12;
   return settings;
 }
@@ -49,9 +49,8 @@ double slowestPeriod(const ExtremeCase& extreme, double extent) {
   return std::max(decay, 2.0 * extent * std::sqrt(extreme.density / tension));
 }
 
-double unbalancedOf(const cloth::Cloth& cloth, const cloth::ClothState& state) {
-  std::vector<Eigen::Vector3d> forces;
-  cloth.computeForces(state, forces);
+/// Largest force on a free particle over the largest on an attached one.
+double unbalancedOf(const cloth::Cloth& cloth, const std::vector<Eigen::Vector3d>& forces) {
   double held = 0.0, free = 0.0;
   for (std::size_t i = 0; i < forces.size(); ++i) {
     double& largest = cloth.attachments()[i] ? held : free;
@@ -60,22 +59,44 @@ double unbalancedOf(const cloth::Cloth& cloth, const cloth::ClothState& state) {
   return free / held;
 }
 
+/// The same without what a rounding of the positions makes of it, which is much in needles.
+double unbalancedOf(const cloth::Cloth& cloth, const cloth::ClothState& state) {
+  constexpr double kRoundings = 4.0;
+  std::vector<Eigen::Vector3d> forces, of_rounded;
+  cloth.computeForces(state, forces);
+  if (unbalancedOf(cloth, forces) <= 0.1 * kBalanced) return unbalancedOf(cloth, forces);
+  cloth::ClothState rounded = state;
+  RepeatableRandom random(1);
+  for (Eigen::Vector3d& position : rounded.positions) {
+    for (double& coordinate : position) {
+      coordinate *= 1.0 + std::numeric_limits<double>::epsilon() * random.uniform(-1.0, 1.0);
+    }
+  }
+  cloth.computeForces(rounded, of_rounded);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (cloth.attachments()[i]) continue;
+    const double norm = forces[i].norm();
+    const double rounding = kRoundings * (of_rounded[i] - forces[i]).norm();
+    if (norm > 0.0) forces[i] *= std::max(0.0, 1.0 - rounding / norm);
+  }
+  return unbalancedOf(cloth, forces);
+}
+
 cloth::StepSettings settingsOf(const ExtremeCase& extreme) {
   cloth::StepSettings settings;
   settings.newton_iterations = extreme.newton_iterations;
-  settings.keep_energy = true;
   return settings;
 }
 
-/// Steps until the cloth is at rest; false if it is not after kMostSettlingSteps.
-bool settleBy(const cloth::StepSettings& settings, double period, const cloth::Cloth& cloth,
-              const cloth::ClothState& rest, cloth::ClothState& state, Settling& settling) {
+/// Steps until the cloth is at rest; false if it is not after most_steps.
+bool settleBy(const cloth::StepSettings& settings, int most_steps, double period,
+              const cloth::Cloth& cloth, const cloth::ClothState& rest, cloth::ClothState& state,
+              Settling& settling) {
   constexpr double kStepsPerPeriod = 6.0;
-  constexpr int kMostSettlingSteps = 200;
   cloth::Integrator integrator(cloth, settings);
   const double slow = kReturnTolerance * extentOf(rest) / period;  // m/s
   double time_step = std::min(kFirstStep, period / kStepsPerPeriod);
-  for (int i = 0; i < kMostSettlingSteps; ++i) {
+  for (int i = 0; i < most_steps; ++i) {
     if (!integrator.step(cloth, state, time_step).accepted) ++settling.rejected;
     ++settling.steps;
     settling.error = distanceBetween(state, rest);
@@ -86,6 +107,23 @@ bool settleBy(const cloth::StepSettings& settings, double period, const cloth::C
     time_step = std::min(kStepGrowth * time_step, period / kStepsPerPeriod);
   }
   return false;
+}
+
+/// What kRoundingGrowth refers to (J), but for the energies themselves.
+double weightScale(const cloth::Cloth& cloth, const cloth::ClothState& state) {
+  double scale = 0.0;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    scale += cloth.masses()[i] * cloth.effects().gravity.norm() * state.positions[i].norm();
+  }
+  return scale;
+}
+
+/// Out of an equilibrium that is not stable.
+void push(const ExtremeCase& extreme, const cloth::Cloth& cloth, cloth::ClothState& state) {
+  RepeatableRandom random(extreme.seed + 4);
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (!cloth.attachments()[i]) state.positions[i] += 1e-3 * extreme.cell * random.direction();
+  }
 }
 
 }  // namespace
@@ -127,19 +165,25 @@ double energyOf(const cloth::Cloth& cloth, const cloth::ClothState& state) {
   return energy;
 }
 
-double weightScale(const cloth::Cloth& cloth, const cloth::ClothState& state) {
-  double scale = 0.0;
-  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    scale += cloth.masses()[i] * cloth.effects().gravity.norm() * state.positions[i].norm();
-  }
-  return scale;
-}
-
 bool isFinite(const cloth::ClothState& state) {
   const auto finite = [](const Eigen::Vector3d& vector) { return vector.allFinite(); };
   return std::isfinite(state.time) &&
          std::all_of(state.positions.begin(), state.positions.end(), finite) &&
          std::all_of(state.velocities.begin(), state.velocities.end(), finite);
+}
+
+void EnergyWatch::look(const cloth::Cloth& cloth, const cloth::ClothState& before,
+                       const cloth::ClothState& after, ExtremeOutcome& outcome) {
+  energies_.push_back(energyOf(cloth, before));
+  if (energies_.size() > cloth::EnergyBalance::kRemembered + 1) energies_.pop_front();
+  if (unwatched_-- > 0) return;
+  unwatched_ = 0;
+  const double most = *std::max_element(energies_.begin(), energies_.end());
+  const double energy = energyOf(cloth, after);
+  const double scale = std::abs(most) + std::abs(energy) + weightScale(cloth, after);
+  const double growth = scale > 0.0 ? (energy - most) / scale : 0.0;
+  outcome.growth = largerOrNaN(outcome.growth, growth);
+  if (!(growth <= kRoundingGrowth)) outcome.failure = ExtremeFailure::kEnergyGrew;
 }
 
 cloth::ClothState restOf(const cloth::Cloth& cloth) {
@@ -170,12 +214,12 @@ double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& 
 
 Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
                 const cloth::ClothState& rest, cloth::ClothState& state) {
+  constexpr int kMostSteps = 200, kMostSolvedSteps = 2000;
   Settling settling;
-  for (const cloth::StepSettings& settings : {settingsOf(extreme), solvedSettings()}) {
-    settling.slow = settings.newton_iterations == solvedSettings().newton_iterations;
-    if (settleBy(settings, slowestPeriod(extreme, extentOf(rest)), cloth, rest, state, settling)) {
-      break;
-    }
+  const double period = slowestPeriod(extreme, extentOf(rest));
+  settling.slow = !settleBy(settingsOf(extreme), kMostSteps, period, cloth, rest, state, settling);
+  if (settling.slow) {
+    settleBy(solvedSettings(), kMostSolvedSteps, period, cloth, rest, state, settling);
   }
   return settling;
 }
@@ -183,7 +227,15 @@ Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
 void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
                     const cloth::ClothState& rest, cloth::ClothState& state,
                     ExtremeOutcome& outcome) {
-  const Settling settling = settle(extreme, cloth, rest, state);
+  Settling settling = settle(extreme, cloth, rest, state);
+  bool elsewhere = settling.error > kReturnTolerance && settling.unbalanced <= kBalanced;
+  if (elsewhere && extreme.taut) {
+    const cloth::ClothState before = state;
+    push(extreme, cloth, state);
+    settling = settle(extreme, cloth, rest, state);
+    elsewhere = settling.error > kReturnTolerance && settling.unbalanced <= kBalanced &&
+                distanceBetween(state, before) <= kReturnTolerance;
+  }
   outcome.rejected += settling.rejected;
   outcome.return_error = settling.error;
   outcome.settling_steps = settling.steps;
@@ -191,8 +243,8 @@ void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
   if (!isFinite(state)) {
     outcome.failure = ExtremeFailure::kNotFinite;
   } else if (!(settling.error <= kReturnTolerance)) {
-    outcome.other_rest = !extreme.taut && settling.unbalanced <= kBalanced;
-    if (!outcome.other_rest) outcome.failure = ExtremeFailure::kNoReturn;
+    outcome.other_rest = elsewhere;
+    if (!elsewhere) outcome.failure = ExtremeFailure::kNoReturn;
     outcome.message = "unbalanced by " + std::to_string(settling.unbalanced);
   }
 }

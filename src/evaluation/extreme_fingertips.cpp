@@ -24,7 +24,6 @@ HapticLoopSettings loopSettings(const ExtremeCase& extreme, const cloth::ClothMe
   settings.large_scale_step = extreme.longest_step;
   settings.step.method = extreme.method;
   settings.step.newton_iterations = extreme.newton_iterations;
-  settings.step.keep_energy = true;
   settings.haptics.refinement = 1;
   return settings;
 }
@@ -115,13 +114,7 @@ class TouchedRun {
         return;
       }
     }
-    const double energy = energyOf(untouched_, before);
-    const double after = energyOf(untouched_, loop_.state());
-    const double scale =
-        std::abs(energy) + std::abs(after) + weightScale(untouched_, loop_.state());
-    const double growth = scale > 0.0 ? (after - energy) / scale : 0.0;
-    outcome_.growth = largerOrNaN(outcome_.growth, growth);
-    if (!(growth <= kRoundingGrowth)) outcome_.failure = ExtremeFailure::kEnergyGrew;
+    watch_.look(untouched_, before, loop_.state(), outcome_);
   }
 
   const ExtremeCase& extreme_;
@@ -130,6 +123,7 @@ class TouchedRun {
   cloth::Cloth untouched_;
   cloth::ClothState rest_;
   HapticLoop loop_;
+  EnergyWatch watch_{cloth::EnergyBalance::kRemembered};
   ExtremeOutcome outcome_;
 };
 

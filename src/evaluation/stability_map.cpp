@@ -137,7 +137,6 @@ StabilityCell findStability(IntegrationMethod method, int newton_iterations, dou
   cloth::StepSettings settings;
   settings.method = method;
   settings.newton_iterations = newton_iterations;
-  settings.keep_energy = true;
   StabilityCell cell{time_step, stiffness, Stability::kKept, 0.0};
   cell.energy_left = energyLeft(cloth, std::move(state), settings, time_step, kSteps);
   if (cell.energy_left < kKept) cell.stability = Stability::kDamped;

@@ -137,20 +137,17 @@ TEST_F(SceneFile, HasTheDocumentedSolverDefaults) {
   EXPECT_EQ(step.solver, LinearSolverMethod::kAutomatic);
   EXPECT_EQ(step.tolerance, 1e-6);
   EXPECT_EQ(step.newton_iterations, 1);
-  EXPECT_FALSE(step.keep_energy);
   EXPECT_EQ(step.threads, 1);
 }
 
 TEST_F(SceneFile, ReadsTheSolver) {
   const StepSettings step =
       load(kValid +
-           "solver: {method: cholesky, tolerance: 1e-9, newton_iterations: 5, "
-           "keep_energy: true, threads: 3}\n")
+           "solver: {method: cholesky, tolerance: 1e-9, newton_iterations: 5, threads: 3}\n")
           .step;
   EXPECT_EQ(step.solver, LinearSolverMethod::kCholesky);
   EXPECT_EQ(step.tolerance, 1e-9);
   EXPECT_EQ(step.newton_iterations, 5);
-  EXPECT_TRUE(step.keep_energy);
   EXPECT_EQ(step.threads, 3);
   EXPECT_EQ(load(kValid + "solver: {method: conjugate_gradient}\n").step.solver,
             LinearSolverMethod::kConjugateGradient);

@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "sheet: the key 'cells' is missing, required here: size, cells, diagonals"},
         Refusal{"UnknownSolverKey", "attach:", "solver: {iterations: 9}\nattach:",
                 "solver.iterations: unknown key, allowed here: method, tolerance, "
-                "newton_iterations, keep_energy, threads"},
+                "newton_iterations, threads"},
         Refusal{"UnknownAttachKey", "[top]", "[{corner: 1}]",
                 "attach[0].corner: unknown key, allowed here: particles"},
         Refusal{"MissingMesh", kSheet, "mesh: ./none.obj\n",

@@ -132,6 +132,9 @@ TradeOffTable smallTable() {
   table.points.back().step.method = cloth::IntegrationMethod::kExplicitEuler;
   table.references = computeReferences(table.cases, {16, 8}, 2, {});
   table.results = followPoints(table.points, table.cases, table.references, 100.0, 2, {});
+  for (std::size_t point = 0; point < table.points.size(); ++point) {  // whatever the machine
+    for (TradeOffResult& result : table.results[point]) result.cost = 0.01 * (point + 1.0);
+  }
   return table;
 }
 

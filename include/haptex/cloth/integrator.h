@@ -24,20 +24,19 @@ namespace haptex::cloth {
 /// end of the step: along the normal where it slips, altogether where it sticks, so that impacts
 /// are inelastic. BDF-2 starts anew after a step in which something touched.
 ///
-/// With StepSettings::keep_energy implicit methods gain no energy beyond the work that is done on
-/// the cloth (EnergyBalance). What
-/// a linearised stage, a buckling element or a solver's tolerance adds is taken out of the
-/// velocities. Where that would be more than a tenth of the kinetic energy, or a number is not
-/// finite, the step is taken anew: backward Euler by Newton iterations that begin at rest or lower
-/// (StageSolver::solveSafely()).
+/// Implicit methods gain no energy beyond the work that is done on the cloth and what it lost in
+/// the last steps (EnergyBalance). What a linearised stage, a buckling element or a solver's
+/// tolerance adds beyond is taken out of the velocities. Where that would be more than a tenth of
+/// the kinetic energy, or a number is not finite, the step is taken anew by backward Euler: Newton
+/// iterations from the linearised stage, cut short where rest would be better, until it is less
+/// (StageSolver::descend()).
 ///
 /// A step allocates nothing: all buffers are made by the constructor, and only those that the
 /// method needs.
 class Integrator {
  public:
   /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1),
-  ///   newton_iterations is less than 1, threads is not from 1 to kMostThreads, or an implicit
-  ///   method is to keep the energy of corotational elasticity
+  ///   newton_iterations is less than 1, or threads is not from 1 to kMostThreads
   Integrator(const Cloth& cloth, const StepSettings& settings);
 
   /// Advances `state` by `time_step` seconds; steps need not be uniform.
@@ -73,7 +72,7 @@ class Integrator {
   bool continuesHistory(const ClothState& begin, double h) const;
   bool touches() const;
   void settle(Velocities& velocities) const;
-  void keep(const Cloth& cloth, ClothState& state, double h, bool anew);
+  void keep(const Cloth& cloth, ClothState& state, double h, bool anew, double energy_taken);
 
   StepSettings settings_;
   std::size_t element_count_;
@@ -81,7 +80,7 @@ class Integrator {
   ClothState end_;              // the step's result before it is accepted
   std::optional<StageSolver> stages_;
   std::optional<ExplicitStep> explicit_step_;
-  std::optional<EnergyBalance> balance_;  // if energy is to be kept
+  std::optional<EnergyBalance> balance_;  // of implicit methods
   ClothState base_;                       // of a stage that does not start at the beginning
   std::vector<Eigen::Vector3d> forces_;   // N
   std::optional<History> history_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -73,13 +74,19 @@ class StageSolver {
   void solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess, ClothState& result,
              StepReport& report);
 
-  /// As solve() with Newton iterations whatever the settings say, from the solution of the
-  /// linearised stage or from rest where that has the lower incremental potential: so the result's
-  /// is at most that of rest. The air's areas are those of the base, and it does not lift: a lift
-  /// that is held fixed for long does work, which the true one in still air does not. For cloth
-  /// without contacts that hold, where rest is none of their states, and settings that keep energy.
-  void solveSafely(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
-                   ClothState& result, StepReport& report);
+  /// The linearised stage alone.
+  void solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                       ClothState& result, StepReport& report);
+
+  /// Newton iterations whatever the settings say, from the result of the last solve() or
+  /// solveLinearised(), which was of this stage; or, if rest has a lower incremental potential,
+  /// from where the straight way there first has: so that of the result is at most that of rest.
+  /// The air's areas are those of the base, and it does not lift: a lift that is held fixed for
+  /// long does work, which the true one in still air does not. Where contacts hold, rest is none of
+  /// their states, and is not looked at.
+  /// @param enough of a result: it needs no more iterations
+  void descend(const Cloth& cloth, const Stage& stage, const std::function<bool()>& enough,
+               ClothState& result, StepReport& report);
 
   /// The next solve starts from zero, not from the solution of the last.
   void forget() { solution_.setZero(); }
@@ -90,10 +97,8 @@ class StageSolver {
  private:
   enum class Descent { kFound, kBelowRounding, kNone };
 
-  void takeFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
-                 ClothState& result, StepReport& report);
   void fixPast(const Cloth& cloth, const Stage& stage, const ClothState& at);
-  void startFromRest(const Cloth& cloth, const Stage& stage, ClothState& result);
+  void retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result);
   void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
   void prescribe(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
   void eliminate();
@@ -101,8 +106,8 @@ class StageSolver {
                   StepReport& report);
   bool solveLinear(StepReport& report);
   bool touching() const { return contacts_ && !contacts_->empty(); }
-  void iterateNewton(const Cloth& cloth, const Stage& stage, int most_solves, ClothState& result,
-                     StepReport& report);
+  void iterateNewton(const Cloth& cloth, const Stage& stage, int most_solves,
+                     const std::function<bool()>& enough, ClothState& result, StepReport& report);
   void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at,
                       Membrane::Hessian hessian, StepReport& report);
   Descent searchLine(const Cloth& cloth, const Stage& stage, ClothState& result, double& potential);
@@ -114,8 +119,9 @@ class StageSolver {
   SymmetricBlockMatrix matrix_;
   LinearSolver solver_;
   BlockVector rhs_;
-  BlockVector solution_;    // of the last linear system, with the prescribed values
-  BlockVector prescribed_;  // velocity changes of the attached particles
+  BlockVector solution_;          // of the last linear system, with the prescribed values
+  BlockVector prescribed_;        // velocity changes of the attached particles
+  double linearised_norm_ = 0.0;  // N s, of the right-hand side of the linearised stage
   std::vector<char> fixed_;
   bool any_fixed_ = false;
   std::optional<ContactStep> contacts_;

@@ -58,10 +58,6 @@ struct StepSettings {
   /// linearised one, or cannot fall any more for rounding, or this number is spent.
   int newton_iterations = 1;
   double newton_tolerance = 1e-8;
-  /// Whether every step is held to gain no energy beyond the work that is done on the cloth
-  /// (EnergyBalance). Where the linearised step would gain much, as in stiff cloth that turns
-  /// quickly, it costs up to 20 linear solves. Not with Elasticity::kCorotational.
-  bool keep_energy = false;
   /// Threads that share the work of a step, 1 to 64, with the one that calls it. The results are
   /// the same for any number.
   int threads = 1;

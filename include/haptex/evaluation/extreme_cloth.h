@@ -1,6 +1,7 @@
 // The cloth of an extreme case, at rest, disturbed and at rest again.
 #pragma once
 
+#include <deque>
 #include <vector>
 
 #include "haptex/cloth/cloth.h"
@@ -19,9 +20,22 @@ cloth::Cloth clothOf(const ExtremeCase& extreme, const cloth::ClothMesh& mesh,
 
 /// Kinetic energy of the free particles and potential energy (J).
 double energyOf(const cloth::Cloth& cloth, const cloth::ClothState& state);
-/// What kRoundingGrowth refers to (J), but for the energies themselves.
-double weightScale(const cloth::Cloth& cloth, const cloth::ClothState& state);
 bool isFinite(const cloth::ClothState& state);
+
+/// Watches that steps in which nothing does work gain no energy beyond what EnergyBalance allows.
+class EnergyWatch {
+ public:
+  /// @param unwatched steps at first that may gain what was lost while work was done
+  explicit EnergyWatch(int unwatched) : unwatched_(unwatched) {}
+
+  /// Takes a step of the cloth from a state to a finite one; sets outcome's growth and failure.
+  void look(const cloth::Cloth& cloth, const cloth::ClothState& before,
+            const cloth::ClothState& after, ExtremeOutcome& outcome);
+
+ private:
+  int unwatched_;
+  std::deque<double> energies_;  // J, before the last steps
+};
 
 /// The cloth's rest state, from its initial positions.
 /// @throws std::runtime_error if it does not come to rest

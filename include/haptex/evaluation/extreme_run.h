@@ -12,14 +12,14 @@ enum class ExtremeFailure {
   kThrew,       ///< an exception
   kNotFinite,   ///< a number of the state, an energy or a fingertip's force is not finite
   kStuck,       ///< the last steps were rejected: the simulation did not go on
-  kEnergyGrew,  ///< in a step in which nothing did work on the cloth
-  kNoReturn,    ///< neither at the rest state at the end nor, if it hangs, at another one
+  kEnergyGrew,  ///< in steps in which nothing did work on the cloth
+  kNoReturn,    ///< neither at the rest state at the end nor at another one
   kNone,
 };
 
 const char* nameOf(ExtremeFailure failure);
 
-/// Largest growth of energy in a step without work that counts as rounding, over the scale of the
+/// Largest growth of energy in steps without work that counts as rounding, over the scale of the
 /// energies: kinetic and potential before and after, and what the sheet weighs times how far it
 /// hangs from the origin, to which gravity's energy refers.
 constexpr double kRoundingGrowth = 1e-10;
@@ -27,8 +27,8 @@ constexpr double kRoundingGrowth = 1e-10;
 /// that counts as returned.
 constexpr double kReturnTolerance = 1e-3;
 
-/// Largest force on a free particle, over the largest on an attached one, of a cloth that counts as
-/// at rest elsewhere.
+/// Largest force on a free particle, beyond what a rounding of the positions makes, over the largest
+/// on an attached one, of a cloth that counts as at rest elsewhere.
 constexpr double kBalanced = 1e-3;
 
 struct ExtremeOutcome {
@@ -36,21 +36,23 @@ struct ExtremeOutcome {
   std::string message;        ///< of an exception
   int steps = 0;              ///< until the cloth was let settle
   int rejected = 0;           ///< steps, of all
-  double growth = 0.0;        ///< largest of steps without work, over the scale of the energies
+  double growth = 0.0;        ///< beyond the energy before the last steps (EnergyWatch), of steps
+                              ///< without work; the largest, over the scale of the energies
   double return_error = 0.0;  ///< over the extent at rest; 0 if it was not looked at
   int settling_steps = 0;     ///< until the cloth was back
   bool slow = false;          ///< it came back with more solves per step only
-  bool other_rest = false;    ///< a hanging sheet has come to rest elsewhere: folded
+  bool other_rest = false;    ///< it has come to rest elsewhere: folded, needles turned over
 };
 
 /// Runs a case: the cloth at rest, the disturbance, free steps with the energy watched, then larger
 /// steps until it is at rest. An explicit method is held to finite numbers only, whatever number of
 /// its steps is rejected.
 ///
-/// A taut sheet has one rest state to return to. A hanging one has others: strains do not tell a
-/// triangle from its mirror image, so folds cost nothing, and in a sheet that resists stretch and
-/// shear but not bending folds may lock each other as in crumpled paper. A disturbance that turns
-/// elements over may leave it there; it counts as at rest if its forces are balanced.
+/// A hanging sheet has more than one rest state: strains do not tell a triangle from its mirror
+/// image, so folds cost nothing, and in a sheet that resists stretch and shear but not bending folds
+/// may lock each other as in crumpled paper. A disturbance that turns elements over may leave it
+/// there; it counts as at rest if its forces are balanced. In a taut sheet only needles stay turned
+/// over: it counts as at rest elsewhere if it also comes back there after a push.
 ExtremeOutcome runExtremeCase(const ExtremeCase& extreme);
 
 }  // namespace haptex::evaluation
