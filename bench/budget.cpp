@@ -2,9 +2,9 @@
 // promises the one that there is? A sample of wool and one of the linear reference swing as in the
 // trade-off study, over and over, in real time with a budget; every three seconds twice as many
 // busy threads as there are cores begin or stop to compete. Prints the share of cycles inside the
-// budget from a second after each such change on, how often the quality was changed, and the error
-// of positions against the study's reference beside what the qualities that ran had been measured
-// to miss.
+// budget from a second after each such change on, how often the quality was changed, and the errors
+// in position, force and energy against the study's reference beside what the qualities that ran
+// had been measured to miss.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -136,14 +136,41 @@ double squaredError(const nodes::SimulatedCloth& simulation, int cells,
   return sum / count;
 }
 
+Eigen::Vector3d momentumOf(const nodes::SimulatedCloth& simulation) {
+  Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
+  const std::vector<double>& masses = simulation.cloth().masses();
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    momentum += masses[i] * simulation.state().velocities[i];
+  }
+  return momentum;
+}
+
+Eigen::Vector3d weightOf(const cloth::Cloth& cloth) {
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();
+  for (double mass : cloth.masses()) weight += mass * cloth.effects().gravity;
+  return weight;
+}
+
+double energyOf(const nodes::SimulatedCloth& simulation) {
+  const cloth::Cloth& cloth = simulation.cloth();
+  return cloth.potentialEnergy(simulation.state()) + cloth.kineticEnergy(simulation.state());
+}
+
+/// Sums of squared errors over cycles (m^2, N^2, J^2).
+struct Squares {
+  double position = 0.0;
+  double force = 0.0;
+  double energy = 0.0;
+};
+
 /// What the loop's thread notes down.
 struct Record {
   int cycles = 0;
-  double squared_error = 0.0;           // m^2, sum over cycles
-  double expected_squared_error = 0.0;  // m^2, likewise
-  int settled[2] = {0, 0};              // cycles without and with load, settled
-  int within[2] = {0, 0};               // those inside the budget
-  double quality[2] = {0.0, 0.0};       // sum of their places on the ladder
+  Squares error;
+  Squares expected;
+  int settled[2] = {0, 0};         // cycles without and with load, settled
+  int within[2] = {0, 0};          // those inside the budget
+  double quality[2] = {0.0, 0.0};  // sum of their places on the ladder
   std::size_t changes = 0;
 };
 
@@ -169,6 +196,8 @@ class BudgetRun {
         [&](const nodes::SimulatedCloth& simulation, bool) { note(simulation, reference); },
         [&](nodes::SimulatedCloth& simulation) {
           direct(simulation, bar_);
+          if (simulation.steps() == 0) first_energy_ = energyOf(simulation);
+          momentum_ = momentumOf(simulation);
           plan_ = simulation.plan();
           step_begin_ = Clock::now();
         });
@@ -207,11 +236,17 @@ class BudgetRun {
     const double took = since(step_begin_);
     const double time = std::chrono::duration<double>(step_begin_ - begin_).count();
     ++record_.cycles;
-    record_.squared_error +=
-        squaredError(simulation, cells_, reference.snapshots.at(simulation.steps() - 1));
+    const evaluation::Snapshot& exact = reference.snapshots.at(simulation.steps() - 1);
+    const Eigen::Vector3d force =
+        (momentumOf(simulation) - momentum_) / kCycle - weightOf(simulation.cloth());
+    record_.error.position += squaredError(simulation, cells_, exact);
+    record_.error.force += (force - exact.force).squaredNorm();
+    record_.error.energy += std::pow(energyOf(simulation) - first_energy_ - exact.energy, 2);
     for (const cloth::MeasuredQuality& measured : expected_[plan_]) {
       if (measured.motion != "swing") continue;
-      record_.expected_squared_error += measured.position_error * measured.position_error;
+      record_.expected.position += std::pow(measured.position_error, 2);
+      record_.expected.force += std::pow(measured.force_error, 2);
+      record_.expected.energy += std::pow(measured.energy_error, 2);
     }
     if (std::fmod(time, kPhase) < kSettling || time >= kPhases * kPhase) return;
     const int loaded = static_cast<int>(time / kPhase) % 2;
@@ -230,6 +265,8 @@ class BudgetRun {
   // Touched by the loop's thread.
   Record record_;
   std::size_t plan_ = 0;
+  double first_energy_ = 0.0;  // J
+  Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();
   Clock::time_point step_begin_, begin_;
 };
 
@@ -246,11 +283,17 @@ void print(const std::string& fabric, const Record& record) {
     bench::printLine(name + which + "mean_rung", record.quality[loaded] / cycles, "");
   }
   bench::printLine(name + "changes", static_cast<double>(record.changes), "");
-  const double expected = std::sqrt(record.expected_squared_error / record.cycles);
-  const double measured = std::sqrt(record.squared_error / record.cycles);
-  bench::printLine(name + "expected_position_error", 1e3 * expected, "mm");
-  bench::printLine(name + "position_error", 1e3 * measured, "mm");
-  bench::printLine(name + "error_over_expected", measured / expected, "");
+  const auto printError = [&](const std::string& of, double expected, double error, double scale,
+                              const char* unit) {
+    expected = std::sqrt(expected / record.cycles);
+    error = std::sqrt(error / record.cycles);
+    bench::printLine(name + "expected_" + of + "_error", scale * expected, unit);
+    bench::printLine(name + of + "_error", scale * error, unit);
+    bench::printLine(name + of + "_error_over_expected", error / expected, "");
+  };
+  printError("position", record.expected.position, record.error.position, 1e3, "mm");
+  printError("force", record.expected.force, record.error.force, 1e3, "mN");
+  printError("energy", record.expected.energy, record.error.energy, 1e3, "mJ");
 }
 
 void runBench(const std::string& name) {

@@ -168,7 +168,7 @@ void writeTable(std::ostream& out, const TradeOffTable& table,
 
 void writeQualities(std::ostream& out, const std::vector<Quality>& qualities,
                     const std::string& machine) {
-  out << "# Written by scripts/update_presets; do not edit. Format: docs/trade_off.md\n"
+  out << "# Written by scripts/update_presets; do not edit. Format: docs/quality.md\n"
       << "machine: \"" << machine << "\"\n"
       << "qualities:\n"
       << std::setprecision(4);

@@ -227,7 +227,7 @@ TEST(Qualities, AreWrittenAsYaml) {
   std::ostringstream out;
   writeQualities(out, {quality}, "some processor");
   EXPECT_EQ(out.str(),
-            "# Written by scripts/update_presets; do not edit. Format: docs/trade_off.md\n"
+            "# Written by scripts/update_presets; do not edit. Format: docs/quality.md\n"
             "machine: \"some processor\"\n"
             "qualities:\n"
             "  - name: fast\n"

@@ -49,8 +49,8 @@ struct Snapshot {
   /// m, of (kComparedIntervals + 1)^2 points of the sample, row by row from its lower edge; between
   /// particles interpolated bilinearly in the cell
   std::vector<Eigen::Vector3d> positions;
-  /// N, of what holds the cloth. Drape: the mean over the cycle before, from the cloth's change of
-  /// momentum. Otherwise: of the upper edge, at this instant.
+  /// N, of what holds the cloth: the mean over the cycle before, from the cloth's change of
+  /// momentum. Hang, and stretch while the lower edge is held: of the upper edge, at this instant.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   double energy = 0.0;  ///< J, kinetic and potential, above that at the beginning
 };
