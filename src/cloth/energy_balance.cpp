@@ -27,12 +27,16 @@ double workOf(const Cloth& cloth, const std::vector<Vector3d>& forces, const Pos
   return work;
 }
 
+/// Of the contacts' forces (J) over the ways of the bodies, and out of what they had penetrated.
 double contactWork(const Cloth& cloth, const std::vector<ContactReaction>& reactions,
-                   const Positions& begin, const Positions& end) {
+                   const Positions& begin, double h) {
   double work = 0.0;
   for (std::size_t c = 0; c < reactions.size(); ++c) {
-    const int particle = cloth.contacts()[c].particle;
-    work += reactions[c].force.dot(end[particle] - begin[particle]);
+    const ParticleContact& contact = cloth.contacts()[c];
+    const Vector3d way = h * contact.velocity;
+    const double depth =
+        -contact.gap - contact.normal.dot(begin[contact.particle] - (contact.place - way));
+    work += reactions[c].force.dot(way + std::max(0.0, depth) * contact.normal);
   }
   return work;
 }
@@ -80,12 +84,13 @@ double EnergyBalance::growth(const Cloth& cloth, const ClothState& begin, const 
             (std::abs(potential_end_) + std::abs(potential_begin_) + kinetic_begin_ + kinetic_end_);
   if (growth <= 0.0) return growth;
   growth -= std::max(0.0, attachmentWork(cloth, begin, end));
-  growth -= std::max(0.0, contactWork(cloth, reactions, begin.positions, end.positions));
-  if (cloth.air()) {
-    growth -=
-        (end.time - begin.time) * std::max({0.0, airPower(cloth, begin), airPower(cloth, end)});
+  const double h = end.time - begin.time;
+  growth -= std::max(0.0, contactWork(cloth, reactions, begin.positions, h));
+  if (cloth.air() && !(growth <= 0.0)) {
+    const double at_end = std::max(0.0, h * airPower(cloth, end));
+    growth -= growth <= at_end ? growth : std::max(at_end, h * airPower(cloth, begin));
   }
-  return growth > 0.0 ? growth : 0.0;  // work that is left over is not for later steps
+  return growth <= 0.0 ? 0.0 : growth;  // work that is left over is not for later steps
 }
 
 void EnergyBalance::keep(const Cloth& cloth, const ClothState& end, double taken) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <limits>
 
 #include "fixtures.h"
 #include "haptex/cloth/energy_balance.h"
@@ -185,6 +186,45 @@ TEST(EnergyBalance, LetsAStepGainWhatThoseBeforeItHaveLost) {
   excessOf(0.5, true);
   for (Vector3d& position : state.positions) position.x() += 0.5;  // goes on elsewhere
   EXPECT_GT(excessOf(1.0, false), 0.0);
+}
+
+TEST(EnergyBalance, TakesWhatIsNotFiniteForExcess) {
+  const Cloth cloth(square(1), elasticFabric(100.0), {});
+  const ClothState state = cloth.initialState();
+  EnergyBalance balance(cloth);
+  balance.begin(cloth, state);
+  for (double speed : {std::numeric_limits<double>::quiet_NaN(), 1e200}) {
+    ClothState next = state;
+    next.velocities[0].x() = speed;
+    EXPECT_FALSE(balance.excess(cloth, state, next, {}) <= 0.0) << speed;
+  }
+}
+
+// A particle is driven downwards by v and thereby gains m v^2 / 2, while a force F up acts on it.
+TEST(EnergyBalance, CountsTheWorkOfBodiesThatMove) {
+  constexpr double kSpeed = 0.5, kForce = 10.0, kStep = 0.01;
+  ModelledEffects effects;
+  effects.contacts = true;
+  Cloth cloth(square(1), elasticFabric(100.0), effects);
+  const ClothState state = cloth.initialState();
+  ClothState next = state;
+  next.time = kStep;
+  next.velocities[0].z() = -kSpeed;
+  const double gained = 0.5 * cloth.masses()[0] * kSpeed * kSpeed;
+  const auto excess = [&](double velocity, double gap) {
+    const Vector3d of_body(0.0, 0.0, velocity);
+    cloth.setContacts(
+        {{0, Vector3d::UnitZ(), state.positions[0] + kStep * of_body, gap, of_body, 0.0, kStep}});
+    EnergyBalance balance(cloth);
+    balance.begin(cloth, state);
+    return balance.excess(cloth, state, next,
+                          {{ContactReaction::State::kSlips, kForce * Vector3d::UnitZ()}});
+  };
+  EXPECT_NEAR(excess(0.0, 0.0), gained, 1e-9 * gained);   // a body at rest does no work
+  EXPECT_NEAR(excess(-0.1, 0.0), gained, 1e-9 * gained);  // one that gives way takes it
+  const double way = 0.5 * gained / kForce;
+  EXPECT_NEAR(excess(way / kStep, 0.0), 0.5 * gained, 1e-9 * gained);
+  EXPECT_NEAR(excess(0.0, -way), 0.5 * gained, 1e-9 * gained);  // pushed out of it
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ class EnergyBalance {
   /// The work of attachments is that of their forces at the end of the step, as it is in backward
   /// Euler, or of the mean of those at both ends, as it is to the second order, if that is more;
   /// but no more than that of a jump at the beginning of the step. That of the air is its power at
-  /// the beginning or the end, whichever is more. That of contacts is of their forces over the way
-  /// of their particles.
+  /// the beginning or the end, whichever is more. That of contacts is of their forces over the ways
+  /// of the bodies and out of what they had penetrated.
   /// @param begin as for begin()
   /// @param end   its time included
   /// @param reactions in the order of Cloth::contacts(); empty: none acted
