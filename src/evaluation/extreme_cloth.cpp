@@ -88,14 +88,17 @@ cloth::StepSettings settingsOf(const ExtremeCase& extreme) {
   return settings;
 }
 
-/// Steps until the cloth is at rest; false if it is not after most_steps.
+/// Steps until the cloth is at rest; false if it is not after most_steps, or does not move any
+/// more.
 bool settleBy(const cloth::StepSettings& settings, int most_steps, double period,
               const cloth::Cloth& cloth, const cloth::ClothState& rest, cloth::ClothState& state,
               Settling& settling) {
   constexpr double kStepsPerPeriod = 6.0;
+  constexpr int kStillSteps = 300;
   cloth::Integrator integrator(cloth, settings);
   const double slow = kReturnTolerance * extentOf(rest) / period;  // m/s
   double time_step = std::min(kFirstStep, period / kStepsPerPeriod);
+  int still = 0;
   for (int i = 0; i < most_steps; ++i) {
     if (!integrator.step(cloth, state, time_step).accepted) ++settling.rejected;
     ++settling.steps;
@@ -103,6 +106,8 @@ bool settleBy(const cloth::StepSettings& settings, int most_steps, double period
     const double speed = largestSpeed(state);
     if (settling.error <= kReturnTolerance && speed <= slow) return true;
     settling.unbalanced = unbalancedOf(cloth, state);
+    still = speed <= 1e-6 * slow ? still + 1 : 0;
+    if (still == kStillSteps) return false;
     if (speed <= 1e-2 * slow && settling.unbalanced <= 0.1 * kBalanced) return true;  // elsewhere
     time_step = std::min(kStepGrowth * time_step, period / kStepsPerPeriod);
   }
@@ -214,7 +219,7 @@ double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& 
 
 Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
                 const cloth::ClothState& rest, cloth::ClothState& state) {
-  constexpr int kMostSteps = 200, kMostSolvedSteps = 2000;
+  constexpr int kMostSteps = 200, kMostSolvedSteps = 20000;
   Settling settling;
   const double period = slowestPeriod(extreme, extentOf(rest));
   settling.slow = !settleBy(settingsOf(extreme), kMostSteps, period, cloth, rest, state, settling);

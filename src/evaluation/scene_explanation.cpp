@@ -187,6 +187,9 @@ void printErrors(const cloth::Scene& scene, const material::Fabric& fabric,
            text("%s: cells of %.3g mm, steps of %.3g ms, %s", quality->name.c_str(),
                 1e3 * quality->cell_size, 1e3 * quality->time_step,
                 methodName(quality->step.method).c_str()));
+  if (kNear * cellSize(scene.mesh) < quality->cell_size) {
+    printRow(out, "", "the scene's cells are finer; most of these errors comes from the step");
+  }
   const bool same =
       std::any_of(quality->measured.begin(), quality->measured.end(),
                   [&](const auto& measured) { return measured.fabric == fabric.name; });
@@ -273,10 +276,11 @@ const cloth::Quality* nearestQuality(const cloth::Scene& scene,
         quality.step.newton_iterations != scene.step.newton_iterations) {
       continue;
     }
-    const double cells = std::abs(std::log(quality.cell_size / cellSize(scene.mesh)));
+    const double coarser = std::log(cellSize(scene.mesh) / quality.cell_size);
     const double steps = std::abs(std::log(quality.time_step / scene.time_step));
-    if (std::max(cells, steps) > std::log(kNear) || cells + steps >= least) continue;
-    least = cells + steps;
+    if (std::max(coarser, steps) > std::log(kNear)) continue;
+    if (std::abs(coarser) + steps >= least) continue;
+    least = std::abs(coarser) + steps;
     nearest = &quality;
   }
   return nearest;

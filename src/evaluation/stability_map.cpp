@@ -80,25 +80,6 @@ HighestMode highestMode(const cloth::Cloth& cloth) {
   return mode;
 }
 
-/// Largest modulus by which a step multiplies an oscillation, x = angular frequency times step.
-double amplification(IntegrationMethod method, double x) {
-  const std::complex<double> z(0.0, x);
-  switch (method) {
-    case IntegrationMethod::kExplicitEuler:
-      return std::abs(1.0 + z);
-    case IntegrationMethod::kExplicitMidpoint:
-      return std::abs(1.0 + z + z * z / 2.0);
-    case IntegrationMethod::kRungeKutta4:
-      return std::abs(1.0 + z + z * z / 2.0 + z * z * z / 6.0 + z * z * z * z / 24.0);
-    case IntegrationMethod::kTwoStepEuler: {
-      const double half = 1.0 - 0.5 * x * x;  // of the trace; the determinant is 1
-      return std::abs(half) <= 1.0 ? 1.0 : std::abs(half) + std::sqrt(half * half - 1.0);
-    }
-    default:
-      throw std::invalid_argument("an implicit method has no limit of stability");
-  }
-}
-
 template <typename Grows>
 double bisect(Grows&& grows) {
   double low = 1e-3, high = 10.0;
@@ -146,6 +127,24 @@ StabilityCell findStability(IntegrationMethod method, int newton_iterations, dou
 
 double highestFrequency(double stiffness) {
   return highestMode(vibratingCloth(stiffness)).frequency;
+}
+
+double amplification(IntegrationMethod method, double phase) {
+  const std::complex<double> z(0.0, phase);
+  switch (method) {
+    case IntegrationMethod::kExplicitEuler:
+      return std::abs(1.0 + z);
+    case IntegrationMethod::kExplicitMidpoint:
+      return std::abs(1.0 + z + z * z / 2.0);
+    case IntegrationMethod::kRungeKutta4:
+      return std::abs(1.0 + z + z * z / 2.0 + z * z * z / 6.0 + z * z * z * z / 24.0);
+    case IntegrationMethod::kTwoStepEuler: {
+      const double half = 1.0 - 0.5 * phase * phase;  // of the trace; the determinant is 1
+      return std::abs(half) <= 1.0 ? 1.0 : std::abs(half) + std::sqrt(half * half - 1.0);
+    }
+    default:
+      throw std::invalid_argument("an implicit method has no limit of stability");
+  }
 }
 
 StabilityLimit findStabilityLimit(IntegrationMethod method, double stiffness) {

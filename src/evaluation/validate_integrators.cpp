@@ -5,6 +5,7 @@
 #include "haptex/cloth/integrator.h"
 #include "haptex/evaluation/cloth_oracles.h"
 #include "haptex/evaluation/cloth_swing.h"
+#include "haptex/evaluation/stability_map.h"
 
 namespace haptex::evaluation {
 namespace {
@@ -57,11 +58,9 @@ double growthPerStep(IntegrationMethod method) {
       return std::abs((middle - (1.0 - g) * (1.0 - g)) / (g * (2.0 - g - (1.0 - g) * z)));
     }
     case IntegrationMethod::kExplicitEuler:
-      return std::abs(1.0 + z);
     case IntegrationMethod::kExplicitMidpoint:
-      return std::abs(1.0 + z + z * z / 2.0);
     case IntegrationMethod::kRungeKutta4:
-      return std::abs(1.0 + z + z * z / 2.0 + z * z * z / 6.0 + z * z * z * z / 24.0);
+      return amplification(method, kPhase);
     default:  // the midpoint, and two-step Euler on average over a period
       return 1.0;
   }

@@ -91,6 +91,27 @@ TEST_P(StepAllocationOfOtherModels, NoStepAllocatesAfterStartUp) {
   }
 }
 
+TEST(StepAllocation, StepsThatAreTakenAnewAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  material::Fabric fabric = linearFabric();
+  fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(1e6);
+  const Cloth cloth(square(8), fabric, {});
+  for (const NamedIntegrationMethod& named : kIntegrationMethods) {
+    if (!isImplicit(named.method)) continue;
+    StepSettings settings;
+    settings.method = named.method;
+    Integrator integrator(cloth, settings);
+    ClothState state = randomState(cloth, 1e-4, 100.0);
+    const long before = allocations;
+    bool anew = false;
+    for (int i = 0; i < 3; ++i) anew = integrator.step(cloth, state, 0.1).taken_anew || anew;
+    EXPECT_EQ(allocations - before, 0) << named.name;
+    EXPECT_TRUE(anew) << named.name;
+  }
+}
+
 TEST(StepAllocation, ExplicitIntegratorsHoldNoMatrix) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer brings its own malloc";

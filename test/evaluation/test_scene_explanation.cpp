@@ -101,6 +101,13 @@ TEST(NearestQuality, IsTheOneThatDiffersLeastAmongThoseThatCompute) {
   scene.time_step = 0.1;
   EXPECT_EQ(nearest(), "none");
   scene.time_step = 0.01;
+  scene.mesh = cloth::makeRectangle(0.2, 0.2, 10, 10, cloth::Triangulation::kOneWay);
+  EXPECT_EQ(nearest(), "coarse");
+  scene.mesh = cloth::makeRectangle(0.2, 0.2, 5, 5, cloth::Triangulation::kOneWay);
+  EXPECT_EQ(nearest(), "none") << "as coarse as 40 mm";
+  scene.mesh = cloth::makeRectangle(0.2, 0.2, 100, 100, cloth::Triangulation::kOneWay);
+  EXPECT_EQ(nearest(), "near") << "as fine as 2 mm";
+  scene.time_step = 0.01;
   scene.effects.elasticity = cloth::Elasticity::kCorotational;
   EXPECT_EQ(nearest(), "none") << "which was not studied";
 }

@@ -31,7 +31,8 @@ cloth::Scene withoutEffect(cloth::Scene scene, const std::string& name);
 double cellSize(const cloth::ClothMesh& mesh);
 
 /// The studied quality that is nearest to a scene, of those with the same integrator, as many
-/// solves, and cells and time step that differ by less than a half.
+/// solves, a time step that differs by less than a factor of 1.5, and cells more than two thirds as
+/// large. They may be much larger: the errors of the study are those of the step nearly all.
 /// @returns null if there is none
 const cloth::Quality* nearestQuality(const cloth::Scene& scene,
                                      const std::vector<cloth::Quality>& studied);

@@ -33,6 +33,12 @@ StabilityCell findStability(cloth::IntegrationMethod method, int newton_iteratio
 /// The sheet's highest angular frequency (rad/s).
 double highestFrequency(double stiffness);
 
+/// Largest modulus by which a step of an explicit method multiplies an oscillation y' = i omega y,
+/// or x'' = -omega^2 x with two-step Euler.
+/// @param phase omega times the time step
+/// @throws std::invalid_argument if the method is implicit
+double amplification(cloth::IntegrationMethod method, double phase);
+
 /// The longest time step of an explicit method, times the highest angular frequency of the sheet,
 /// at which the energy of its highest mode grows less than 1e5-fold in 1000 steps: measured with
 /// it, and what the method's amplification of a linear oscillator gives.
