@@ -100,9 +100,10 @@ void StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, Clo
   };
   const double at_rest = placeAt(0.0);
   if (incrementalPotential(cloth, stage, result) <= at_rest) return;
-  double share = 0.5;
-  while (share > 0.0 && !(placeAt(share) <= at_rest))
+  double share = 1.0;
+  do {
     share = share > kLeastShare ? 0.5 * share : 0.0;
+  } while (!(placeAt(share) <= at_rest) && share > 0.0);
   std::swap(result.positions, trial_.positions);
   std::swap(result.velocities, trial_.velocities);
 }
@@ -231,7 +232,9 @@ void StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, int most
     const bool solved = solveLinear(report);
     const bool exact = hessian == Membrane::Hessian::kExact;
     if (!exact) report.linear_converged = report.linear_converged && solved;
-    const Descent descent = solved ? searchLine(cloth, stage, result, potential) : Descent::kNone;
+    // Of the projected Hessian an inexact solution will do: the line search judges it.
+    const Descent descent =
+        solved || !exact ? searchLine(cloth, stage, result, potential) : Descent::kNone;
     if (descent == Descent::kFound) {
       if (enough && enough()) break;
       hessian = norm <= kNearMinimum * reference ? Membrane::Hessian::kExact

@@ -59,25 +59,20 @@ double unbalancedOf(const cloth::Cloth& cloth, const std::vector<Eigen::Vector3d
   return free / held;
 }
 
-/// The same without what a rounding of the positions makes of it, which is much in needles.
-double unbalancedOf(const cloth::Cloth& cloth, const cloth::ClothState& state) {
-  constexpr double kRoundings = 4.0;
-  std::vector<Eigen::Vector3d> forces, of_rounded;
+/// The same of groups of particles within the tolerance of each other, whose forces add up: what
+/// acts within them, in needles mostly, decides about places to less than the tolerance.
+double unbalancedOf(const cloth::Cloth& cloth, const cloth::ClothState& state, double extent) {
+  std::vector<Eigen::Vector3d> forces;
   cloth.computeForces(state, forces);
-  if (unbalancedOf(cloth, forces) <= 0.1 * kBalanced) return unbalancedOf(cloth, forces);
-  cloth::ClothState rounded = state;
-  RepeatableRandom random(1);
-  for (Eigen::Vector3d& position : rounded.positions) {
-    for (double& coordinate : position) {
-      coordinate *= 1.0 + std::numeric_limits<double>::epsilon() * random.uniform(-1.0, 1.0);
-    }
-  }
-  cloth.computeForces(rounded, of_rounded);
+  const double single = unbalancedOf(cloth, forces);
+  if (single <= 0.1 * kBalanced) return single;
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    if (cloth.attachments()[i]) continue;
-    const double norm = forces[i].norm();
-    const double rounding = kRoundings * (of_rounded[i] - forces[i]).norm();
-    if (norm > 0.0) forces[i] *= std::max(0.0, 1.0 - rounding / norm);
+    for (std::size_t j = 0; j < i; ++j) {
+      const double apart = (state.positions[i] - state.positions[j]).norm();
+      if (apart > kReturnTolerance * extent || cloth.isAttached(i) != cloth.isAttached(j)) continue;
+      forces[i] += forces[j];
+      forces[j].setZero();
+    }
   }
   return unbalancedOf(cloth, forces);
 }
@@ -99,13 +94,16 @@ bool settleBy(const cloth::StepSettings& settings, int most_steps, double period
   const double slow = kReturnTolerance * extentOf(rest) / period;  // m/s
   double time_step = std::min(kFirstStep, period / kStepsPerPeriod);
   int still = 0;
+  EnergyWatch watch(0);
   for (int i = 0; i < most_steps; ++i) {
+    const cloth::ClothState before = state;
     if (!integrator.step(cloth, state, time_step).accepted) ++settling.rejected;
     ++settling.steps;
+    settling.growth = largerOrNaN(settling.growth, watch.growth(cloth, before, state));
     settling.error = distanceBetween(state, rest);
     const double speed = largestSpeed(state);
     if (settling.error <= kReturnTolerance && speed <= slow) return true;
-    settling.unbalanced = unbalancedOf(cloth, state);
+    settling.unbalanced = unbalancedOf(cloth, state, extentOf(rest));
     still = speed <= 1e-6 * slow ? still + 1 : 0;
     if (still == kStillSteps) return false;
     if (speed <= 1e-2 * slow && settling.unbalanced <= 0.1 * kBalanced) return true;  // elsewhere
@@ -177,18 +175,18 @@ bool isFinite(const cloth::ClothState& state) {
          std::all_of(state.velocities.begin(), state.velocities.end(), finite);
 }
 
-void EnergyWatch::look(const cloth::Cloth& cloth, const cloth::ClothState& before,
-                       const cloth::ClothState& after, ExtremeOutcome& outcome) {
+double EnergyWatch::growth(const cloth::Cloth& cloth, const cloth::ClothState& before,
+                           const cloth::ClothState& after) {
   energies_.push_back(energyOf(cloth, before));
   if (energies_.size() > cloth::EnergyBalance::kRemembered + 1) energies_.pop_front();
-  if (unwatched_-- > 0) return;
-  unwatched_ = 0;
+  if (unwatched_ > 0) {
+    --unwatched_;
+    return 0.0;
+  }
   const double most = *std::max_element(energies_.begin(), energies_.end());
   const double energy = energyOf(cloth, after);
   const double scale = std::abs(most) + std::abs(energy) + weightScale(cloth, after);
-  const double growth = scale > 0.0 ? (energy - most) / scale : 0.0;
-  outcome.growth = largerOrNaN(outcome.growth, growth);
-  if (!(growth <= kRoundingGrowth)) outcome.failure = ExtremeFailure::kEnergyGrew;
+  return largerOrNaN(0.0, scale > 0.0 ? (energy - most) / scale : 0.0);
 }
 
 cloth::ClothState restOf(const cloth::Cloth& cloth) {
@@ -237,16 +235,20 @@ void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
   if (elsewhere && extreme.taut) {
     const cloth::ClothState before = state;
     push(extreme, cloth, state);
+    outcome.growth = largerOrNaN(outcome.growth, settling.growth);
     settling = settle(extreme, cloth, rest, state);
     elsewhere = settling.error > kReturnTolerance && settling.unbalanced <= kBalanced &&
                 distanceBetween(state, before) <= kReturnTolerance;
   }
+  outcome.growth = largerOrNaN(outcome.growth, settling.growth);
   outcome.rejected += settling.rejected;
   outcome.return_error = settling.error;
   outcome.settling_steps = settling.steps;
   outcome.slow = settling.slow;
   if (!isFinite(state)) {
     outcome.failure = ExtremeFailure::kNotFinite;
+  } else if (!(settling.growth <= kRoundingGrowth)) {
+    outcome.failure = ExtremeFailure::kEnergyGrew;
   } else if (!(settling.error <= kReturnTolerance)) {
     outcome.other_rest = elsewhere;
     if (!elsewhere) outcome.failure = ExtremeFailure::kNoReturn;

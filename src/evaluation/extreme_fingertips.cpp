@@ -114,7 +114,9 @@ class TouchedRun {
         return;
       }
     }
-    watch_.look(untouched_, before, loop_.state(), outcome_);
+    outcome_.growth =
+        largerOrNaN(outcome_.growth, watch_.growth(untouched_, before, loop_.state()));
+    if (!(outcome_.growth <= kRoundingGrowth)) outcome_.failure = ExtremeFailure::kEnergyGrew;
   }
 
   const ExtremeCase& extreme_;

@@ -135,7 +135,8 @@ class Run {
     const cloth::ClothState before = state_;
     step(cloth_, drawStep());
     if (!failed() && cloth::isImplicit(extreme_.method)) {
-      watch_.look(cloth_, before, state_, outcome_);
+      outcome_.growth = largerOrNaN(outcome_.growth, watch_.growth(cloth_, before, state_));
+      if (!(outcome_.growth <= kRoundingGrowth)) outcome_.failure = ExtremeFailure::kEnergyGrew;
     }
   }
 

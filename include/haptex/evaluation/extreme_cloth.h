@@ -28,9 +28,10 @@ class EnergyWatch {
   /// @param unwatched steps at first that may gain what was lost while work was done
   explicit EnergyWatch(int unwatched) : unwatched_(unwatched) {}
 
-  /// Takes a step of the cloth from a state to a finite one; sets outcome's growth and failure.
-  void look(const cloth::Cloth& cloth, const cloth::ClothState& before,
-            const cloth::ClothState& after, ExtremeOutcome& outcome);
+  /// By how much the energy after a step is above what it may be, over the scale of the energies;
+  /// 0 if it is not, or the step is not watched.
+  double growth(const cloth::Cloth& cloth, const cloth::ClothState& before,
+                const cloth::ClothState& after);
 
  private:
   int unwatched_;
@@ -50,7 +51,8 @@ double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& 
 /// step needs. What a linearised step stretches while it turns resists the turning, so stiff light
 /// cloth creeps.
 struct Settling {
-  double error = 0.0;  ///< distanceBetween() state and rest at the end
+  double error = 0.0;   ///< distanceBetween() state and rest at the end
+  double growth = 0.0;  ///< largest of EnergyWatch
   int steps = 0;
   int rejected = 0;
   bool slow = false;  ///< the case's own solves did not suffice

@@ -27,8 +27,8 @@ constexpr double kRoundingGrowth = 1e-10;
 /// that counts as returned.
 constexpr double kReturnTolerance = 1e-3;
 
-/// Largest force on a free particle, beyond what a rounding of the positions makes, over the largest
-/// on an attached one, of a cloth that counts as at rest elsewhere.
+/// Largest force on a free particle, or on a group of them within the tolerance of each other, over
+/// the largest on an attached one, of a cloth that counts as at rest elsewhere.
 constexpr double kBalanced = 1e-3;
 
 struct ExtremeOutcome {
