@@ -52,7 +52,7 @@ void EnergyBalance::begin(const Cloth& cloth, const ClothState& begin) {
   const bool goes_on = begin.positions == last_positions_;
   if (!goes_on) forget();
   const bool known = goes_on && revision_ == cloth.revision() && !cloth.bendingFriction();
-  potential_begin_ = known ? potential_end_ : cloth.potentialEnergy(begin);
+  potential_begin_ = known ? potential_kept_ : cloth.potentialEnergy(begin);
   kinetic_begin_ = freeKineticEnergy(cloth, begin.velocities);
 }
 
@@ -101,6 +101,7 @@ void EnergyBalance::keep(const Cloth& cloth, const ClothState& end, double taken
   next_ = (next_ + 1) % kRemembered;
   remembered_ = std::min(remembered_ + 1, kRemembered);
   last_positions_ = end.positions;
+  potential_kept_ = potential_end_;
   revision_ = cloth.revision();
 }
 

@@ -123,10 +123,10 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
       stages_->forget();
       stages_->solveLinearised(cloth, stage, {begin.positions, begin.velocities, h}, end_, report);
     }
-    stages_->descend(cloth, stage, std::ref(isSmall), end_, report);
+    const bool judged = stages_->descend(cloth, stage, std::ref(isSmall), end_, report);
     stages_->forget();
     settle(end_.velocities);
-    isSmall();
+    if (!judged || touches()) isSmall();
   }
   if (gained > 0.0) slowDown(cloth, gained, report);
 }

@@ -45,18 +45,20 @@ void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess
   solveLinearised(cloth, stage, guess, result, report);
   if (settings_.newton_iterations == 1) return;
   fixPast(cloth, stage, result);
-  iterateNewton(cloth, stage, settings_.newton_iterations - 1, {}, result, report);
+  iterateNewton(cloth, stage, incrementalPotential(cloth, stage, result),
+                settings_.newton_iterations - 1, {}, result, report);
 }
 
-void StageSolver::descend(const Cloth& cloth, const Stage& stage,
+bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
                           const std::function<bool()>& enough, ClothState& result,
                           StepReport& report) {
   constexpr int kLeastSolves = 20;
   fixPast(cloth, stage, stage.base);
   for (AirPanel& panel : fixed_air_.panels) panel.lift.setZero();
-  if (!touching()) retreatTowardsRest(cloth, stage, result);
-  iterateNewton(cloth, stage, std::max(kLeastSolves, settings_.newton_iterations), enough, result,
-                report);
+  const double potential = touching() ? incrementalPotential(cloth, stage, result)
+                                      : retreatTowardsRest(cloth, stage, result);
+  return iterateNewton(cloth, stage, potential, std::max(kLeastSolves, settings_.newton_iterations),
+                       enough, result, report);
 }
 
 void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
@@ -86,7 +88,8 @@ void StageSolver::fixPast(const Cloth& cloth, const Stage& stage, const ClothSta
 
 /// If the potential of the free particles at x*, without velocity, is lower, halves their way from
 /// there until it is not.
-void StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
+/// @return the incremental potential of the result
+double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
   constexpr double kLeastShare = 1e-9;
   const auto placeAt = [&](double share) {
     for (int i = 0; i < matrix_.size(); ++i) {
@@ -99,13 +102,16 @@ void StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, Clo
     return incrementalPotential(cloth, stage, trial_);
   };
   const double at_rest = placeAt(0.0);
-  if (incrementalPotential(cloth, stage, result) <= at_rest) return;
+  double potential = incrementalPotential(cloth, stage, result);
+  if (potential <= at_rest) return potential;
   double share = 1.0;
   do {
     share = share > kLeastShare ? 0.5 * share : 0.0;
-  } while (!(placeAt(share) <= at_rest) && share > 0.0);
+    potential = placeAt(share);
+  } while (!(potential <= at_rest) && share > 0.0);
   std::swap(result.positions, trial_.positions);
   std::swap(result.velocities, trial_.velocities);
+  return potential;
 }
 
 void StageSolver::addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities) {
@@ -209,17 +215,18 @@ void StageSolver::assembleNewton(const Cloth& cloth, const Stage& stage, const C
   report.assembly_seconds += seconds(Clock::now() - start);
 }
 
+/// @param potential incremental one of the result
 /// @param most_solves linear ones
 /// @param enough may be empty
-void StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, int most_solves,
-                                const std::function<bool()>& enough, ClothState& result,
-                                StepReport& report) {
+/// @return whether the result is enough
+bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double potential,
+                                int most_solves, const std::function<bool()>& enough,
+                                ClothState& result, StepReport& report) {
   constexpr double kNearMinimum = 1e-2;  // relative residual from which the exact Hessian is tried
   const double reference = linearised_norm_;
   const int last_solve = report.newton_iterations + most_solves;
-  double potential = incrementalPotential(cloth, stage, result);
   prescribed_.setZero();  // the fixed particles have reached their places
-  bool converged = false;
+  bool converged = false, is_enough = false;
   auto hessian = Membrane::Hessian::kProjected;
   while (true) {
     assembleNewton(cloth, stage, result, hessian, report);
@@ -236,7 +243,8 @@ void StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, int most
     const Descent descent =
         solved || !exact ? searchLine(cloth, stage, result, potential) : Descent::kNone;
     if (descent == Descent::kFound) {
-      if (enough && enough()) break;
+      is_enough = enough && enough();
+      if (is_enough) break;
       hessian = norm <= kNearMinimum * reference ? Membrane::Hessian::kExact
                                                  : Membrane::Hessian::kProjected;
     } else if (descent == Descent::kNone && exact) {  // not positive definite here
@@ -247,6 +255,7 @@ void StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, int most
     }
   }
   report.newton_converged = report.newton_converged && converged;
+  return is_enough;
 }
 
 /// Moves the result along solution_ to a lower potential.

@@ -6,20 +6,17 @@
 #include "haptex/evaluation/quantity.h"
 
 namespace haptex::evaluation {
-namespace {
 
-cloth::StepSettings settings() {
+cloth::StepSettings solvedSettings(double newton_tolerance) {
   cloth::StepSettings settings;
   settings.solver = cloth::LinearSolverMethod::kCholesky;
   settings.tolerance = 1e-9;
   settings.newton_iterations = 100;
-  settings.newton_tolerance = 1e-13;
+  settings.newton_tolerance = newton_tolerance;
   return settings;
 }
 
-}  // namespace
-
-Equilibrium::Equilibrium(const cloth::Cloth& cloth) : integrator_(cloth, settings()) {}
+Equilibrium::Equilibrium(const cloth::Cloth& cloth) : integrator_(cloth, solvedSettings(1e-13)) {}
 
 void Equilibrium::settle(const cloth::Cloth& cloth, cloth::ClothState& state, double first_step) {
   constexpr double kLongestStep = 60.0;  // s

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "haptex/evaluation/equilibrium.h"
 #include "haptex/evaluation/extreme_run.h"
 #include "haptex/evaluation/quantity.h"
 
@@ -16,15 +16,7 @@ constexpr double kFirstStep = 0.01;    // s
 constexpr double kLongestStep = 30.0;  // s
 constexpr double kStepGrowth = 1.3;    // from step to step
 constexpr int kMostSteps = 400;
-
-cloth::StepSettings solvedSettings() {
-  cloth::StepSettings settings;
-  settings.solver = cloth::LinearSolverMethod::kCholesky;
-  settings.tolerance = 1e-9;
-  settings.newton_iterations = 100;
-  settings.newton_tolerance = 1e-12;
-  return settings;
-}
+constexpr double kNewtonTolerance = 1e-12;  // of steps that are solved to the end
 
 double largestSpeed(const cloth::ClothState& state) {
   double largest = 0.0;
@@ -59,22 +51,22 @@ double unbalancedOf(const cloth::Cloth& cloth, const std::vector<Eigen::Vector3d
   return free / held;
 }
 
-/// The same of groups of particles within the tolerance of each other, whose forces add up: what
-/// acts within them, in needles mostly, decides about places to less than the tolerance.
+/// The same of the sums over all particles within the tolerance of each: what acts between these,
+/// in needles mostly, decides about places to less than the tolerance.
 double unbalancedOf(const cloth::Cloth& cloth, const cloth::ClothState& state, double extent) {
   std::vector<Eigen::Vector3d> forces;
   cloth.computeForces(state, forces);
   const double single = unbalancedOf(cloth, forces);
   if (single <= 0.1 * kBalanced) return single;
+  std::vector<Eigen::Vector3d> around(forces.size(), Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
+    for (std::size_t j = 0; j < forces.size(); ++j) {
       const double apart = (state.positions[i] - state.positions[j]).norm();
       if (apart > kReturnTolerance * extent || cloth.isAttached(i) != cloth.isAttached(j)) continue;
-      forces[i] += forces[j];
-      forces[j].setZero();
+      around[i] += forces[j];
     }
   }
-  return unbalancedOf(cloth, forces);
+  return unbalancedOf(cloth, around);
 }
 
 cloth::StepSettings settingsOf(const ExtremeCase& extreme) {
@@ -191,7 +183,7 @@ double EnergyWatch::growth(const cloth::Cloth& cloth, const cloth::ClothState& b
 
 cloth::ClothState restOf(const cloth::Cloth& cloth) {
   cloth::ClothState state = cloth.initialState();
-  cloth::Integrator integrator(cloth, solvedSettings());
+  cloth::Integrator integrator(cloth, solvedSettings(kNewtonTolerance));
   const double extent = extentOf(state);
   double time_step = kFirstStep;
   for (int i = 0; i < kMostSteps; ++i) {
@@ -222,7 +214,8 @@ Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
   const double period = slowestPeriod(extreme, extentOf(rest));
   settling.slow = !settleBy(settingsOf(extreme), kMostSteps, period, cloth, rest, state, settling);
   if (settling.slow) {
-    settleBy(solvedSettings(), kMostSolvedSteps, period, cloth, rest, state, settling);
+    settleBy(solvedSettings(kNewtonTolerance), kMostSolvedSteps, period, cloth, rest, state,
+             settling);
   }
   return settling;
 }
@@ -230,24 +223,25 @@ Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
 void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
                     const cloth::ClothState& rest, cloth::ClothState& state,
                     ExtremeOutcome& outcome) {
-  Settling settling = settle(extreme, cloth, rest, state);
-  bool elsewhere = settling.error > kReturnTolerance && settling.unbalanced <= kBalanced;
+  Settling settling;
+  const auto comesToRestElsewhere = [&] {
+    settling = settle(extreme, cloth, rest, state);
+    outcome.growth = largerOrNaN(outcome.growth, settling.growth);
+    outcome.rejected += settling.rejected;
+    outcome.settling_steps += settling.steps;
+    outcome.slow = outcome.slow || settling.slow;
+    return settling.error > kReturnTolerance && settling.unbalanced <= kBalanced;
+  };
+  bool elsewhere = comesToRestElsewhere();
   if (elsewhere && extreme.taut) {
     const cloth::ClothState before = state;
     push(extreme, cloth, state);
-    outcome.growth = largerOrNaN(outcome.growth, settling.growth);
-    settling = settle(extreme, cloth, rest, state);
-    elsewhere = settling.error > kReturnTolerance && settling.unbalanced <= kBalanced &&
-                distanceBetween(state, before) <= kReturnTolerance;
+    elsewhere = comesToRestElsewhere() && distanceBetween(state, before) <= kReturnTolerance;
   }
-  outcome.growth = largerOrNaN(outcome.growth, settling.growth);
-  outcome.rejected += settling.rejected;
   outcome.return_error = settling.error;
-  outcome.settling_steps = settling.steps;
-  outcome.slow = settling.slow;
   if (!isFinite(state)) {
     outcome.failure = ExtremeFailure::kNotFinite;
-  } else if (!(settling.growth <= kRoundingGrowth)) {
+  } else if (!(outcome.growth <= kRoundingGrowth)) {
     outcome.failure = ExtremeFailure::kEnergyGrew;
   } else if (!(settling.error <= kReturnTolerance)) {
     outcome.other_rest = elsewhere;

@@ -6,6 +6,7 @@
 
 #include "haptex/cloth/cloth.h"
 #include "haptex/cloth/integrator.h"
+#include "haptex/evaluation/linear_fabric.h"
 
 namespace haptex::evaluation {
 
@@ -31,13 +32,8 @@ double simulatedElongation(const HangingStrip& strip, int cells, double time_ste
   // Viscosity near the critical damping of the slowest longitudinal mode: it shortens the way to
   // the state of rest and does not change it.
   const double slowest = 0.5 * M_PI / strip.length * std::sqrt(strip.modulus / strip.areal_density);
-  material::Fabric fabric;
-  fabric.name = "linear strip";
+  material::Fabric fabric = linearFabric(strip.modulus, strip.modulus / slowest);
   fabric.areal_density = strip.areal_density;
-  fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(strip.modulus);
-  fabric.shear.elastic = StrainStressCurve::linear(0.5 * strip.modulus);
-  fabric.weft.viscous = fabric.warp.viscous = StrainStressCurve::linear(strip.modulus / slowest);
-  fabric.shear.viscous = StrainStressCurve::linear(0.5 * strip.modulus / slowest);
 
   cloth::ModelledEffects effects;
   effects.viscosity = true;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "haptex/contact/obstacles.h"
+#include "haptex/evaluation/linear_fabric.h"
 
 namespace haptex::evaluation {
 namespace {
@@ -35,19 +36,6 @@ Vector3d mean(const std::vector<Vector3d>& vectors) {
 }
 
 }  // namespace
-
-material::Fabric linearFabric(double modulus, double viscosity) {
-  using material::StrainStressCurve;
-  material::Fabric fabric;
-  fabric.name = "linear";
-  fabric.areal_density = 0.1;
-  fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(modulus);
-  fabric.shear.elastic = StrainStressCurve::linear(0.5 * modulus);
-  fabric.weft.viscous = fabric.warp.viscous = StrainStressCurve::linear(viscosity);
-  fabric.shear.viscous = StrainStressCurve::linear(0.5 * viscosity);
-  fabric.friction = 0.3;
-  return fabric;
-}
 
 ClothMesh flatSheet(const Eigen::Vector2d& size, int cells_u, int cells_v, const Isometry3d& pose) {
   ClothMesh mesh = cloth::makeRectangle(size.x(), size.y(), cells_u, cells_v,

@@ -9,6 +9,7 @@
 
 #include "haptex/cloth/cloth.h"
 #include "haptex/evaluation/equilibrium.h"
+#include "haptex/evaluation/linear_fabric.h"
 
 namespace haptex::evaluation {
 namespace {
@@ -18,7 +19,6 @@ using cloth::ClothMesh;
 using cloth::ClothState;
 using Eigen::Vector3d;
 
-constexpr double kDensity = 0.1;     // kg/m^2
 constexpr double kGravity = 1.0;     // m/s^2
 constexpr double kFirstStep = 0.02;  // s, of a strip that falls
 
@@ -66,15 +66,6 @@ Strip makeStrip(StripMesh mesh, Direction along, int cells, int rows, double cel
     if (strip.column(i) == 1) strip.mesh.rest_coordinates[i] = regular.rest_coordinates[i];
   }
   return strip;
-}
-
-material::Fabric linearFabric(double modulus) {
-  material::Fabric fabric;
-  fabric.name = "linear strip";
-  fabric.areal_density = kDensity;
-  fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(modulus);
-  fabric.shear.elastic = material::StrainStressCurve::linear(0.5 * modulus);
-  return fabric;
 }
 
 /// Places the particles and attaches those of the columns that are held.
@@ -195,8 +186,8 @@ double simulatedDropOverReach(const Cantilever& cantilever) {
   // Two columns are held: the clamp is half way between them (docs/mechanics.md).
   const double cell = kLength / (cantilever.cells - 0.5);
   const Strip strip = makeStrip(cantilever.mesh, cantilever.along, cantilever.cells, kRows, cell);
-  const double rigidity = kDensity * kGravity * std::pow(kLength, 3) / cantilever.gamma;
   material::Fabric fabric = linearFabric(kModulus);
+  const double rigidity = fabric.areal_density * kGravity * std::pow(kLength, 3) / cantilever.gamma;
   fabric.bending = {7.0 * rigidity, 7.0 * rigidity};
   (cantilever.along == Direction::kWeft ? fabric.bending->weft : fabric.bending->warp) = rigidity;
   cloth::ModelledEffects effects;
@@ -233,7 +224,8 @@ double simulatedLateralBucklingLoad(StripMesh mesh, int cells) {
   };
   // The part that the weight adds grows with it, as the strip hardly bends in its own plane: near
   // the exact load it is scaled to the one that takes all stiffness from some displacement.
-  const double gravity = kLateralBucklingLoad * kRigidity / (kDensity * std::pow(kLength, 3));
+  const double gravity =
+      kLateralBucklingLoad * kRigidity / (fabric.areal_density * std::pow(kLength, 3));
   const Eigen::MatrixXd unloaded = stiffnessUnder(0.0);
   const Eigen::MatrixXd added = stiffnessUnder(gravity) - unloaded;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(added, unloaded,

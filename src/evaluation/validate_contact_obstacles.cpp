@@ -5,6 +5,7 @@
 #include <string>
 
 #include "haptex/evaluation/contact_oracles.h"
+#include "haptex/evaluation/linear_fabric.h"
 #include "haptex/evaluation/obstacle_scenes.h"
 
 namespace haptex::evaluation {

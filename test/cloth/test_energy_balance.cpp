@@ -200,6 +200,23 @@ TEST(EnergyBalance, TakesWhatIsNotFiniteForExcess) {
   }
 }
 
+// The state is still the one before the step, and so is its energy.
+TEST(EnergyBalance, KnowsTheEnergyOfTheStateAfterAStepThatWasNotKept) {
+  const Cloth cloth(square(1), elasticFabric(100.0), {});
+  ClothState state = cloth.initialState();
+  state.positions[0].x() += 0.01;
+  EnergyBalance balance(cloth);
+  balance.begin(cloth, state);
+  EXPECT_LE(balance.excess(cloth, state, state, {}), 0.0);
+  balance.keep(cloth, state, 0.0);
+  for (double place : {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.1, 0.05, 0.0}) {
+    ClothState rejected = state;
+    rejected.positions[0].y() += place;
+    balance.begin(cloth, state);
+    EXPECT_EQ(balance.excess(cloth, state, rejected, {}) <= 0.0, place == 0.0) << place;
+  }
+}
+
 // A particle is driven downwards by v and thereby gains m v^2 / 2, while a force F up acts on it.
 TEST(EnergyBalance, CountsTheWorkOfBodiesThatMove) {
   constexpr double kSpeed = 0.5, kForce = 10.0, kStep = 0.01;

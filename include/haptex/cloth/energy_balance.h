@@ -59,10 +59,11 @@ class EnergyBalance {
 
   double potential_begin_ = 0.0;
   double potential_end_ = 0.0;
+  double potential_kept_ = 0.0;
   double kinetic_begin_ = 0.0;
   double kinetic_end_ = 0.0;
-  double growth_ = 0.0;         // J, of the step
-  std::uint64_t revision_ = 0;  // of the cloth whose potential energy at the end is known
+  double growth_ = 0.0;                     // J, of the step
+  std::uint64_t revision_ = 0;              // of the cloth whose potential energy was kept
   std::array<double, kRemembered> lost_{};  // J, since the beginnings of the last steps
   int remembered_ = 0;
   int next_ = 0;

@@ -85,7 +85,8 @@ class StageSolver {
   /// long does work, which the true one in still air does not. Where contacts hold, rest is none of
   /// their states, and is not looked at.
   /// @param enough of a result: it needs no more iterations
-  void descend(const Cloth& cloth, const Stage& stage, const std::function<bool()>& enough,
+  /// @return whether that ended them, so that `enough` was last asked of the result
+  bool descend(const Cloth& cloth, const Stage& stage, const std::function<bool()>& enough,
                ClothState& result, StepReport& report);
 
   /// The next solve starts from zero, not from the solution of the last.
@@ -98,7 +99,7 @@ class StageSolver {
   enum class Descent { kFound, kBelowRounding, kNone };
 
   void fixPast(const Cloth& cloth, const Stage& stage, const ClothState& at);
-  void retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result);
+  double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result);
   void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
   void prescribe(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
   void eliminate();
@@ -106,7 +107,7 @@ class StageSolver {
                   StepReport& report);
   bool solveLinear(StepReport& report);
   bool touching() const { return contacts_ && !contacts_->empty(); }
-  void iterateNewton(const Cloth& cloth, const Stage& stage, int most_solves,
+  bool iterateNewton(const Cloth& cloth, const Stage& stage, double potential, int most_solves,
                      const std::function<bool()>& enough, ClothState& result, StepReport& report);
   void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at,
                       Membrane::Hessian hessian, StepReport& report);

@@ -9,6 +9,10 @@
 
 namespace haptex::evaluation {
 
+/// Backward Euler whose steps are solved to rounding, by factorisation.
+/// @param newton_tolerance StepSettings::newton_tolerance
+cloth::StepSettings solvedSettings(double newton_tolerance);
+
 /// Backward Euler from rest in every step: inertia over a long step is far below the stiffness, so
 /// that a fixed point of the steps is a static equilibrium whatever the step.
 class Equilibrium {

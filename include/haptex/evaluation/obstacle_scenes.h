@@ -12,10 +12,6 @@
 
 namespace haptex::evaluation {
 
-/// 0.1 kg/m2, linear, with some viscosity; no bending.
-/// @param modulus N/m along the threads, half of it in shear @param viscosity N.s/m, likewise
-material::Fabric linearFabric(double modulus, double viscosity);
-
 /// makeRectangle() with alternating diagonals, its middle moved to the origin, weft and warp along
 /// x and y, then moved by a pose.
 cloth::ClothMesh flatSheet(const Eigen::Vector2d& size, int cells_u, int cells_v,

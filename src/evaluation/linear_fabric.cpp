@@ -1,0 +1,17 @@
+#include "haptex/evaluation/linear_fabric.h"
+
+namespace haptex::evaluation {
+
+material::Fabric linearFabric(double modulus, double viscosity) {
+  using material::StrainStressCurve;
+  material::Fabric fabric;
+  fabric.name = "linear";
+  fabric.areal_density = 0.1;
+  fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(modulus);
+  fabric.shear.elastic = StrainStressCurve::linear(0.5 * modulus);
+  fabric.weft.viscous = fabric.warp.viscous = StrainStressCurve::linear(viscosity);
+  fabric.shear.viscous = StrainStressCurve::linear(0.5 * viscosity);
+  return fabric;
+}
+
+}  // namespace haptex::evaluation
