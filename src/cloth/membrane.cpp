@@ -166,6 +166,10 @@ Membrane::Response Membrane::respondElastic(const MembraneStrain& strain) const 
   return response;
 }
 
+kernels::MembraneLaw Membrane::law(bool viscosity) const {
+  return {&elastic_, viscosity ? &viscous_ : nullptr, coupling_};
+}
+
 /// Energy per rest area (J/m^2).
 double Membrane::elasticDensity(const MembraneStrain& strain) const {
   double density = coupling_ * strain[0] * strain[1];
@@ -189,8 +193,8 @@ void Membrane::addForces(const Positions& positions, const Velocities& velocitie
 double Membrane::elasticEnergy(const Positions& positions) const {
   double energy = 0.0;
   if (!batches_.empty()) {
-    energy = kernels::elasticEnergy(batches_.data(), static_cast<int>(batches_.size()),
-                                    positions.data()->data(), elastic_, coupling_);
+    energy = kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
+                                positions.data()->data(), nullptr, 0.0, law(false));
   }
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     energy += elements_[t].area * elasticDensity(frame(elements_[t], positions).strain());
@@ -203,9 +207,12 @@ void Membrane::addStep(const Positions& positions, const Velocities& velocities,
                        BlockVector& rhs) const {
   if (!batches_.empty()) {
     kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
-                     {positions.data()->data(), velocities.data()->data(), times.a, times.ahead,
-                      &elastic_, viscosity_ ? &viscous_ : nullptr, coupling_,
-                      matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()});
+                     {positions.data()->data(),
+                      velocities.data()->data(),
+                      times.a,
+                      times.ahead,
+                      law(viscosity_),
+                      {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
   }
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     if (viscosity_) {
@@ -250,7 +257,16 @@ void Membrane::addStepOf(const MembraneElement& element, const Positions& positi
 void Membrane::addNewton(const Positions& positions,
                          const std::vector<MembraneStrain>& begin_strains, double h,
                          Hessian hessian, SymmetricBlockMatrix& matrix, BlockVector& rhs) const {
-  for (std::size_t t = 0; t < elements_.size(); ++t) {
+  if (!batches_.empty()) {
+    kernels::addNewton(batches_.data(), static_cast<int>(batches_.size()),
+                       {positions.data()->data(),
+                        begin_strains.data()->data(),
+                        h,
+                        hessian == Hessian::kExact,
+                        law(viscosity_),
+                        {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
+  }
+  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     const MembraneElement& element = elements_[t];
     const Frame at = frame(element, positions);
     const MembraneStrain strain = at.strain();
@@ -275,7 +291,12 @@ double Membrane::incrementalPotential(const Positions& positions,
                                       const std::vector<MembraneStrain>& begin_strains,
                                       double h) const {
   double potential = 0.0;
-  for (std::size_t t = 0; t < elements_.size(); ++t) {
+  if (!batches_.empty()) {
+    potential = kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
+                                   positions.data()->data(), begin_strains.data()->data(), h,
+                                   law(viscosity_));
+  }
+  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     const MembraneStrain strain = frame(elements_[t], positions).strain();
     double density = elasticDensity(strain);
     for (int m = 0; viscosity_ && m < 3; ++m) {

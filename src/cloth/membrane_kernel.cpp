@@ -100,6 +100,13 @@ HAPTEX_AVX2_INLINE Block full(const Symmetric& s) {
   return {{s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz}};
 }
 
+/// Clamps slopes to >= 0 from the first one on.
+template <int kFirst>
+HAPTEX_AVX2_INLINE void clampSlopes(__m256d* slope) {
+  // NaN is the second operand and therefore stays.
+  for (int m = kFirst; m < 3; ++m) slope[m] = _mm256_max_pd(_mm256_setzero_pd(), slope[m]);
+}
+
 /// Slopes clamped to >= 0 from the first one on.
 template <int kFirstClamped>
 HAPTEX_AVX2_INLINE Response respond(const std::array<material::StrainStressCurve, 3>& curves,
@@ -111,10 +118,8 @@ HAPTEX_AVX2_INLINE Response respond(const std::array<material::StrainStressCurve
       result.stress[m][lane] = value.stress;
       result.slope[m][lane] = value.slope;
     }
-    if (m < kFirstClamped) continue;
-    // NaN is the second operand and therefore stays.
-    result.slope[m] = _mm256_max_pd(_mm256_setzero_pd(), result.slope[m]);
   }
+  clampSlopes<kFirstClamped>(result.slope);
   return result;
 }
 
@@ -161,7 +166,7 @@ struct Lanes {  // an element's constants
 template <bool kCoupled>
 HAPTEX_AVX2_INLINE void addTangent(const MembraneBatch& batch, const Lanes& at, const Vector& weft,
                                    const Vector& warp, const __m256d* slope, __m256d coupling,
-                                   const __m256d* stress, const MembraneStep& step) {
+                                   const __m256d* stress, const MembraneSystem& system) {
   const Symmetric b11 = diagonalBlock<kCoupled>(weft, warp, at.weft_weights[0], at.warp_weights[0],
                                                 slope, coupling, stress);
   const Symmetric b22 = diagonalBlock<kCoupled>(weft, warp, at.weft_weights[1], at.warp_weights[1],
@@ -195,35 +200,82 @@ HAPTEX_AVX2_INLINE void addTangent(const MembraneBatch& batch, const Lanes& at, 
   const Symmetric b00 = {-b10.columns[0] - b20.columns[0], -b10.columns[3] - b20.columns[3],
                          -b10.columns[6] - b20.columns[6], -b10.columns[4] - b20.columns[4],
                          -b10.columns[7] - b20.columns[7], -b10.columns[8] - b20.columns[8]};
-  scatter(b21, batch.slots[2], step.lower);
-  scatter(b11_full, batch.particles[1], step.diagonal);
-  scatter(b22_full, batch.particles[2], step.diagonal);
-  scatter(b10, batch.slots[0], step.lower);
-  scatter(b20, batch.slots[1], step.lower);
-  scatter(full(b00), batch.particles[0], step.diagonal);
+  scatter(b21, batch.slots[2], system.lower);
+  scatter(b11_full, batch.particles[1], system.diagonal);
+  scatter(b22_full, batch.particles[2], system.diagonal);
+  scatter(b10, batch.slots[0], system.lower);
+  scatter(b20, batch.slots[1], system.lower);
+  scatter(full(b00), batch.particles[0], system.diagonal);
 }
 
-template <bool kCoupled>
-HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep& step) {
+HAPTEX_AVX2_INLINE Lanes lanesOf(const MembraneBatch& batch) {
   Lanes at;
   for (int i = 0; i < 2; ++i) {
     at.weft_weights[i] = _mm256_load_pd(batch.weft_weights[i]);
     at.warp_weights[i] = _mm256_load_pd(batch.warp_weights[i]);
   }
   at.area = _mm256_load_pd(batch.area);
-  const Vector origin = gather(step.positions, batch.particles[0]);
-  const Vector edge_1 = gather(step.positions, batch.particles[1]) - origin;
-  const Vector edge_2 = gather(step.positions, batch.particles[2]) - origin;
-  const Vector weft = combine(at.weft_weights[0], edge_1, at.weft_weights[1], edge_2);
-  const Vector warp = combine(at.warp_weights[0], edge_1, at.warp_weights[1], edge_2);
-  const Vector drift = gather(step.velocities, batch.particles[0]);
-  const Vector opening_1 = gather(step.velocities, batch.particles[1]) - drift;
-  const Vector opening_2 = gather(step.velocities, batch.particles[2]) - drift;
-  const Vector weft_rate = combine(at.weft_weights[0], opening_1, at.weft_weights[1], opening_2);
-  const Vector warp_rate = combine(at.warp_weights[0], opening_1, at.warp_weights[1], opening_2);
+  return at;
+}
 
-  const __m256d strain[3] = {0.5 * (dot(weft, weft) - 1.0), 0.5 * (dot(warp, warp) - 1.0),
-                             dot(weft, warp)};
+struct Frame {  // U and V, or their rates
+  Vector weft, warp;
+};
+
+HAPTEX_AVX2_INLINE Frame frameOf(const MembraneBatch& batch, const Lanes& at,
+                                 const double* points) {
+  const Vector origin = gather(points, batch.particles[0]);
+  const Vector edge_1 = gather(points, batch.particles[1]) - origin;
+  const Vector edge_2 = gather(points, batch.particles[2]) - origin;
+  return {combine(at.weft_weights[0], edge_1, at.weft_weights[1], edge_2),
+          combine(at.warp_weights[0], edge_1, at.warp_weights[1], edge_2)};
+}
+
+HAPTEX_AVX2_INLINE void strainOf(const Frame& frame, __m256d* strain) {
+  strain[0] = 0.5 * (dot(frame.weft, frame.weft) - 1.0);
+  strain[1] = 0.5 * (dot(frame.warp, frame.warp) - 1.0);
+  strain[2] = dot(frame.weft, frame.warp);
+}
+
+/// Mean rates from the strains at the beginning, three numbers per element.
+HAPTEX_AVX2_INLINE void rateSince(const double* begin, const __m256d* strain, __m256d h,
+                                  __m256d* rate) {
+  for (int m = 0; m < 3; ++m) {
+    rate[m] = (strain[m] - _mm256_set_pd(begin[9 + m], begin[6 + m], begin[3 + m], begin[m])) / h;
+  }
+}
+
+/// Makes the tangent of weft and warp positive semidefinite; without coupling its slopes are.
+template <bool kCoupled>
+HAPTEX_AVX2_INLINE void projectTangent(__m256d* slope, __m256d& coupling) {
+  if constexpr (kCoupled) {
+    const __m256d tangent[3] = {slope[0], slope[1], coupling};
+    __m256d projected[3];
+    project(tangent, projected);
+    slope[0] = projected[0];
+    slope[1] = projected[1];
+    coupling = projected[2];
+  }
+}
+
+/// Adds to the right-hand side what the forces on the frames do to the particles.
+HAPTEX_AVX2_INLINE void scatterTractions(const MembraneBatch& batch, const Lanes& at,
+                                         const Vector& weft, const Vector& warp, double* rhs) {
+  const Vector at_1 = combine(at.weft_weights[0], weft, at.warp_weights[0], warp);
+  const Vector at_2 = combine(at.weft_weights[1], weft, at.warp_weights[1], warp);
+  const __m256d zero = _mm256_setzero_pd();
+  scatter(Vector{zero, zero, zero} - (at_1 + at_2), batch.particles[0], rhs);
+  scatter(at_1, batch.particles[1], rhs);
+  scatter(at_2, batch.particles[2], rhs);
+}
+
+template <bool kCoupled>
+HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep& step) {
+  const Lanes at = lanesOf(batch);
+  const auto [weft, warp] = frameOf(batch, at, step.positions);
+  const auto [weft_rate, warp_rate] = frameOf(batch, at, step.velocities);
+  __m256d strain[3];
+  strainOf({weft, warp}, strain);
   const __m256d rate[3] = {dot(weft, weft_rate), dot(warp, warp_rate),
                            dot(weft_rate, warp) + dot(weft, warp_rate)};
   const __m256d h = _mm256_set1_pd(step.a);
@@ -231,18 +283,13 @@ HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep&
   const __m256d turn = _mm256_set1_pd(-step.ahead / step.a);
   const __m256d load = -at.area * h;  // N.s/m per N/m of stress
   const __m256d stiffness = -load * h;
-  Response response = respond < kCoupled ? 2 : 0 > (*step.elastic, strain);
-  __m256d coupling = _mm256_set1_pd(step.coupling);
+  Response response = respond < kCoupled ? 2 : 0 > (*step.law.elastic, strain);
+  __m256d coupling = _mm256_set1_pd(step.law.coupling);
   if constexpr (kCoupled) {
     response.stress[0] += coupling * strain[1];
     response.stress[1] += coupling * strain[0];
-    const __m256d tangent[3] = {response.slope[0], response.slope[1], coupling};
-    __m256d projected[3];
-    project(tangent, projected);
-    response.slope[0] = projected[0];
-    response.slope[1] = projected[1];
-    coupling = projected[2];
   }
+  projectTangent<kCoupled>(response.slope, coupling);
   __m256d end[3];
   for (int m = 0; m < 3; ++m) end[m] = ahead * response.slope[m] * rate[m];
   if constexpr (kCoupled) {
@@ -250,8 +297,8 @@ HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep&
     end[1] += ahead * coupling * rate[0];
     coupling *= stiffness;
   }
-  if (step.viscous) {
-    const Response viscous = respond<0>(*step.viscous, rate);
+  if (step.law.viscous) {
+    const Response viscous = respond<0>(*step.law.viscous, rate);
     const __m256d frequency = 1.0 / h;
     for (int m = 0; m < 3; ++m) {
       response.stress[m] += viscous.stress[m];
@@ -266,63 +313,128 @@ HAPTEX_AVX2_INLINE void addBatch(const MembraneBatch& batch, const MembraneStep&
     geometric[m] *= stiffness;
     turning[m] = turn * geometric[m];
   }
-  const Vector weft_traction =
-      combine(end[0], weft, end[2], warp) + combine(turning[0], weft_rate, turning[2], warp_rate);
-  const Vector warp_traction =
-      combine(end[1], warp, end[2], weft) + combine(turning[1], warp_rate, turning[2], weft_rate);
-  const Vector at_1 = combine(at.weft_weights[0], weft_traction, at.warp_weights[0], warp_traction);
-  const Vector at_2 = combine(at.weft_weights[1], weft_traction, at.warp_weights[1], warp_traction);
-  const __m256d zero = _mm256_setzero_pd();
-  scatter(Vector{zero, zero, zero} - (at_1 + at_2), batch.particles[0], step.rhs);
-  scatter(at_1, batch.particles[1], step.rhs);
-  scatter(at_2, batch.particles[2], step.rhs);
-  addTangent<kCoupled>(batch, at, weft, warp, response.slope, coupling, geometric, step);
+  scatterTractions(
+      batch, at,
+      combine(end[0], weft, end[2], warp) + combine(turning[0], weft_rate, turning[2], warp_rate),
+      combine(end[1], warp, end[2], weft) + combine(turning[1], warp_rate, turning[2], weft_rate),
+      step.system.rhs);
+  addTangent<kCoupled>(batch, at, weft, warp, response.slope, coupling, geometric, step.system);
+}
+
+template <bool kCoupled, bool kExact>
+HAPTEX_AVX2_INLINE void addNewtonBatch(const MembraneBatch& batch, const double* begin_strains,
+                                       const MembraneNewton& newton) {
+  const Lanes at = lanesOf(batch);
+  const auto [weft, warp] = frameOf(batch, at, newton.positions);
+  __m256d strain[3];
+  strainOf({weft, warp}, strain);
+  const __m256d h = _mm256_set1_pd(newton.h);
+  Response response = respond<3>(*newton.law.elastic, strain);
+  __m256d coupling = _mm256_set1_pd(newton.law.coupling);
+  if constexpr (kCoupled) {
+    response.stress[0] += coupling * strain[1];
+    response.stress[1] += coupling * strain[0];
+  }
+  if (newton.law.viscous) {
+    __m256d rate[3];
+    rateSince(begin_strains, strain, h, rate);
+    const Response viscous = respond<3>(*newton.law.viscous, rate);
+    for (int m = 0; m < 3; ++m) {
+      response.stress[m] += viscous.stress[m];
+      response.slope[m] += viscous.slope[m] / h;
+    }
+  }
+  __m256d geometric[3] = {response.stress[0], response.stress[1], response.stress[2]};
+  if constexpr (!kExact) {
+    clampSlopes<kCoupled ? 2 : 0>(response.slope);
+    projectTangent<kCoupled>(response.slope, coupling);
+    project(response.stress, geometric);
+  }
+  const __m256d load = -at.area * h;  // N.s/m per N/m of stress
+  const __m256d stiffness = -load * h;
+  coupling *= stiffness;
+  for (int m = 0; m < 3; ++m) {
+    response.stress[m] *= load;
+    response.slope[m] *= stiffness;
+    geometric[m] *= stiffness;
+  }
+  scatterTractions(batch, at, combine(response.stress[0], weft, response.stress[2], warp),
+                   combine(response.stress[1], warp, response.stress[2], weft), newton.system.rhs);
+  addTangent<kCoupled>(batch, at, weft, warp, response.slope, coupling, geometric, newton.system);
 }
 
 HAPTEX_AVX2 void addStepAvx2(const MembraneBatch* batches, int count, const MembraneStep& step) {
-  if (step.coupling == 0.0) {
+  if (step.law.coupling == 0.0) {
     for (int b = 0; b < count; ++b) addBatch<false>(batches[b], step);
   } else {
     for (int b = 0; b < count; ++b) addBatch<true>(batches[b], step);
   }
 }
 
-HAPTEX_AVX2 double elasticEnergyAvx2(const MembraneBatch* batches, int count,
-                                     const double* positions,
-                                     const std::array<material::StrainStressCurve, 3>& elastic,
-                                     double coupling) {
+template <bool kExact>
+HAPTEX_AVX2 void addNewtonAvx2(const MembraneBatch* batches, int count,
+                               const MembraneNewton& newton) {
+  constexpr int kStrains = 3 * kBatch;
+  const double* strains = newton.begin_strains;
+  if (newton.law.coupling == 0.0) {
+    for (int b = 0; b < count; ++b, strains += kStrains) {
+      addNewtonBatch<false, kExact>(batches[b], strains, newton);
+    }
+  } else {
+    for (int b = 0; b < count; ++b, strains += kStrains) {
+      addNewtonBatch<true, kExact>(batches[b], strains, newton);
+    }
+  }
+}
+
+HAPTEX_AVX2_INLINE void addEnergies(const std::array<material::StrainStressCurve, 3>& curves,
+                                    const __m256d* strain, __m256d factor, __m256d& density) {
+  for (int m = 0; m < 3; ++m) {
+    __m256d energy;
+    for (int lane = 0; lane < kBatch; ++lane) energy[lane] = curves[m].energy(strain[m][lane]);
+    density += factor * energy;
+  }
+}
+
+HAPTEX_AVX2 double potentialAvx2(const MembraneBatch* batches, int count, const double* positions,
+                                 const double* begin_strains, double interval,
+                                 const MembraneLaw& law) {
+  const __m256d h = _mm256_set1_pd(interval), one = _mm256_set1_pd(1.0);
   __m256d sum = _mm256_setzero_pd();
   for (int b = 0; b < count; ++b) {
-    const MembraneBatch& batch = batches[b];
-    const Vector origin = gather(positions, batch.particles[0]);
-    const Vector edge_1 = gather(positions, batch.particles[1]) - origin;
-    const Vector edge_2 = gather(positions, batch.particles[2]) - origin;
-    const Vector weft = combine(_mm256_load_pd(batch.weft_weights[0]), edge_1,
-                                _mm256_load_pd(batch.weft_weights[1]), edge_2);
-    const Vector warp = combine(_mm256_load_pd(batch.warp_weights[0]), edge_1,
-                                _mm256_load_pd(batch.warp_weights[1]), edge_2);
-    const __m256d strain[3] = {0.5 * (dot(weft, weft) - 1.0), 0.5 * (dot(warp, warp) - 1.0),
-                               dot(weft, warp)};
-    __m256d density = coupling * strain[0] * strain[1];
-    for (int m = 0; m < 3; ++m) {
-      for (int lane = 0; lane < kBatch; ++lane) density[lane] += elastic[m].energy(strain[m][lane]);
+    const Lanes at = lanesOf(batches[b]);
+    __m256d strain[3], rate[3];
+    strainOf(frameOf(batches[b], at, positions), strain);
+    __m256d density = law.coupling * strain[0] * strain[1];
+    addEnergies(*law.elastic, strain, one, density);
+    if (law.viscous) {
+      rateSince(begin_strains + std::ptrdiff_t{3} * kBatch * b, strain, h, rate);
+      addEnergies(*law.viscous, rate, h, density);
     }
-    sum += _mm256_load_pd(batch.area) * density;
+    sum += at.area * density;
   }
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 }  // namespace
 
-double elasticEnergy(const MembraneBatch* batches, int count, const double* positions,
-                     const std::array<material::StrainStressCurve, 3>& elastic, double coupling) {
-  return elasticEnergyAvx2(batches, count, positions, elastic, coupling);
-}
-
 bool canAddBatches() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 
 void addStep(const MembraneBatch* batches, int count, const MembraneStep& step) {
   addStepAvx2(batches, count, step);
+}
+
+void addNewton(const MembraneBatch* batches, int count, const MembraneNewton& newton) {
+  if (newton.exact) {
+    addNewtonAvx2<true>(batches, count, newton);
+  } else {
+    addNewtonAvx2<false>(batches, count, newton);
+  }
+}
+
+double potential(const MembraneBatch* batches, int count, const double* positions,
+                 const double* begin_strains, double h, const MembraneLaw& law) {
+  return potentialAvx2(batches, count, positions, begin_strains, h, law);
 }
 
 }  // namespace haptex::cloth::kernels
@@ -338,8 +450,10 @@ bool canAddBatches() { return false; }
 
 void addStep(const MembraneBatch*, int, const MembraneStep&) {}
 
-double elasticEnergy(const MembraneBatch*, int, const double*,
-                     const std::array<material::StrainStressCurve, 3>&, double) {
+void addNewton(const MembraneBatch*, int, const MembraneNewton&) {}
+
+double potential(const MembraneBatch*, int, const double*, const double*, double,
+                 const MembraneLaw&) {
   return 0.0;
 }
 

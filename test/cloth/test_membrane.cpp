@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -204,16 +205,17 @@ TEST_P(StepRightHandSide, IsForceAndElasticStiffnessTimesVelocity) {
   }
 }
 
-/// The steps of all triangles, each as a mesh of its own: too few to be added in batches.
-System stepOfEachAlone(const Cloth& cloth, const material::Fabric& fabric, const ClothState& state,
-                       const StageTimes& times) {
+/// What is added for all triangles, each as a mesh of its own: too few to be added in batches.
+System sumOfEachAlone(const Cloth& cloth, const material::Fabric& fabric,
+                      const std::function<void(const Membrane&, std::size_t triangle,
+                                               SymmetricBlockMatrix&, BlockVector&)>& add) {
   System sum(cloth);
-  for (const std::array<int, 3>& triangle : cloth.mesh().triangles) {
+  for (std::size_t t = 0; t < cloth.mesh().triangles.size(); ++t) {
     ClothMesh mesh = cloth.mesh();
-    mesh.triangles = {triangle};
-    const Membrane membrane(mesh, fabric, cloth.effects().viscosity);
+    mesh.triangles = {mesh.triangles[t]};
+    const Membrane membrane(mesh, fabric, cloth.effects().viscosity, cloth.effects().contraction);
     SymmetricBlockMatrix matrix(sum.matrix.size(), mesh.triangles);
-    membrane.addStep(state.positions, state.velocities, times, matrix, sum.rhs);
+    add(membrane, t, matrix, sum.rhs);
     for (int i = 0; i < matrix.size(); ++i) {
       sum.matrix.diagonal(i) += matrix.diagonal(i);
       for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) {
@@ -240,13 +242,59 @@ TEST_P(StepInBatches, IsTheSumOfTheStepsOfTheTrianglesAlone) {
         for (Vector3d& position : state.positions) position *= 0.7;
       }
       const StageTimes times{0.002, std::array{0.002, 0.0, 0.003}[seed % 3]};
-      const System exact = stepOfEachAlone(cloth, stiffeningFabric(), state, times);
+      const System exact =
+          sumOfEachAlone(cloth, stiffeningFabric(),
+                         [&](const Membrane& membrane, std::size_t, SymmetricBlockMatrix& matrix,
+                             BlockVector& rhs) {
+                           membrane.addStep(state.positions, state.velocities, times, matrix, rhs);
+                         });
       System system(cloth);
       cloth.membrane().addStep(state.positions, state.velocities, times, system.matrix, system.rhs);
       // The sums have the same order; what differs is the rounding within an element.
       EXPECT_LT((dense(system.matrix) - dense(exact.matrix)).norm(),
                 1e-13 * dense(exact.matrix).norm());
       EXPECT_LT((system.rhs - exact.rhs).norm(), 1e-13 * exact.rhs.norm());
+    }
+  }
+}
+
+TEST_P(StepInBatches, HasTheNewtonSystemAndThePotentialOfTheTrianglesAlone) {
+  constexpr double kStep = 0.002;
+  material::Fabric fabric = stiffeningFabric();
+  for (double contraction : {0.0, 0.3}) {
+    fabric.contraction = contraction;
+    ModelledEffects effects;
+    effects.viscosity = GetParam();
+    effects.contraction = contraction > 0.0;
+    for (int cells : {3, 4, 5}) {
+      const Cloth cloth(square(cells), fabric, effects);
+      const Membrane& membrane = cloth.membrane();
+      for (unsigned seed = 1; seed <= 8; ++seed) {
+        ClothState state = randomState(cloth, seed % 3 == 0 ? 0.03 : 0.003, 3.0, seed);
+        if (seed % 2 == 0) {
+          for (Vector3d& position : state.positions) position *= 0.7;
+        }
+        std::vector<MembraneStrain> begin;
+        membrane.computeStrainsBefore(state.positions, state.velocities, kStep, begin);
+        double potential = 0.0;
+        for (const auto hessian : {Membrane::Hessian::kExact, Membrane::Hessian::kProjected}) {
+          potential = 0.0;
+          const System exact = sumOfEachAlone(
+              cloth, fabric,
+              [&](const Membrane& one, std::size_t t, SymmetricBlockMatrix& matrix,
+                  BlockVector& rhs) {
+                one.addNewton(state.positions, {begin[t]}, kStep, hessian, matrix, rhs);
+                potential += one.incrementalPotential(state.positions, {begin[t]}, kStep);
+              });
+          System system(cloth);
+          membrane.addNewton(state.positions, begin, kStep, hessian, system.matrix, system.rhs);
+          EXPECT_LT((dense(system.matrix) - dense(exact.matrix)).norm(),
+                    1e-13 * dense(exact.matrix).norm());
+          EXPECT_LT((system.rhs - exact.rhs).norm(), 1e-13 * exact.rhs.norm());
+        }
+        EXPECT_NEAR(membrane.incrementalPotential(state.positions, begin, kStep), potential,
+                    1e-13 * std::abs(potential));
+      }
     }
   }
 }
@@ -297,6 +345,14 @@ TEST_P(StepInBatches, HidesNoNumberThatIsNotFinite) {
           cloth.membrane().addStep(state.positions, state.velocities, {0.001, 0.001}, system.matrix,
                                    system.rhs);
           EXPECT_FALSE(system.rhs.allFinite());
+          if (moving) continue;
+          const std::vector<MembraneStrain> begin(cloth.strainCount(), MembraneStrain::Zero());
+          System newton(cloth);
+          cloth.membrane().addNewton(state.positions, begin, 0.001, Membrane::Hessian::kProjected,
+                                     newton.matrix, newton.rhs);
+          EXPECT_FALSE(newton.rhs.allFinite());
+          EXPECT_FALSE(
+              std::isfinite(cloth.membrane().incrementalPotential(state.positions, begin, 0.001)));
         }
       }
     }

@@ -129,6 +129,7 @@ class Membrane {
   static Response respond(const Curves& curves, const MembraneStrain& strain);
   Response respondElastic(const MembraneStrain& strain) const;
   double elasticDensity(const MembraneStrain& strain) const;
+  kernels::MembraneLaw law(bool viscosity) const;
 
   std::vector<MembraneElement> elements_;
   std::vector<kernels::MembraneBatch> batches_;  // empty where the processor cannot use them

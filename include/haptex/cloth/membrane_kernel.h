@@ -1,4 +1,5 @@
-// Membrane::addStep() for four elements at a time, for processors with AVX2 and FMA.
+// What Membrane adds to linear systems, for four elements at a time, for processors with AVX2 and
+// FMA.
 #pragma once
 
 #include <array>
@@ -19,29 +20,50 @@ struct alignas(32) MembraneBatch {
   int slots[3][kBatch];  ///< of the matrix blocks (1,0), (2,0), (2,1)
 };
 
-/// What addStep() reads and adds to: three doubles per particle, nine per block (by columns).
-struct MembraneStep {
-  const double* positions;
-  const double* velocities;
-  double a;                                                   ///< s
-  double ahead;                                               ///< s
+struct MembraneLaw {
   const std::array<material::StrainStressCurve, 3>* elastic;  ///< weft, warp, shear
   const std::array<material::StrainStressCurve, 3>* viscous;  ///< null: none
   double coupling;                                            ///< N/m, of weft and warp; 0: none
+};
+
+/// The linear system that the elements are added to: nine doubles per block (by columns), three per
+/// particle.
+struct MembraneSystem {
   double* diagonal;
   double* lower;
   double* rhs;
 };
 
-/// Whether this processor can run addStep().
-bool canAddBatches();
+/// Of Membrane::addStep(). Positions and velocities are three doubles per particle.
+struct MembraneStep {
+  const double* positions;
+  const double* velocities;
+  double a;      ///< s
+  double ahead;  ///< s
+  MembraneLaw law;
+  MembraneSystem system;
+};
 
-/// Elastic energy of the elements (J).
-/// @param positions three doubles per particle
-double elasticEnergy(const MembraneBatch* batches, int count, const double* positions,
-                     const std::array<material::StrainStressCurve, 3>& elastic, double coupling);
+/// Of Membrane::addNewton().
+struct MembraneNewton {
+  const double* positions;
+  const double* begin_strains;  ///< three per element
+  double h;                     ///< s
+  bool exact;                   ///< the Hessian, not projected
+  MembraneLaw law;
+  MembraneSystem system;
+};
+
+/// Whether this processor can run the functions below.
+bool canAddBatches();
 
 /// Adds the elements one after the other, so that the sums are the same in every run.
 void addStep(const MembraneBatch* batches, int count, const MembraneStep& step);
+void addNewton(const MembraneBatch* batches, int count, const MembraneNewton& newton);
+
+/// Membrane::incrementalPotential() of the elements (J); without viscosity the elastic energy.
+/// @param begin_strains three per element, not read without viscosity; nor is h (s)
+double potential(const MembraneBatch* batches, int count, const double* positions,
+                 const double* begin_strains, double h, const MembraneLaw& law);
 
 }  // namespace haptex::cloth::kernels
