@@ -13,10 +13,12 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 
 #include "haptex/cloth/cloth.h"
@@ -33,8 +35,6 @@ constexpr double kFreeMotion = 2.0;   // s, then the sheet starts again
 constexpr double kTolerance = 1e-6;
 constexpr int kStepsPerCase = 320;
 
-std::map<std::string, double> mean_step;  // ms, by "<case>/<triangles>"
-
 std::size_t allocatedBytes() {
   const struct mallinfo2 info = mallinfo2();
   return info.uordblks + info.hblkhd;
@@ -49,34 +49,64 @@ cloth::ClothMesh horizontalSheet(int cells) {
   return mesh;
 }
 
+/// Released where it lies flat, held along one edge.
+class HeldSheet {
+ public:
+  HeldSheet(const material::Fabric& fabric, int cells, const cloth::StepSettings& settings)
+      : cloth_(horizontalSheet(cells), fabric, effectsOf(fabric)),
+        start_(cloth_.initialState()),
+        state_(start_),
+        integrator_(cloth_, settings) {
+    for (int particle : sideParticles(cloth_.mesh(), cloth::Side::kTop)) {
+      cloth::AttachmentPath place;
+      place.start = state_.positions[particle];
+      cloth_.attach(particle, place);
+    }
+  }
+
+  std::size_t triangleCount() const { return cloth_.mesh().triangles.size(); }
+
+  /// @throws std::runtime_error if it did not reach its tolerance
+  cloth::StepReport step(double time_step) {
+    if (state_.time >= kFreeMotion) state_ = start_;
+    const cloth::StepReport report = integrator_.step(cloth_, state_, time_step);
+    if (!report.accepted || !report.linear_converged) {
+      throw std::runtime_error("a step did not reach its tolerance");
+    }
+    return report;
+  }
+
+ private:
+  static cloth::ModelledEffects effectsOf(const material::Fabric& fabric) {
+    cloth::ModelledEffects effects;
+    effects.viscosity = !fabric.weft.viscous.isZero();
+    effects.gravity = {0.0, 0.0, -9.80665};
+    return effects;
+  }
+
+  cloth::Cloth cloth_;
+  cloth::ClothState start_;
+  cloth::ClothState state_;
+  cloth::Integrator integrator_;
+};
+
+cloth::StepSettings settingsOf(double tolerance, int solves = 1, int threads = 1) {
+  cloth::StepSettings settings;
+  settings.tolerance = tolerance;
+  settings.newton_iterations = solves;
+  settings.threads = threads;
+  return settings;
+}
+
 void clothStep(benchmark::State& run, const std::string& name_of_case,
                const material::Fabric& fabric, int solves, int cells) {
-  cloth::ModelledEffects effects;
-  effects.viscosity = !fabric.weft.viscous.isZero();
-  effects.gravity = {0.0, 0.0, -9.80665};
   const std::size_t before = allocatedBytes();
-  cloth::Cloth cloth(horizontalSheet(cells), fabric, effects);
-  cloth::ClothState state = cloth.initialState();
-  const cloth::ClothState start = state;
-  for (int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) {
-    cloth::AttachmentPath place;
-    place.start = state.positions[particle];
-    cloth.attach(particle, place);
-  }
-  cloth::StepSettings settings;
-  settings.tolerance = kTolerance;
-  settings.newton_iterations = solves;
-  cloth::Integrator integrator(cloth, settings);
+  HeldSheet sheet(fabric, cells, settingsOf(kTolerance, solves));
   const double bytes = static_cast<double>(allocatedBytes() - before);
 
   double assembly = 0.0, solve = 0.0, total = 0.0, direct = 0.0, linear_solves = 0.0;
   for (auto _ : run) {
-    if (state.time >= kFreeMotion) state = start;
-    const cloth::StepReport report = integrator.step(cloth, state, kTimeStep);
-    if (!report.accepted || !report.linear_converged) {
-      run.SkipWithError("a step did not reach its tolerance");
-      break;
-    }
+    const cloth::StepReport report = sheet.step(kTimeStep);
     run.SetIterationTime(report.total_seconds);
     assembly += report.assembly_seconds;
     solve += report.solve_seconds;
@@ -84,12 +114,11 @@ void clothStep(benchmark::State& run, const std::string& name_of_case,
     linear_solves += report.newton_iterations;
     direct += report.solver == cloth::LinearSolverMethod::kCholesky;
   }
-  const std::string triangles = std::to_string(cloth.mesh().triangles.size());
+  const std::string triangles = std::to_string(sheet.triangleCount());
   const auto name = [&](const char* what) {
     return "cloth_step/" + name_of_case + what + "/" + triangles;
   };
   const double steps = static_cast<double>(run.iterations());
-  mean_step[name_of_case + "/" + triangles] = 1e3 * total / steps;
   using bench::printLine;
   printLine(name("_rate"), steps / total, "Hz");
   printLine(name("_assembly_share"), 100.0 * assembly / total, "%");
@@ -97,7 +126,7 @@ void clothStep(benchmark::State& run, const std::string& name_of_case,
   printLine(name("_rest_share"), 100.0 * (total - assembly - solve) / total, "%");
   printLine(name("_factorised_steps"), 100.0 * direct / steps, "%");
   printLine(name("_solves"), linear_solves / steps, "per_step");
-  printLine(name("_memory"), bytes / cloth.mesh().triangles.size(), "B/triangle");
+  printLine(name("_memory"), bytes / sheet.triangleCount(), "B/triangle");
 }
 
 /// The fabric with straight lines for curves, of the slopes at zero.
@@ -121,13 +150,6 @@ struct Target {
 
 constexpr double kTargetTolerance = 1e-4;
 
-cloth::StepSettings settingsOf(const Target& target) {
-  cloth::StepSettings settings;
-  settings.tolerance = kTargetTolerance;
-  settings.threads = target.threads;
-  return settings;
-}
-
 material::Fabric fabricOf(const Target& target, material::Fabric fabric) {
   using material::StrainStressCurve;
   fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(target.stiffness);
@@ -137,43 +159,27 @@ material::Fabric fabricOf(const Target& target, material::Fabric fabric) {
 
 /// Mean time of a step (ms), in the fastest of the runs.
 double measureTarget(const Target& target, const material::Fabric& linear) {
-  cloth::ModelledEffects effects;
-  effects.gravity = {0.0, 0.0, -9.80665};
   double fastest = std::numeric_limits<double>::infinity();
   for (int run = 0; run < target.runs; ++run) {
-    cloth::Cloth cloth(horizontalSheet(target.cells), fabricOf(target, linear), effects);
-    cloth::ClothState state = cloth.initialState();
-    for (int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) {
-      cloth::AttachmentPath place;
-      place.start = state.positions[particle];
-      cloth.attach(particle, place);
-    }
-    cloth::Integrator integrator(cloth, settingsOf(target));
+    HeldSheet sheet(fabricOf(target, linear), target.cells,
+                    settingsOf(kTargetTolerance, 1, target.threads));
     double total = 0.0;
     for (int step = 0; step < target.steps; ++step) {
-      const cloth::StepReport report = integrator.step(cloth, state, target.time_step);
-      if (!report.accepted || !report.linear_converged) return 0.0;
-      total += report.total_seconds;
+      total += sheet.step(target.time_step).total_seconds;
     }
     fastest = std::min(fastest, 1e3 * total / target.steps);
   }
   return fastest;
 }
 
-int runTargets(const material::Fabric& linear) {
+void runTargets(const material::Fabric& linear) {
   std::map<int, std::map<int, double>> times;  // ms, by threads and cells, of 12.5 ms steps
-  bool failed = false;
   const auto measure = [&](const Target& target) {
     const double time = measureTarget(target, linear);
     const std::string triangles = std::to_string(2 * target.cells * target.cells);
     char name[80];
     std::snprintf(name, sizeof(name), "k%g_h%g%s", target.stiffness, 1e3 * target.time_step,
                   target.threads > 1 ? ("_threads" + std::to_string(target.threads)).c_str() : "");
-    if (time == 0.0) {
-      std::fprintf(stderr, "%s/%s: a step did not reach its tolerance\n", name, triangles.c_str());
-      failed = true;
-      return;
-    }
     bench::printLine(std::string("cloth_step/target/") + name + "/" + triangles, time, "ms");
     bench::printLine(std::string("cloth_step/target/") + name + "_rate/" + triangles, 1e3 / time,
                      "Hz");
@@ -188,7 +194,23 @@ int runTargets(const material::Fabric& linear) {
     bench::printLine("cloth_step/target/growth_threads" + std::to_string(threads) + "/100352",
                      std::log(ratio) / std::log(100352.0 / 2048.0), "exponent");
   }
-  return failed ? 1 : 0;
+}
+
+/// Sheets of all fabrics make their steps in turn, so that what disturbs one disturbs the others.
+void compare(const material::Fabric& linear, const material::Fabric& wool, int cells) {
+  const cloth::StepSettings settings = settingsOf(kTolerance);
+  std::array<HeldSheet, 3> sheets{HeldSheet(linear, cells, settings),
+                                  HeldSheet(wool, cells, settings),
+                                  HeldSheet(straightened(wool), cells, settings)};
+  std::array<double, 3> totals{};
+  for (int step = 0; step < kStepsPerCase; ++step) {
+    for (std::size_t i = 0; i < sheets.size(); ++i) {
+      totals[i] += sheets[i].step(kTimeStep).total_seconds;
+    }
+  }
+  const std::string triangles = "/" + std::to_string(sheets[0].triangleCount());
+  bench::printLine("cloth_step/wool_over_linear" + triangles, totals[1] / totals[0], "ratio");
+  bench::printLine("cloth_step/wool_over_wool_lines" + triangles, totals[1] / totals[2], "ratio");
 }
 
 }  // namespace
@@ -210,16 +232,13 @@ int main(int argc, char** argv) {
   add("wool", wool, 1);
   add("wool_lines", straightened(wool), 1);
   add("wool_newton", wool, 2);
-  const int result = bench::runAll(argc, argv);
-  for (int count : cells) {
-    const std::string triangles = std::to_string(2 * count * count);
-    const double wool_step = mean_step["wool/" + triangles];
-    for (const char* other : {"linear", "wool_lines"}) {
-      const double step = mean_step[other + ("/" + triangles)];
-      if (step <= 0.0 || wool_step <= 0.0) continue;
-      bench::printLine(std::string("cloth_step/wool_over_") + other + "/" + triangles,
-                       wool_step / step, "ratio");
-    }
+  try {
+    const int result = bench::runAll(argc, argv);
+    for (int count : cells) compare(linear, wool, count);
+    runTargets(linear);
+    return result;
+  } catch (const std::runtime_error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
   }
-  return std::max(result, runTargets(linear));
 }
