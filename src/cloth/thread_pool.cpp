@@ -1,6 +1,20 @@
 #include "haptex/cloth/thread_pool.h"
 
+#include <chrono>
+
 namespace haptex::cloth {
+namespace {
+
+/// Looks for as long as a thread takes to fall asleep and wake up.
+template <typename Condition>
+void awaitBriefly(const Condition& condition) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::microseconds kPatience{50};
+  const Clock::time_point end = Clock::now() + kPatience;
+  while (!condition() && Clock::now() < end) std::this_thread::yield();
+}
+
+}  // namespace
 
 ThreadPool::ThreadPool(int threads) {
   for (int thread = 1; thread < threads; ++thread) {
@@ -29,16 +43,20 @@ void ThreadPool::share(int tasks, const void* context, Call call) {
   }
   start_.notify_all();
   takeTasks(0);
+  const auto done = [this] { return busy_ == 0; };
+  awaitBriefly(done);
   std::unique_lock<std::mutex> lock(mutex_);
-  done_.wait(lock, [this] { return busy_ == 0; });
+  done_.wait(lock, done);
 }
 
 void ThreadPool::work(int thread) {
   long last_job = 0;
+  const auto wanted = [&] { return stop_ || job_ != last_job; };
   while (true) {
+    awaitBriefly(wanted);
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      start_.wait(lock, [&] { return stop_ || job_ != last_job; });
+      start_.wait(lock, wanted);
       if (stop_) return;
       last_job = job_;
     }

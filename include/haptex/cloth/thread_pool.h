@@ -9,7 +9,7 @@
 
 namespace haptex::cloth {
 
-/// Threads that sleep between jobs. They are made by the constructor; run() allocates nothing.
+/// Threads that look for the next job for a moment, because jobs come in rows, and then sleep. They are made by the constructor; run() allocates nothing.
 class ThreadPool {
  public:
   /// @param threads at least 1, with the one that calls run()
@@ -43,9 +43,9 @@ class ThreadPool {
   std::mutex mutex_;
   std::condition_variable start_;
   std::condition_variable done_;
-  long job_ = 0;  // counts the jobs
-  int busy_ = 0;  // workers that have not finished the job
-  bool stop_ = false;
+  std::atomic<long> job_{0};  // counts the jobs
+  std::atomic<int> busy_{0};  // workers that have not finished the job
+  std::atomic<bool> stop_{false};
   std::atomic<int> next_task_{0};
   int tasks_ = 0;
   const void* context_ = nullptr;
