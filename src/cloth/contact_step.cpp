@@ -15,6 +15,7 @@ namespace {
 constexpr double kPenetration = 1e-9;  // m, not worth another round
 constexpr double kRest = 1e-5;         // m/s, slower than that nothing slips
 constexpr int kSwitches = 4;           // rounds in which contacts switch between stick and slip
+constexpr int kOpenings = 6;           // rounds in which contacts open
 
 }  // namespace
 
@@ -209,6 +210,7 @@ void ContactStep::judge(const Vector3d& velocity, const Vector3d& force, Entry& 
     return;
   }
   entry.load = entry.normal.dot(force);
+  if (entry.load < 0.0 && rounds_ > kOpenings) entry.load = 0.0;
   if (!(entry.load >= 0.0)) {  // it would pull
     static_cast<Memory&>(entry) = Memory{};
     return;
@@ -250,6 +252,13 @@ bool ContactStep::addNewton(const Velocities& velocities, SymmetricBlockMatrix& 
     changed = changed || violated;
   }
   return changed;
+}
+
+bool ContactStep::enter(const Velocities& velocities) const {
+  return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    const Vector3d relative = velocities[entry.particle] - entry.target;
+    return !(a_ * entry.normal.dot(relative) >= -2.0 * kPenetration);
+  });
 }
 
 double ContactStep::frictionPotential(const Velocities& velocities) const {

@@ -243,7 +243,8 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     const Descent descent =
         solved || !exact ? searchLine(cloth, stage, result, potential) : Descent::kNone;
     if (descent == Descent::kFound) {
-      is_enough = enough && enough();
+      const bool enters = touching() && contacts_->enter(result.velocities);
+      is_enough = enough && !enters && enough();
       if (is_enough) break;
       hessian = norm <= kNearMinimum * reference ? Membrane::Hessian::kExact
                                                  : Membrane::Hessian::kProjected;

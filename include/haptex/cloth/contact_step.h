@@ -21,7 +21,9 @@ struct Stage;
 /// friction beyond mu N slips, and what friction would push backwards sticks. The first round
 /// starts from what the particles' contacts did last. Contacts that go on to switch between stick
 /// and slip get instead the resistance mu N / |s| against slips s, taken from the round before:
-/// that converges whichever they do, from above for a given N.
+/// that converges whichever they do, from above for a given N. After some rounds contacts only
+/// close: one that pulls for the rest of the stage holds its particle back, one that opens again
+/// and again would leave it in the body.
 ///
 /// One contact per particle. Allocates nothing after construction.
 class ContactStep {
@@ -61,6 +63,9 @@ class ContactStep {
                  std::vector<char>& fixed, BlockVector& prescribed);
   /// The potential that addNewton() is the gradient of (J).
   double frictionPotential(const Velocities& velocities) const;
+
+  /// Whether any particle would enter a body with these velocities.
+  bool enter(const Velocities& velocities) const;
 
   /// What the last stage did: the velocities of particles whose contact holds become the body's,
   /// along the normal or altogether. Impacts are inelastic.
