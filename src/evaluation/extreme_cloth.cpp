@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "haptex/evaluation/equilibrium.h"
@@ -51,22 +52,31 @@ double unbalancedOf(const cloth::Cloth& cloth, const std::vector<Eigen::Vector3d
   return free / held;
 }
 
-/// The same of the sums over all particles within the tolerance of each: what acts between these,
-/// in needles mostly, decides about places to less than the tolerance.
+/// The same of groups of particles, free or attached, within the tolerance of each other: what acts
+/// within a group, a needle mostly, decides about places to about the tolerance.
 double unbalancedOf(const cloth::Cloth& cloth, const cloth::ClothState& state, double extent) {
   std::vector<Eigen::Vector3d> forces;
   cloth.computeForces(state, forces);
   const double single = unbalancedOf(cloth, forces);
   if (single <= 0.1 * kBalanced) return single;
-  std::vector<Eigen::Vector3d> around(forces.size(), Eigen::Vector3d::Zero());
+  std::vector<std::size_t> next(forces.size());  // in the group, or the particle that stands for it
+  std::iota(next.begin(), next.end(), 0);
+  const auto groupOf = [&](std::size_t i) {
+    while (next[i] != i) i = next[i];
+    return i;
+  };
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    for (std::size_t j = 0; j < forces.size(); ++j) {
+    for (std::size_t j = 0; j < i; ++j) {
       const double apart = (state.positions[i] - state.positions[j]).norm();
       if (apart > kReturnTolerance * extent || cloth.isAttached(i) != cloth.isAttached(j)) continue;
-      around[i] += forces[j];
+      const std::size_t group = groupOf(i), other = groupOf(j);
+      if (group == other) continue;
+      next[other] = group;
+      forces[group] += forces[other];
+      forces[other].setZero();
     }
   }
-  return unbalancedOf(cloth, around);
+  return unbalancedOf(cloth, forces);
 }
 
 cloth::StepSettings settingsOf(const ExtremeCase& extreme) {

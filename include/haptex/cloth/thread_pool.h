@@ -9,7 +9,8 @@
 
 namespace haptex::cloth {
 
-/// Threads that look for the next job for a moment, because jobs come in rows, and then sleep. They are made by the constructor; run() allocates nothing.
+/// Threads that look for the next job for a moment, because jobs come in rows, and then sleep. They
+/// are made by the constructor; run() allocates nothing.
 class ThreadPool {
  public:
   /// @param threads at least 1, with the one that calls run()
