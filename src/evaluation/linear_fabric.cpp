@@ -11,6 +11,7 @@ material::Fabric linearFabric(double modulus, double viscosity) {
   fabric.shear.elastic = StrainStressCurve::linear(0.5 * modulus);
   fabric.weft.viscous = fabric.warp.viscous = StrainStressCurve::linear(viscosity);
   fabric.shear.viscous = StrainStressCurve::linear(0.5 * viscosity);
+  fabric.friction = 0.3;
   return fabric;
 }
 

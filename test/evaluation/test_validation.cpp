@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "haptex/evaluation/cloth_swing.h"
+#include "haptex/evaluation/contact_oracles.h"
 #include "haptex/evaluation/equilibrium.h"
 #include "haptex/evaluation/hanging_strip.h"
 #include "haptex/evaluation/validation.h"
@@ -145,19 +146,32 @@ TEST(HangingStrip, RefusesCellsThatAreNotAMultipleOfFive) {
   EXPECT_THROW(simulatedElongation({0.5, 100.0, 0.1, 9.81}, 0, 0.01), std::invalid_argument);
 }
 
+void expectPass(const Quantity& quantity) {
+  EXPECT_TRUE(quantity.pass()) << quantity.name << ": error " << quantity.error << " above "
+                               << quantity.tolerance;
+}
+
 TEST(Validation, EveryQuantityOfEveryRoomPasses) {
   ASSERT_EQ(validations().size(), 6u);
   for (const Validation& validation : validations()) {
-    if (validation.room == "contact") continue;  // takes minutes; test_contact_scenes.cpp has less
+    if (validation.room == "contact") continue;  // takes minutes; its obstacles are tested below
     int quantities = 0;
     validation.run(HAPTEX_CONFIG_DIRECTORY, [&](const Quantity& quantity) {
       ++quantities;
-      EXPECT_TRUE(quantity.pass())
-          << quantity.name << ": error " << quantity.error << " above " << quantity.tolerance;
+      expectPass(quantity);
       EXPECT_EQ(quantity.name.rfind(validation.room + "/", 0), 0u) << quantity.name;
     });
     EXPECT_GT(quantities, 10);
   }
+}
+
+TEST(Validation, EveryQuantityOfObstaclesPasses) {
+  int quantities = 0;
+  validateContactObstacles([&](const Quantity& quantity) {
+    ++quantities;
+    expectPass(quantity);
+  });
+  EXPECT_EQ(quantities, 41);
 }
 
 TEST(Validation, ExoskeletonNamesTheUrdfThatItCannotRead) {

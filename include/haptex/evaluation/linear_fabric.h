@@ -5,7 +5,7 @@
 
 namespace haptex::evaluation {
 
-/// 0.1 kg/m2, linear, without bending.
+/// 0.1 kg/m2, linear, without bending; friction 0.3.
 /// @param modulus N/m along the threads, half of it in shear @param viscosity N.s/m, likewise
 material::Fabric linearFabric(double modulus, double viscosity = 0.0);
 
