@@ -101,7 +101,6 @@ void run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  haptex::nodes::preferMessages();  // as the nodes do
   ros::init(argc, argv, "bench_haptic_loop_nodes");
   // Information goes to standard output, which is for the lines only.
   ros::console::set_logger_level(ROSCONSOLE_ROOT_LOGGER_NAME, ros::console::levels::Warn);

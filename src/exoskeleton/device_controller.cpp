@@ -180,12 +180,15 @@ NoForceReason DeviceController::hold(Time now) const {
   return NoForceReason::kNone;
 }
 
-const DeviceCommand& DeviceController::tick(const DeviceState* state, Time now) {
+void DeviceController::observe(const DeviceState* state, Time now) {
   now_ = now;
   for (FingerController& finger : fingers_.values) finger.noReading();
   if (state != nullptr) accept(*state, now);
   watchDevice(now);
+}
 
+const DeviceCommand& DeviceController::drive(Time now) {
+  now_ = now;
   command_ = DeviceCommand();
   if (operatingState().is_busy) {
     home(now);

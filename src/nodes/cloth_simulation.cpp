@@ -1,21 +1,10 @@
 // The node cloth_simulation, see haptex/nodes/cloth_node.h.
-#include <ros/ros.h>
-
-#include <exception>
-
 #include "haptex/nodes/cloth_node.h"
-#include "haptex/nodes/scheduling.h"
+#include "haptex/nodes/node_process.h"
 
 int main(int argc, char** argv) {
-  haptex::nodes::preferMessages();
-  ros::init(argc, argv, "cloth_simulation");
-  const ros::NodeHandle node;  // outlives the exception: without a node ROS_FATAL prints nothing
-  try {
-    const haptex::nodes::ClothNode cloth_node(node, ros::NodeHandle("~"));
-    ros::MultiThreadedSpinner(4).spin();  // a service that waits must not hold up the others
-  } catch (const std::exception& error) {
-    ROS_FATAL("cloth_simulation: %s", error.what());
-    return 1;
-  }
-  return 0;
+  haptex::nodes::ProcessTraits traits;
+  traits.name = "cloth_simulation";
+  traits.spinners = 4;  // a service that waits must not hold up the others
+  return haptex::nodes::runNode<haptex::nodes::ClothNode>(argc, argv, traits);
 }

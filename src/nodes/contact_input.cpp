@@ -12,6 +12,7 @@ ContactInput::ContactInput(const ros::NodeHandle& node, std::size_t triangle_cou
   const boost::function<void(const haptex::ContactForces&)> callback =
       [this](const haptex::ContactForces& message) { take(message); };
   ros::NodeHandle subscribing = node;
+  subscribing.setCallbackQueue(&queue_);
   subscriber_ = subscribing.subscribe<haptex::ContactForces>(
       "cloth/contact_forces", 1, callback, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
 }

@@ -81,6 +81,13 @@ void DriverNode::diagnoseLink(Status& status) {
 void DriverNode::diagnoseLoop(Status& status) {
   loop_diagnostics_.diagnose(loop_thread_, status);
   status.add("measurements that nobody took in time", loop_.lostSnapshots());
+  const DurationHistogram::Counts path = loop_.path().counts();
+  const auto milliseconds = [](Time time) { return 1e3 * exoskeleton::seconds(time); };
+  status.add("position to force p50 (ms)", milliseconds(path.quantile(0.5)));
+  status.add("position to force p99 (ms)", milliseconds(path.quantile(0.99)));
+  status.add("position to force p99.9 (ms)", milliseconds(path.quantile(0.999)));
+  status.add("position to force largest (ms)", milliseconds(path.largest));
+  status.add("states that were answered by a force", path.total());
 }
 
 std::string DriverNode::whyNoForce(Finger finger, const DriverSnapshot& snapshot) {

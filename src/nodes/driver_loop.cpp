@@ -1,7 +1,11 @@
 #include "haptex/nodes/driver_loop.h"
 
+#include <poll.h>
+
 #include <algorithm>
 #include <utility>
+
+#include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
 
@@ -10,25 +14,47 @@ using exoskeleton::Finger;
 using exoskeleton::kFingers;
 using exoskeleton::Mode;
 using exoskeleton::Refusal;
+using exoskeleton::Time;
+
+namespace {
+
+/// A stamp that went through ROS's clock and back is not exact.
+constexpr Time kStampError = std::chrono::microseconds(200);
+
+unsigned bitOf(Finger finger) { return 1U << static_cast<unsigned>(finger); }
+
+/// Waits until the descriptor has bytes, or something happened to it. @returns false if not in time
+bool awaitBytes(int descriptor, Time until) {
+  pollfd file{descriptor, POLLIN, 0};
+  const timespec patience = toTimespec(std::max(Time{0}, until - steadyNow()));
+  return ::ppoll(&file, 1, &patience, nullptr) > 0;
+}
+
+}  // namespace
 
 FixedText::FixedText(const std::string& text) {
   std::copy_n(text.begin(), std::min(text.size(), kCapacity), characters_.begin());
 }
 
-DriverLoop::DriverLoop(const std::string& port, const std::string& urdf)
-    : controller_(urdf), ports_(port) {}
+DriverLoop::DriverLoop(const std::string& port, const std::string& urdf, Observer observer)
+    : controller_(urdf), observer_(std::move(observer)), ports_(port) {}
 
 void DriverLoop::tick(Time now) {
   takePort();
   receive(now);
-  takeCommands();
+  controller_.observe(state_, now);
+  snapshot_.operating_state = controller_.operatingState();
+  for (const Finger finger : kFingers) snapshot_.fingers[finger] = controller_.measured(finger);
+  if (state_ != nullptr && observer_) observer_(snapshot_);
+  now = awaitAnswers(now);
   DriverRequest request{};
   const bool asked = requests_.take(request);
   Refusal refusal;
   if (asked) refusal = carryOut(request);
-  const exoskeleton::DeviceCommand& command = controller_.tick(state_, now);
+  const exoskeleton::DeviceCommand& command = controller_.drive(now);
   send(link_.poll(now));
   send(link_.send(command));
+  measurePath();
   dropClosedPort();
   show();
   if (asked) requests_.answer(std::move(refusal));
@@ -39,11 +65,14 @@ void DriverLoop::takePort() {
   link_.reset();  // whoever answers there may be another device
 }
 
+void DriverLoop::receiveBytes(Time now) {
+  if (ports_.port() == nullptr) return;
+  const std::size_t count = ports_.port()->read(received_.data(), received_.size());
+  link_.receive(received_.data(), count, now);
+}
+
 void DriverLoop::receive(Time now) {
-  if (ports_.port() != nullptr) {
-    const std::size_t count = ports_.port()->read(received_.data(), received_.size());
-    link_.receive(received_.data(), count, now);
-  }
+  receiveBytes(now);
   state_ = link_.takeState();
   if (state_ == nullptr) return;
   snapshot_.state_time = now;
@@ -55,7 +84,57 @@ void DriverLoop::takeCommands() {
     TripleBuffer<StampedCommand>& newest = commands_[finger].newest;
     if (!newest.update()) continue;
     controller_.command(finger, newest.value().command, newest.value().arrival);
+    answered_[finger] = newest.value().answers;
   }
+}
+
+/// Fingers whose last states were answered and that lack the answer to this one, a bit for each.
+unsigned DriverLoop::answersDue() const {
+  if (state_ == nullptr) return 0;
+  unsigned due = 0;
+  for (const Finger finger : kFingers) {
+    const Time answered = answered_[finger];
+    const Time age = snapshot_.state_time - answered;
+    if (answered >= Time{0} && age > kStampError && age <= kStillAnswering) due |= bitOf(finger);
+  }
+  return due;
+}
+
+/// @returns when it is now
+Time DriverLoop::awaitAnswers(Time now) {
+  takeCommands();
+  const Time end = snapshot_.state_time + kAnswerPatience;
+  bool in_time = true;
+  for (unsigned due = answersDue(); due != 0 && in_time; due = answersDue()) {
+    answers_due_ = due;
+    takeCommands();  // what came before the bits were there
+    if ((due = answersDue()) == 0) break;
+    in_time = answered_all_.waitUntil(end);
+    takeCommands();
+  }
+  answers_due_ = 0;
+  return std::max(now, steadyNow());
+}
+
+void DriverLoop::measurePath() {
+  for (const Finger finger : kFingers) {
+    const Time answered = answered_[finger];
+    if (answered < Time{0} || answered <= path_end_[finger] + kStampError) continue;
+    path_end_[finger] = answered;
+    path_.add(steadyNow() - answered + kLine);
+  }
+}
+
+bool DriverLoop::awaitState(Time until) {
+  while (ports_.port() != nullptr && !ports_.port()->closed() &&
+         awaitBytes(ports_.port()->descriptor(), until)) {
+    const Time now = steadyNow();
+    receiveBytes(now);
+    if (link_.hasState()) return true;
+    if (ports_.port()->closed() || now >= until) break;
+  }
+  sleepUntil(until);
+  return false;
 }
 
 Refusal DriverLoop::carryOut(DriverRequest request) {
@@ -103,10 +182,13 @@ void DriverLoop::show() {
   if (state_ != nullptr) measured_.write(snapshot_);
 }
 
-void DriverLoop::command(Finger finger, const exoskeleton::ForceCommand& command, Time arrival) {
+void DriverLoop::command(Finger finger, const exoskeleton::ForceCommand& command, Time arrival,
+                         Time answers) {
   CommandBox& box = commands_[finger];
   const std::lock_guard<std::mutex> lock(box.writers);
-  box.newest.write({command, arrival});
+  box.newest.write({command, arrival, answers});
+  // Woken up once, by the last one that is waited for.
+  if (answers_due_.fetch_and(~bitOf(finger)) == bitOf(finger)) answered_all_.post();
 }
 
 DriverSnapshot DriverLoop::status() const {

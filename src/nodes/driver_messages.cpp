@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "haptex/nodes/transforms.h"
+
 namespace haptex::nodes {
 namespace {
 
@@ -28,15 +30,7 @@ geometry_msgs::Vector3 toMessage(const Eigen::Vector3d& vector) {
 geometry_msgs::PoseStamped poseMessage(const FingerMeasurement& measured, const ros::Time& stamp) {
   geometry_msgs::PoseStamped message;
   message.header = header(stamp);
-  const Eigen::Vector3d position = measured.pose.translation();
-  const Eigen::Quaterniond rotation(measured.pose.linear());
-  message.pose.position.x = position.x();
-  message.pose.position.y = position.y();
-  message.pose.position.z = position.z();
-  message.pose.orientation.x = rotation.x();
-  message.pose.orientation.y = rotation.y();
-  message.pose.orientation.z = rotation.z();
-  message.pose.orientation.w = rotation.w();
+  message.pose = poseMessage(measured.pose);
   return message;
 }
 
@@ -72,6 +66,21 @@ sensor_msgs::JointState jointStateMessage(
                             of.joint_velocities.end());
   }
   return message;
+}
+
+void fillFingertips(exoskeleton::PerFinger<exoskeleton::FingerKinematics>& kinematics,
+                    const exoskeleton::PerFinger<FingerMeasurement>& measured,
+                    const ros::Time& stamp, haptex::Fingertips& message) {
+  message.header.stamp = stamp;
+  if (message.header.frame_id != kHandFrame) message.header.frame_id = kHandFrame;
+  for (const exoskeleton::Finger finger : exoskeleton::kFingers) {
+    const FingerMeasurement& of = measured[finger];
+    const auto i = static_cast<std::size_t>(finger);
+    message.poses[i] = poseMessage(of.pose);
+    message.twists[i].linear = toMessage(of.velocity);
+    message.twists[i].angular =
+        toMessage(angularVelocity(kinematics[finger], of.joint_angles, of.joint_velocities));
+  }
 }
 
 haptex::OperatingState operatingStateMessage(const exoskeleton::OperatingState& state,

@@ -7,6 +7,7 @@
 #include <sensor_msgs/JointState.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "haptex/nodes/hand_markers.h"
 #include "haptex/nodes/node_parameters.h"
 #include "haptex/nodes/ros_time.h"
+#include "haptex/nodes/scheduling.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
@@ -23,11 +25,15 @@ using exoskeleton::Finger;
 using exoskeleton::kFingers;
 using exoskeleton::Time;
 
+constexpr Time kPosePeriod = std::chrono::milliseconds(4);
 constexpr Time kJointPeriod = std::chrono::milliseconds(10);
 constexpr Time kMarkerPeriod = std::chrono::milliseconds(40);
 constexpr Time kOperatingStatePeriod = std::chrono::milliseconds(100);
-constexpr Time kPublisherPatience = std::chrono::milliseconds(10);
-constexpr std::uint32_t kMeasuredQueue = 10;  // messages, for a subscriber that is slow for 10 ms
+constexpr Time kPublishPeriod = std::chrono::milliseconds(4);
+constexpr Time kEndPatience = std::chrono::milliseconds(50);  // for forces to be zero
+constexpr Time kEndLook = std::chrono::milliseconds(1);
+constexpr Time kNewestStamp = std::chrono::milliseconds(20);  // of what a force answers
+constexpr std::uint32_t kMeasuredQueue = 20;  // messages, for a subscriber that is slow for 20 ms
 
 std::string topic(Finger finger, const char* of_finger) {
   return std::string(name(finger)) + "/" + of_finger;
@@ -35,6 +41,14 @@ std::string topic(Finger finger, const char* of_finger) {
 
 bool sameState(const exoskeleton::OperatingState& a, const exoskeleton::OperatingState& b) {
   return a.mode == b.mode && a.is_homed == b.is_homed && a.is_busy == b.is_busy;
+}
+
+/// When the state came that has this stamp; negative: not known, or not believed.
+Time timeOf(const ros::Time& stamp, const ros::Time& now, Time steady_now) {
+  if (stamp.isZero()) return Time{-1};
+  const Time age(static_cast<std::int64_t>(now.toNSec()) -
+                 static_cast<std::int64_t>(stamp.toNSec()));
+  return age >= Time{0} && age <= kNewestStamp ? steady_now - age : Time{-1};
 }
 
 }  // namespace
@@ -53,10 +67,13 @@ DriverNode::DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& priva
                        DriverNodeParameters parameters)
     : node_(node),
       force_node_(node),
-      force_spinner_(1, &force_queue_),
+      loop_kinematics_{{{{parameters.urdf, Finger::kIndex}, {parameters.urdf, Finger::kThumb}}}},
+      fingertip_publisher_(node_.advertise<haptex::Fingertips>("exoskeleton/fingertips", 1)),
       kinematics_(std::move(parameters.kinematics)),
-      loop_(parameters.port, parameters.urdf),
-      loop_thread_(DriverLoop::kPeriod, [this](Time now) { loop_.tick(now); }),
+      loop_(parameters.port, parameters.urdf,
+            [this](const DriverSnapshot& snapshot) { publishFingertips(snapshot); }),
+      loop_thread_(DriverLoop::kPeriod, [this](Time now) { loop_.tick(now); },
+                   {[this](Time until) { return loop_.awaitState(until); }, kLoopPriority, true}),
       diagnostics_(node, private_node) {
   if (!loop_thread_.refusedScheduler().empty()) {
     ROS_WARN("The loop runs without SCHED_FIFO, on a busy machine it will be late: %s",
@@ -66,12 +83,23 @@ DriverNode::DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& priva
   advertiseServices();
   addDiagnostics();
   publishing_thread_ = std::thread([this] { publish(); });
-  force_spinner_.start();
 }
 
-DriverNode::~DriverNode() {
-  force_spinner_.stop();
-  stopping_ = true;
+DriverNode::~DriverNode() { stop(); }
+
+void DriverNode::stop() {
+  if (stopping_.exchange(true)) return;
+  loop_.ask(DriverRequest::kDisable);
+  const auto at_rest = [this] {
+    const DriverSnapshot now = loop_.status();
+    return std::all_of(kFingers.begin(), kFingers.end(), [&](Finger finger) {
+      return now.fingers[finger].desired_force.isZero(0.0);
+    });
+  };
+  const Time end = steadyNow() + kEndPatience;
+  while (!at_rest() && steadyNow() < end) std::this_thread::sleep_for(kEndLook);
+  for (FingerTopics& topics : fingers_.values) topics.forces.shutdown();
+  loop_thread_.stop();
   publishing_thread_.join();
 }
 
@@ -104,7 +132,7 @@ void DriverNode::takeForce(Finger finger, const haptex::ServoForceConstPtr& mess
   const ros::Time now = ros::Time::now();
   FingerTopics& topics = fingers_[finger];
   if (const auto command = topics.filter.take(*message, now, arrival)) {
-    loop_.command(finger, *command, arrival);
+    loop_.command(finger, *command, arrival, timeOf(message->measured, now, arrival));
     return;
   }
   const std::string why = topics.filter.explain(*message, now);
@@ -115,14 +143,25 @@ void DriverNode::takeForce(Finger finger, const haptex::ServoForceConstPtr& mess
   topics.has_dropped = true;
 }
 
+void DriverNode::publishFingertips(const DriverSnapshot& snapshot) {
+  if (!snapshot.operating_state.is_homed || fingertip_publisher_.getNumSubscribers() == 0) return;
+  const boost::shared_ptr<haptex::Fingertips>& message = fingertip_messages_.next();
+  fillFingertips(loop_kinematics_, snapshot.fingers, rosTimeOf(snapshot.state_time), *message);
+  fingertip_publisher_.publish(message);
+}
+
 void DriverNode::publish() {
+  askForFifoOnce(kMessagePriority);  // it shares roscpp's locks with the loop
   DriverSnapshot snapshot;
   while (!stopping_) {
-    if (loop_.takeMeasured(snapshot, kPublisherPatience)) {
+    // Some at once: to wake threads up takes longer than what they do for a message.
+    std::this_thread::sleep_for(kPublishPeriod);
+    bool measured = false;
+    while (loop_.takeMeasured(snapshot, Time{0})) {
       publishMeasured(snapshot);
-    } else {
-      snapshot = loop_.status();
+      measured = true;
     }
+    if (!measured) snapshot = loop_.status();
     publishOperatingState(snapshot);
   }
 }
@@ -132,12 +171,19 @@ void DriverNode::publishMeasured(const DriverSnapshot& snapshot) {
   // direction either.
   if (!snapshot.operating_state.is_homed) return;
   const ros::Time stamp = rosTimeOf(snapshot.state_time);
-  for (const Finger finger : kFingers) publishFinger(finger, snapshot, stamp);
+  for (const Finger finger : kFingers) {
+    const ros::Publisher& wrench = fingers_[finger].wrench;
+    if (wrench.getNumSubscribers() == 0) continue;
+    wrench.publish(wrenchMessage(snapshot.fingers[finger], stamp));
+  }
   const auto is_due = [&](Time& due, Time period) {
     if (snapshot.state_time < due) return false;
     due = snapshot.state_time + period - DriverLoop::kPeriod / 2;
     return true;
   };
+  if (is_due(poses_due_, kPosePeriod)) {
+    for (const Finger finger : kFingers) publishMotion(finger, snapshot, stamp);
+  }
   if (is_due(joints_due_, kJointPeriod) && joint_publisher_.getNumSubscribers() > 0) {
     joint_publisher_.publish(jointStateMessage(kinematics_, snapshot.fingers, stamp));
   }
@@ -146,12 +192,11 @@ void DriverNode::publishMeasured(const DriverSnapshot& snapshot) {
   }
 }
 
-void DriverNode::publishFinger(Finger finger, const DriverSnapshot& snapshot,
+void DriverNode::publishMotion(Finger finger, const DriverSnapshot& snapshot,
                                const ros::Time& stamp) {
   const exoskeleton::FingerMeasurement& measured = snapshot.fingers[finger];
   const FingerTopics& topics = fingers_[finger];
   if (topics.pose.getNumSubscribers() > 0) topics.pose.publish(poseMessage(measured, stamp));
-  if (topics.wrench.getNumSubscribers() > 0) topics.wrench.publish(wrenchMessage(measured, stamp));
   if (topics.twist.getNumSubscribers() > 0) {
     const Eigen::Vector3d angular =
         angularVelocity(kinematics_[finger], measured.joint_angles, measured.joint_velocities);

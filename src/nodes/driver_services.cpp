@@ -5,6 +5,7 @@
 #include <string>
 
 #include "haptex/nodes/driver_node.h"
+#include "haptex/nodes/node_process.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
@@ -30,7 +31,7 @@ Refusal awaitHomed(const DriverLoop& loop) {
   const Time end = steadyNow() + kHomingPatience;
   DriverSnapshot now = loop.status();
   while (now.operating_state.is_busy) {
-    if (!ros::ok()) return "the driver ends";
+    if (isEnding()) return "the driver ends";
     if (steadyNow() > end) {
       return "homing still goes on after 12 s; exoskeleton/operating_state tells when it is done";
     }

@@ -103,16 +103,21 @@ EmulatorNode::EmulatorNode(const ros::NodeHandle& node, const ros::NodeHandle& p
       publishing_thread_([this] {
         while (!stopping_) publishTruth();
       }),
-      emulator_thread_(Emulator::kPeriod, [this](Time now) { work(now); }) {
+      emulator_thread_(Emulator::kPeriod, [this](Time now) { work(now); },
+                       {{}, kLoopPriority, true}) {
   advertise();
+  hand_thread_.start();
   ROS_INFO("The emulated exoskeleton is at %s", link_.c_str());
 }
 
-EmulatorNode::~EmulatorNode() {
+EmulatorNode::~EmulatorNode() { stop(); }
+
+void EmulatorNode::stop() {
+  if (stopping_.exchange(true)) return;
   hand_timer_.stop();
+  hand_thread_.stop();
   diagnostics_timer_.stop();
   emulator_thread_.stop();
-  stopping_ = true;
   publishing_thread_.join();
 }
 
@@ -121,8 +126,8 @@ void EmulatorNode::advertise() {
   fault_service_ =
       node_.advertiseService("emulator/inject_fault", &EmulatorNode::injectFault, this);
   power_service_ = node_.advertiseService("emulator/power_cycle", &EmulatorNode::cyclePower, this);
-  hand_timer_ = node_.createSteadyTimer(ros::WallDuration(kHandPeriod),
-                                        [this](const ros::SteadyTimerEvent&) { publishHand(); });
+  hand_timer_ = hand_thread_.handle(node_).createSteadyTimer(
+      ros::WallDuration(kHandPeriod), [this](const ros::SteadyTimerEvent&) { publishHand(); });
   diagnostics_.setHardwareID("none");
   diagnostics_.add("exoskeleton emulator", [this](Status& status) { diagnose(status); });
   diagnostics_timer_ = node_.createSteadyTimer(

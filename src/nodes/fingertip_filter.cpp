@@ -48,6 +48,20 @@ Eigen::Vector3d vector(const geometry_msgs::Vector3& message) {
   return {message.x, message.y, message.z};
 }
 
+Eigen::Isometry3d soundPose(const geometry_msgs::Pose& message) {
+  const Eigen::Isometry3d pose = fromMessage(message);
+  requireWithin("the position", pose.translation(), FingertipFilter::kFarthest, "m");
+  return pose;
+}
+
+FingertipTwist soundTwist(const geometry_msgs::Twist& message) {
+  const FingertipTwist twist{vector(message.linear), vector(message.angular)};
+  requireWithin("the velocity", twist.velocity, FingertipFilter::kFastest, "m/s");
+  requireWithin("the angular velocity", twist.angular_velocity, FingertipFilter::kFastestTurning,
+                "rad/s");
+  return twist;
+}
+
 }  // namespace
 
 template <typename Value, typename Message, typename Convert>
@@ -74,21 +88,24 @@ std::optional<Value> FingertipFilter::take(const char* topic, const Message& mes
 
 std::optional<Eigen::Isometry3d> FingertipFilter::take(const geometry_msgs::PoseStamped& message,
                                                        const ros::Time& now, Time steady_now) {
-  return take<Eigen::Isometry3d>("measured_cp", message, now, steady_now, last_pose_, [&] {
-    const Eigen::Isometry3d pose = fromMessage(message.pose);
-    requireWithin("the position", pose.translation(), kFarthest, "m");
-    return pose;
-  });
+  return take<Eigen::Isometry3d>("measured_cp", message, now, steady_now, last_pose_,
+                                 [&] { return soundPose(message.pose); });
 }
 
 std::optional<FingertipTwist> FingertipFilter::take(const geometry_msgs::TwistStamped& message,
                                                     const ros::Time& now, Time steady_now) {
-  return take<FingertipTwist>("measured_cv", message, now, steady_now, last_twist_, [&] {
-    const FingertipTwist twist{vector(message.twist.linear), vector(message.twist.angular)};
-    requireWithin("the velocity", twist.velocity, kFastest, "m/s");
-    requireWithin("the angular velocity", twist.angular_velocity, kFastestTurning, "rad/s");
-    return twist;
-  });
+  return take<FingertipTwist>("measured_cv", message, now, steady_now, last_twist_,
+                              [&] { return soundTwist(message.twist); });
+}
+
+std::optional<FingertipMotion> FingertipFilter::take(const haptex::Fingertips& message,
+                                                     exoskeleton::Finger finger,
+                                                     const ros::Time& now, Time steady_now) {
+  const auto i = static_cast<std::size_t>(finger);
+  return take<FingertipMotion>(
+      "exoskeleton/fingertips", message, now, steady_now, last_motion_, [&] {
+        return FingertipMotion{soundPose(message.poses[i]), soundTwist(message.twists[i])};
+      });
 }
 
 std::uint64_t FingertipFilter::dropped() const {

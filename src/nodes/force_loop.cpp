@@ -39,8 +39,9 @@ ForceLoop::ForceLoop(const exoskeleton::PerFinger<double>& radii)
   }
 }
 
-void ForceLoop::takePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival) {
-  inputs_[finger].pose.write({in_hand_base, arrival, true});
+void ForceLoop::takePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival,
+                         Time measured) {
+  inputs_[finger].pose.write({in_hand_base, arrival, measured, true});
 }
 
 void ForceLoop::takeTwist(Finger finger, const FingertipTwist& in_hand_base, Time arrival) {
@@ -216,6 +217,7 @@ void ForceLoop::step() {
     const std::optional<contact::Fingertip>& fingertip = fingertips_[index(finger)];
     rendered.contact = layer_ && fingertip ? layer_->contacts()[index(finger)] : kNoContact;
     rendered.gain = liveness_.gain(finger);
+    rendered.measured = inputs_[finger].pose.value().measured;
     rendered.contactor_forces.fill(0.0);
     rendered.array = {Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
     if (!fingertip) {

@@ -1,21 +1,10 @@
 // The node force_renderer, see haptex/nodes/force_renderer_node.h.
-#include <ros/ros.h>
-
-#include <exception>
-
 #include "haptex/nodes/force_renderer_node.h"
-#include "haptex/nodes/scheduling.h"
+#include "haptex/nodes/node_process.h"
 
 int main(int argc, char** argv) {
-  haptex::nodes::preferMessages();
-  ros::init(argc, argv, "force_renderer");
-  const ros::NodeHandle node;  // outlives the exception: without a node ROS_FATAL prints nothing
-  try {
-    const haptex::nodes::ForceRendererNode force_renderer_node(node, ros::NodeHandle("~"));
-    ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("force_renderer: %s", error.what());
-    return 1;
-  }
-  return 0;
+  haptex::nodes::ProcessTraits traits;
+  traits.name = "force_renderer";
+  traits.on_force_path = true;
+  return haptex::nodes::runNode<haptex::nodes::ForceRendererNode>(argc, argv, traits);
 }

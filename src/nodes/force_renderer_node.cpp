@@ -1,10 +1,12 @@
 #include "haptex/nodes/force_renderer_node.h"
 
+#include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "haptex/cloth/scene.h"
 #include "haptex/nodes/cloth_messages.h"
@@ -24,9 +26,12 @@ using exoskeleton::Time;
 constexpr double kIndexRadius = 0.0075;       // m
 constexpr double kThumbRadius = 0.009;        // m
 constexpr double kLargestRadius = 0.1;        // m
-constexpr double kTransformPeriod = 0.002;    // s, between two looks at tf
 constexpr double kMarkerPeriod = 1.0 / 30.0;  // s
-constexpr std::uint32_t kContactQueue = 10;   // messages, for a subscriber that is slow for 10 ms
+constexpr std::uint32_t kContactQueue = 5;    // messages, for a subscriber that is slow for 20 ms
+constexpr int kTicksPerContact = 4;
+constexpr std::uint32_t kTransformQueue = 100;  // messages
+/// In which the loop commands no force before it ends.
+constexpr Time kLastCommands = std::chrono::milliseconds(5);
 /// Of a transform whose stamp is to be believed.
 constexpr Time kOldestTransform = std::chrono::milliseconds(20);
 
@@ -71,15 +76,16 @@ ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
                                      const ros::NodeHandle& private_node,
                                      const ForceRendererParameters& parameters)
     : node_(node),
-      input_node_(node),
-      input_spinner_(1, &input_queue_),
-      transform_listener_(transforms_),
+      device_node_(node),
+      input_node_(input_thread_.handle(node)),
+      transform_listener_(transforms_, input_node_, false),
       tactile_(parameters.tactile),
       loop_(parameters.radii),
       fingers_{{{FingerTopics(node, Finger::kIndex), FingerTopics(node, Finger::kThumb)}}},
       diagnostics_(node, private_node),
       supplier_(node, LayerBuilder(parameters.scene_path), loop_),
-      loop_thread_(ForceLoop::kPeriod, [this](Time now) { work(now); }) {
+      loop_thread_(ForceLoop::kPeriod, [this](Time now) { work(now); },
+                   {{}, kForcePriority, true}) {
   if (!loop_thread_.refusedScheduler().empty()) {
     ROS_WARN("The loop runs without SCHED_FIFO, on a busy machine it will be late: %s",
              loop_thread_.refusedScheduler().c_str());
@@ -89,12 +95,22 @@ ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
   marker_timer_ = node_.createSteadyTimer(
       ros::WallDuration(kMarkerPeriod), [this](const ros::SteadyTimerEvent&) { publishMarkers(); });
   addDiagnostics();
-  input_spinner_.start();
+  input_thread_.start();
 }
 
-ForceRendererNode::~ForceRendererNode() {
-  input_spinner_.stop();
+ForceRendererNode::~ForceRendererNode() { stop(); }
+
+void ForceRendererNode::stop() {
+  if (stopping_.exchange(true)) return;  // from now on the loop commands no force
+  std::this_thread::sleep_for(kLastCommands);
+  fingertip_subscriber_.shutdown();
+  for (FingerTopics& topics : fingers_.values) {
+    topics.pose.shutdown();
+    topics.twist.shutdown();
+  }
   loop_thread_.stop();
+  supplier_.stop();
+  input_thread_.stop();
 }
 
 ForceRendererNode::FingerTopics::FingerTopics(ros::NodeHandle node, Finger finger)
@@ -103,24 +119,32 @@ ForceRendererNode::FingerTopics::FingerTopics(ros::NodeHandle node, Finger finge
       contact(node.advertise<haptex::Contact>(topic(finger, "contact"), kContactQueue)) {}
 
 void ForceRendererNode::subscribe() {
-  input_node_.setCallbackQueue(&input_queue_);
+  device_node_.setCallbackQueue(&device_queue_);
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   for (const Finger finger : kFingers) subscribeToFinger(finger);
+  const boost::function<void(const haptex::Fingertips&)> take_fingertips =
+      [this](const haptex::Fingertips& message) { takeFingertips(message); };
+  fingertip_subscriber_ = device_node_.subscribe<haptex::Fingertips>(
+      "exoskeleton/fingertips", 1, take_fingertips, ros::VoidConstPtr(), hints);
   const boost::function<void(const haptex::ClothState&)> take_state =
       [this](const haptex::ClothState& message) { takeState(message); };
   state_subscriber_ = input_node_.subscribe<haptex::ClothState>("cloth/state", 1, take_state,
                                                                 ros::VoidConstPtr(), hints);
   const boost::function<void(const std_msgs::Header&)> take_heartbeat =
       [this](const std_msgs::Header&) { loop_.takeHeartbeat(steadyNow()); };
-  heartbeat_subscriber_ = input_node_.subscribe<std_msgs::Header>(
+  heartbeat_subscriber_ = device_node_.subscribe<std_msgs::Header>(
       "cloth/heartbeat", 1, take_heartbeat, ros::VoidConstPtr(), hints);
   const boost::function<void(const haptex::ClothMeshConstPtr&)> take_mesh =
       [this](const haptex::ClothMeshConstPtr& message) { supplier_.setMesh(message); };
   mesh_subscriber_ =
       node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh, ros::VoidConstPtr(), hints);
-  transform_timer_ =
-      input_node_.createSteadyTimer(ros::WallDuration(kTransformPeriod),
-                                    [this](const ros::SteadyTimerEvent&) { takeTransforms(); });
+  // After the listener, which subscribed before on the same thread: the buffer knows them then.
+  const boost::function<void(const tf2_msgs::TFMessage&)> take_transforms =
+      [this](const tf2_msgs::TFMessage&) { takeTransforms(); };
+  transform_subscriber_ = input_node_.subscribe<tf2_msgs::TFMessage>(
+      "/tf", kTransformQueue, take_transforms, ros::VoidConstPtr(), hints);
+  static_transform_subscriber_ =
+      input_node_.subscribe<tf2_msgs::TFMessage>("/tf_static", kTransformQueue, take_transforms);
 }
 
 void ForceRendererNode::subscribeToFinger(Finger finger) {
@@ -130,21 +154,41 @@ void ForceRendererNode::subscribeToFinger(Finger finger) {
       [this, finger, &topics](const geometry_msgs::PoseStamped& message) {
         const Time arrival = steadyNow();
         const auto pose = topics.filter.take(message, ros::Time::now(), arrival);
-        if (!pose) return;
-        loop_.takePose(finger, *pose, arrival);
+        if (!pose || !takesSingly(arrival)) return;
+        loop_.takePose(finger, *pose, arrival, Time(message.header.stamp.toNSec()));
         topics.poses.fetch_add(1, std::memory_order_relaxed);
       };
   const boost::function<void(const geometry_msgs::TwistStamped&)> take_twist =
       [this, finger, &topics](const geometry_msgs::TwistStamped& message) {
         const Time arrival = steadyNow();
         const auto twist = topics.filter.take(message, ros::Time::now(), arrival);
-        if (twist) loop_.takeTwist(finger, *twist, arrival);
+        if (twist && takesSingly(arrival)) loop_.takeTwist(finger, *twist, arrival);
       };
   // Only the latest counts.
-  topics.pose = input_node_.subscribe<geometry_msgs::PoseStamped>(
+  topics.pose = device_node_.subscribe<geometry_msgs::PoseStamped>(
       topic(finger, "measured_cp"), 1, take_pose, ros::VoidConstPtr(), hints);
-  topics.twist = input_node_.subscribe<geometry_msgs::TwistStamped>(
+  topics.twist = device_node_.subscribe<geometry_msgs::TwistStamped>(
       topic(finger, "measured_cv"), 1, take_twist, ros::VoidConstPtr(), hints);
+}
+
+void ForceRendererNode::takeFingertips(const haptex::Fingertips& message) {
+  const Time arrival = steadyNow();
+  const ros::Time now = ros::Time::now();
+  for (const Finger finger : kFingers) {
+    FingerTopics& topics = fingers_[finger];
+    const auto motion = topics.filter.take(message, finger, now, arrival);
+    if (!motion) continue;
+    loop_.takePose(finger, motion->pose, arrival, Time(message.header.stamp.toNSec()));
+    loop_.takeTwist(finger, motion->twist, arrival);
+    topics.poses.fetch_add(1, std::memory_order_relaxed);
+    last_fingertips_ = arrival;
+  }
+  loop_thread_.call();
+}
+
+/// Whether the device tells of its fingers one by one only.
+bool ForceRendererNode::takesSingly(Time arrival) const {
+  return arrival - last_fingertips_ > FingertipFilter::kForgetAfter;
 }
 
 void ForceRendererNode::takeState(const haptex::ClothState& message) {
@@ -205,26 +249,37 @@ void ForceRendererNode::takeArray(Finger finger) {
 }
 
 void ForceRendererNode::work(Time now) {
-  exoskeleton::PerFinger<bool> has_contact_subscribers;
+  const bool contact_due = ++ticks_to_contact_ >= kTicksPerContact;
+  if (contact_due) ticks_to_contact_ = 0;
   for (const Finger finger : kFingers) {
-    has_contact_subscribers[finger] = fingers_[finger].contact.getNumSubscribers() > 0;
-    loop_.wantContactors(finger, has_contact_subscribers[finger]);
+    loop_.wantContactors(finger, contact_due && fingers_[finger].contact.getNumSubscribers() > 0);
   }
   loop_.tick(now);
   const ros::Time stamp = ros::Time::now();
+  for (const Finger finger : kFingers) publishForce(finger, stamp);
   for (const Finger finger : kFingers) {
-    FingerTopics& topics = fingers_[finger];
-    const ForceLoop::Rendered& rendered = loop_.rendered(finger);
-    if (topics.force.getNumSubscribers() > 0) {
-      fillServoForce(rendered.contact, rendered.gain, loop_.hand(), stamp, topics.force_message);
-      topics.force.publish(topics.force_message);
-    }
-    if (!has_contact_subscribers[finger]) continue;
-    fillContact(rendered.contact, rendered.contactor_forces, rendered.array, rendered.gain, stamp,
-                topics.contact_message);
-    topics.contact.publish(topics.contact_message);
+    if (contact_due) publishContact(finger, stamp);
   }
   tick_durations_.add(steadyNow() - now);
+}
+
+void ForceRendererNode::publishForce(Finger finger, const ros::Time& stamp) {
+  FingerTopics& topics = fingers_[finger];
+  if (topics.force.getNumSubscribers() == 0) return;
+  const ForceLoop::Rendered& rendered = loop_.rendered(finger);
+  const boost::shared_ptr<haptex::ServoForce>& message = topics.force_messages.next();
+  fillServoForce(rendered.contact, stopping_ ? 0.0 : rendered.gain, loop_.hand(), stamp, *message);
+  message->measured.fromNSec(static_cast<std::uint64_t>(rendered.measured.count()));
+  topics.force.publish(message);
+}
+
+void ForceRendererNode::publishContact(Finger finger, const ros::Time& stamp) {
+  FingerTopics& topics = fingers_[finger];
+  if (topics.contact.getNumSubscribers() == 0) return;
+  const ForceLoop::Rendered& rendered = loop_.rendered(finger);
+  fillContact(rendered.contact, rendered.contactor_forces, rendered.array, rendered.gain, stamp,
+              topics.contact_message);
+  topics.contact.publish(topics.contact_message);
 }
 
 void ForceRendererNode::publishMarkers() {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "haptex/nodes/renderer_messages.h"
+#include "haptex/nodes/scheduling.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
@@ -14,7 +15,7 @@ namespace {
 using exoskeleton::kFingers;
 using exoskeleton::Time;
 
-constexpr Time kPatience = std::chrono::milliseconds(1);
+constexpr Time kPatience = std::chrono::milliseconds(2);
 constexpr Time kConnectionPeriod = std::chrono::milliseconds(50);
 /// Until the forces have fallen to zero before a layer is exchanged.
 constexpr Time kFall = RendererLiveness::kFall + std::chrono::milliseconds(4);
@@ -28,9 +29,11 @@ PatchSupplier::PatchSupplier(const ros::NodeHandle& node, LayerBuilder builder, 
   thread_ = std::thread([this] { run(); });
 }
 
-PatchSupplier::~PatchSupplier() {
+PatchSupplier::~PatchSupplier() { stop(); }
+
+void PatchSupplier::stop() {
   stopping_ = true;
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void PatchSupplier::setMesh(const haptex::ClothMeshConstPtr& message) {
@@ -49,6 +52,7 @@ PatchSupplierStatus PatchSupplier::status() const {
 }
 
 void PatchSupplier::run() {
+  askForFifoOnce(kMessagePriority);
   while (!stopping_) {
     const bool state_came = loop_.waitForState(kPatience);
     takeMesh();

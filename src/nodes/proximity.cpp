@@ -1,21 +1,9 @@
 // The node proximity, see haptex/nodes/proximity_node.h.
-#include <ros/ros.h>
-
-#include <exception>
-
+#include "haptex/nodes/node_process.h"
 #include "haptex/nodes/proximity_node.h"
-#include "haptex/nodes/scheduling.h"
 
 int main(int argc, char** argv) {
-  haptex::nodes::preferMessages();
-  ros::init(argc, argv, "proximity");
-  const ros::NodeHandle node;  // outlives the exception: without a node ROS_FATAL prints nothing
-  try {
-    const haptex::nodes::ProximityNode proximity_node(node, ros::NodeHandle("~"));
-    ros::MultiThreadedSpinner(4).spin();  // two fingertips, the states, and the rest
-  } catch (const std::exception& error) {
-    ROS_FATAL("proximity: %s", error.what());
-    return 1;
-  }
-  return 0;
+  haptex::nodes::ProcessTraits traits;
+  traits.name = "proximity";
+  return haptex::nodes::runNode<haptex::nodes::ProximityNode>(argc, argv, traits);
 }

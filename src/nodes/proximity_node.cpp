@@ -16,6 +16,7 @@ namespace {
 constexpr double kDefaultStaleAfter = 0.5;  // s
 constexpr double kMarkerPeriod = 0.1;       // s
 constexpr double kDiagnosticsPeriod = 1.0;  // s
+constexpr int kServiceThreads = 2;          // for the force renderer, and for others
 
 /// dynamic_reconfigure would silently take another value for one that it does not understand.
 void requireVolumeLevel(const ros::NodeHandle& private_node) {
@@ -85,15 +86,20 @@ ProximityNode::ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle&
       [this](diagnostic_updater::DiagnosticStatusWrapper& status) { diagnose(status); });
   marker_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("proximity/markers", 2);
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  mesh_subscriber_ = node_.subscribe("cloth/mesh", 1, &ProximityNode::takeMesh, this, hints);
+  ros::NodeHandle input_node = input_thread_.handle(node_);
+  mesh_subscriber_ = input_node.subscribe("cloth/mesh", 1, &ProximityNode::takeMesh, this, hints);
   // Only the latest state counts.
-  state_subscriber_ = node_.subscribe("cloth/state", 1, &ProximityNode::takeState, this, hints);
-  query_service_ = node_.advertiseService("proximity/query", &ProximityNode::query, this);
+  state_subscriber_ =
+      input_node.subscribe("cloth/state", 1, &ProximityNode::takeState, this, hints);
+  query_service_ = service_threads_.handle(node_).advertiseService("proximity/query",
+                                                                   &ProximityNode::query, this);
   marker_timer_ = node_.createSteadyTimer(
       ros::WallDuration(kMarkerPeriod), [this](const ros::SteadyTimerEvent&) { publishMarkers(); });
   diagnostics_timer_ = node_.createSteadyTimer(
       ros::WallDuration(kDiagnosticsPeriod),
       [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
+  input_thread_.start();
+  service_threads_.start(kServiceThreads);
 }
 
 void ProximityNode::takeMesh(const haptex::ClothMeshConstPtr& message) {

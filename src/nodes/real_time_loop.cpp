@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "haptex/nodes/scheduling.h"
-
 namespace haptex::nodes {
 namespace {
 
@@ -92,7 +90,6 @@ LoopStatus RealTimeLoop::status() const {
 }
 
 void RealTimeLoop::run() {
-  beOrdinary();  // long steps may not keep messages waiting
   std::unique_lock<std::mutex> lock(mutex_);
   resume();
   while (running_) {

@@ -1,11 +1,56 @@
 #include "haptex/nodes/scheduling.h"
 
+#include <ros/poll_manager.h>
 #include <sched.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
 #include <system_error>
 
+#include "haptex/nodes/steady_clock.h"
+
 namespace haptex::nodes {
+namespace {
+
+using exoskeleton::Time;
+
+constexpr Time kQuickLook = std::chrono::microseconds(10);  // shorter than a message takes
+constexpr int kMostQuickLooks = 10;
+constexpr Time kBreak = std::chrono::microseconds(50);
+
+/// roscpp's thread of the sockets, which calls look() whenever it looks for what is to be done.
+/// While another thread writes to a connection (the answer of a service) it finds the socket ready
+/// and the connection locked, and looks again at once. With SCHED_FIFO the one that it waits for
+/// might never get on: after some such looks it takes a break.
+class SocketThread {
+ public:
+  explicit SocketThread(bool on_force_path) : on_force_path_(on_force_path) {}
+
+  void look() {
+    if (!asked_) {
+      asked_ = true;
+      askForFifo(pthread_self(), on_force_path_ ? kSocketPriority : kMessagePriority);
+      if (on_force_path_) keepOnForceProcessor(pthread_self());
+    }
+    const Time now = steadyNow();
+    quick_looks_ = now - last_look_ < kQuickLook ? quick_looks_ + 1 : 0;
+    last_look_ = now;
+    if (quick_looks_ < kMostQuickLooks) return;
+    sleepUntil(now + kBreak);
+    quick_looks_ = 0;
+  }
+
+ private:
+  const bool on_force_path_;
+  bool asked_ = false;
+  Time last_look_{0};
+  int quick_looks_ = 0;
+};
+
+}  // namespace
 
 std::string askForFifo(pthread_t thread, int priority) {
   sched_param parameters{};
@@ -20,11 +65,36 @@ std::string askForFifo(pthread_t thread, int priority) {
   return why;
 }
 
-void preferMessages() { askForFifo(pthread_self(), kMessagePriority); }
+void askForFifoOnce(int priority) {
+  thread_local bool asked = false;
+  if (asked) return;
+  asked = true;
+  askForFifo(pthread_self(), priority);
+}
 
-void beOrdinary() {
+void keepOnForceProcessor(pthread_t thread) {
+  cpu_set_t allowed;
+  if (sched_getaffinity(getpid(), sizeof allowed, &allowed) != 0) return;
+  int last = CPU_SETSIZE - 1;
+  while (last > 0 && !CPU_ISSET(last, &allowed)) --last;
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(last, &one);
+  pthread_setaffinity_np(thread, sizeof one, &one);  // refused: it runs elsewhere
+}
+
+void preferMessages(bool on_force_path) {
+  const auto thread = std::make_shared<SocketThread>(on_force_path);
+  ros::PollManager::instance()->addPollThreadListener([thread] { thread->look(); });
+}
+
+void makeAllOrdinary() {
   const sched_param ordinary{};
-  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);  // always allowed
+  std::error_code error;  // a thread may end meanwhile
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task", error)) {
+    const pid_t thread = std::atoi(entry.path().filename().c_str());
+    sched_setscheduler(thread, SCHED_OTHER, &ordinary);  // always allowed
+  }
 }
 
 }  // namespace haptex::nodes

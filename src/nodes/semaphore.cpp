@@ -13,9 +13,11 @@ Semaphore::~Semaphore() { sem_destroy(&semaphore_); }
 
 void Semaphore::post() { sem_post(&semaphore_); }
 
-bool Semaphore::waitFor(exoskeleton::Time patience) {
-  const timespec end = toTimespec(steadyNow() + patience);
-  while (sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &end) != 0) {
+bool Semaphore::waitFor(exoskeleton::Time patience) { return waitUntil(steadyNow() + patience); }
+
+bool Semaphore::waitUntil(exoskeleton::Time end) {
+  const timespec time = toTimespec(end);
+  while (sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &time) != 0) {
     if (errno != EINTR) return false;
   }
   return true;

@@ -15,7 +15,7 @@
 
 namespace haptex::exoskeleton {
 
-/// Not thread-safe. tick(), command(), raiseFault() and the getters do not allocate.
+/// Not thread-safe. tick(), observe(), drive(), command(), raiseFault() and the getters do not allocate.
 ///
 /// Commands that the device does not get are as dangerous as commands that nobody sends: its
 /// firmware takes the motors to zero, and the first command it gets again would make the force
@@ -55,7 +55,13 @@ class DeviceController {
 
   /// One period. @param state the newest one of the device, or nullptr if none came @param now
   /// never before that of the last tick
-  const DeviceCommand& tick(const DeviceState* state, Time now);
+  const DeviceCommand& tick(const DeviceState* state, Time now) {
+    observe(state, now);
+    return drive(now);
+  }
+  /// The two halves of a period, between which commands for the state that was observed may come.
+  void observe(const DeviceState* state, Time now);
+  const DeviceCommand& drive(Time now);
 
   const FingerMeasurement& measured(Finger finger) const { return fingers_[finger].measurement(); }
   const OperatingState& operatingState() const { return states_.state(); }

@@ -45,6 +45,8 @@ class DeviceLink {
 
   /// The newest state since the last call, or nullptr. Valid until the next receive().
   const DeviceState* takeState();
+  /// Whether takeState() would return one.
+  bool hasState() const { return state_is_new_; }
 
   /// What to send now: a Hello if one is due, nothing otherwise. To be called once per tick, also
   /// notices timeouts. Valid until the next call that returns bytes.

@@ -64,6 +64,9 @@ class ClothNode {
   /// @throws std::exception with a message naming what was wrong with a parameter or a file
   ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
 
+  /// Ends the simulation; services that wait for it return. Afterwards only to be destroyed.
+  void stop() { loop_.stop(); }
+
  private:
   ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
             const ClothNodeParameters& parameters);

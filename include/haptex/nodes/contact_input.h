@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 
+#include "haptex/nodes/immediate_queue.h"
 #include "haptex/nodes/newest_loads.h"
 
 namespace haptex::nodes {
@@ -37,6 +38,7 @@ class ContactInput {
   NewestLoads loads_;
   mutable std::mutex mutex_;  // guards the following
   ContactInputStatus status_;
+  ImmediateQueue queue_;
   ros::Subscriber subscriber_;
 };
 

@@ -3,16 +3,20 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 
 #include "haptex/exoskeleton/device_controller.h"
 #include "haptex/exoskeleton/device_link.h"
+#include "haptex/nodes/duration_histogram.h"
 #include "haptex/nodes/port_keeper.h"
 #include "haptex/nodes/request_box.h"
 #include "haptex/nodes/ring.h"
+#include "haptex/nodes/semaphore.h"
 #include "haptex/nodes/triple_buffer.h"
 
 namespace haptex::nodes {
@@ -50,25 +54,45 @@ struct DriverSnapshot {
 };
 
 /// Owns port, link and controller. One thread ticks, any others do the rest; tick() waits for none
-/// of them. It does not allocate, but for the answer to a refused request and for the text of a
-/// fault.
+/// of them, but for kAnswerPatience at most for the forces that answer the state that has come, if
+/// those of the states before were answered. It does not allocate, but for the answer to a refused
+/// request and for the text of a fault.
 class DriverLoop {
  public:
   using Time = exoskeleton::Time;
   static constexpr Time kPeriod = std::chrono::milliseconds(1);
+  /// After a state. A force that comes later is rendered in the next period.
+  static constexpr Time kAnswerPatience = std::chrono::microseconds(600);
+  /// Forces that answered a state of this age or a younger one promise to answer the next.
+  static constexpr Time kStillAnswering = std::chrono::milliseconds(5);
+  /// Both ways on the line, for path(): a pseudo-terminal takes no time for them.
+  static constexpr Time kLine = std::chrono::microseconds(760);
+
+  /// On the thread that ticks, as soon as a state has been measured: must not wait.
+  using Observer = std::function<void(const DriverSnapshot&)>;
 
   /// Times are those of steadyNow().
   /// @param port path of a serial port, which need not be there yet
   /// @param urdf text of the exoskeleton's URDF
   /// @throws std::invalid_argument as exoskeleton::FingerKinematics
-  DriverLoop(const std::string& port, const std::string& urdf);
+  DriverLoop(const std::string& port, const std::string& urdf, Observer observer = {});
 
   /// By one thread, once per kPeriod: states in, commands and requests, torques out.
   void tick(Time now);
 
+  /// By the same thread, between two ticks: waits for the next state of the device.
+  /// @returns false if none came until then
+  bool awaitState(Time until);
+
   /// By any thread: the newest commanded force of a finger, for the next tick.
   /// @param arrival when it came
-  void command(exoskeleton::Finger finger, const exoskeleton::ForceCommand& command, Time arrival);
+  /// @param answers  when the state came that it was computed from; negative: not known
+  void command(exoskeleton::Finger finger, const exoskeleton::ForceCommand& command, Time arrival,
+               Time answers = Time{-1});
+
+  /// By any thread: from a state of the device to the torques that answer it, for every finger and
+  /// state that was answered, with kLine.
+  const DurationHistogram& path() const { return path_; }
 
   /// By any thread: asks between two ticks. See RequestBox::ask(). After it status() shows what it
   /// led to.
@@ -94,6 +118,7 @@ class DriverLoop {
   struct StampedCommand {
     exoskeleton::ForceCommand command;
     Time arrival{0};
+    Time answers{-1};
   };
   struct CommandBox {
     std::mutex writers;  // guards writing; never taken by the loop
@@ -101,8 +126,12 @@ class DriverLoop {
   };
 
   void takePort();
+  void receiveBytes(Time now);
   void receive(Time now);
   void takeCommands();
+  unsigned answersDue() const;
+  Time awaitAnswers(Time now);
+  void measurePath();
   exoskeleton::Refusal carryOut(DriverRequest request);
   void send(exoskeleton::Bytes bytes);
   void dropClosedPort();
@@ -114,11 +143,17 @@ class DriverLoop {
   const exoskeleton::DeviceState* state_ = nullptr;  // of this tick; nullptr if none came
   DriverSnapshot snapshot_;
   std::array<std::uint8_t, 4096> received_{};  // more than a line brings in 40 ms
+  Observer observer_;
+  exoskeleton::PerFinger<Time> answered_{{{Time{-1}, Time{-1}}}};  // states, by the last command
+  exoskeleton::PerFinger<Time> path_end_{{{Time{-1}, Time{-1}}}};  // those in path_
+  DurationHistogram path_;
 
   // Between threads.
   PortKeeper ports_;
   RequestBox requests_;
   exoskeleton::PerFinger<CommandBox> commands_;
+  std::atomic<unsigned> answers_due_{0};  // a bit per finger, for which the loop waits
+  Semaphore answered_all_;
   Ring<DriverSnapshot, 64> measured_;
   mutable std::mutex status_readers_;  // guards reading; never taken by the loop
   mutable TripleBuffer<DriverSnapshot> status_;

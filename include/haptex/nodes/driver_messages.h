@@ -4,6 +4,7 @@
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TwistStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
+#include <haptex/Fingertips.h>
 #include <haptex/OperatingState.h>
 #include <ros/time.h>
 #include <sensor_msgs/JointState.h>
@@ -41,6 +42,11 @@ sensor_msgs::JointState jointStateMessage(
 
 haptex::OperatingState operatingStateMessage(const exoskeleton::OperatingState& state,
                                              const std::string& fault, const ros::Time& stamp);
+
+/// Poses and velocities of both fingertips. Allocates nothing if the frame is set already.
+void fillFingertips(exoskeleton::PerFinger<exoskeleton::FingerKinematics>& kinematics,
+                    const exoskeleton::PerFinger<exoskeleton::FingerMeasurement>& measured,
+                    const ros::Time& stamp, haptex::Fingertips& message);
 
 /// Angular velocity of <finger>_tip (rad/s) by the axes of hand_base.
 Eigen::Vector3d angularVelocity(exoskeleton::FingerKinematics& kinematics,

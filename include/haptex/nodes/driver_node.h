@@ -2,8 +2,8 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <haptex/Fingertips.h>
 #include <haptex/ServoForce.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
@@ -15,7 +15,9 @@
 
 #include "haptex/exoskeleton/finger_kinematics.h"
 #include "haptex/nodes/driver_loop.h"
+#include "haptex/nodes/immediate_queue.h"
 #include "haptex/nodes/loop_diagnostics.h"
+#include "haptex/nodes/message_pool.h"
 #include "haptex/nodes/periodic_thread.h"
 #include "haptex/nodes/servo_force_filter.h"
 
@@ -32,20 +34,25 @@ struct DriverNodeParameters {
 };
 
 /// Below the namespace of `node`, for each finger: subscribes to <finger>/servo_cf (ServoForce);
-/// advertises <finger>/measured_cp, measured_cv, measured_cf (geometry_msgs), one message for every
-/// state of the device, joint_states at 100 Hz, exoskeleton/force_markers
-/// (visualization_msgs/MarkerArray, 25 Hz) and exoskeleton/operating_state (latched); nothing is
-/// measured before the device is homed. Services exoskeleton/enable, disable, pause, home,
-/// clear_fault (std_srvs/Trigger). Nothing is computed for topics without subscribers.
+/// advertises exoskeleton/fingertips (Fingertips) and <finger>/measured_cf (geometry_msgs), one
+/// message for every state of the device, <finger>/measured_cp and measured_cv at 250 Hz,
+/// joint_states at 100 Hz, exoskeleton/force_markers (visualization_msgs/MarkerArray, 25 Hz) and
+/// exoskeleton/operating_state (latched); nothing is measured before the device is homed. Services
+/// exoskeleton/enable, disable, pause, home, clear_fault (std_srvs/Trigger). Nothing is computed
+/// for topics without subscribers.
 ///
-/// Forces come in on one thread, the loop of 1 kHz runs on another, a third publishes, a fourth
-/// opens the port, and services and diagnostics run wherever the caller spins; the loop waits for
-/// none of them.
+/// The loop of 1 kHz has a thread of its own, which the device's states wake up. It publishes
+/// exoskeleton/fingertips, which the forces are computed from, and renders the forces that answer
+/// it; these are taken where they arrive. A second thread publishes what is to be looked at, a
+/// third opens the port, and services and diagnostics run wherever the caller spins.
 class DriverNode {
  public:
   /// @throws std::exception with a message naming what was wrong with a parameter
   DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~DriverNode();
+
+  /// Forces to zero, then the motors off and the loop ended. Afterwards only to be destroyed.
+  void stop();
 
  private:
   using Finger = exoskeleton::Finger;
@@ -71,10 +78,12 @@ class DriverNode {
   void advertiseTopics();
   void takeForce(Finger finger, const haptex::ServoForceConstPtr& message);
 
+  void publishFingertips(const DriverSnapshot& snapshot);  // on the loop's thread
+
   // On the publishing thread.
   void publish();
   void publishMeasured(const DriverSnapshot& snapshot);
-  void publishFinger(Finger finger, const DriverSnapshot& snapshot, const ros::Time& stamp);
+  void publishMotion(Finger finger, const DriverSnapshot& snapshot, const ros::Time& stamp);
   void publishOperatingState(const DriverSnapshot& snapshot);
 
   void advertiseServices();
@@ -92,12 +101,17 @@ class DriverNode {
   std::string whyNoForce(Finger finger, const DriverSnapshot& snapshot);
 
   ros::NodeHandle node_;
-  ros::NodeHandle force_node_;  // whose callbacks run on a thread of their own
-  ros::CallbackQueue force_queue_;
-  ros::AsyncSpinner force_spinner_;
+  ros::NodeHandle force_node_;  // whose callbacks run where the messages arrive
+  ImmediateQueue force_queue_;
+
+  // Used by the loop's thread only.
+  exoskeleton::PerFinger<exoskeleton::FingerKinematics> loop_kinematics_;
+  ros::Publisher fingertip_publisher_;
+  MessagePool<haptex::Fingertips> fingertip_messages_;
 
   // Used by the publishing thread only.
   exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematics_;
+  Time poses_due_{0};
   Time joints_due_{0};
   Time markers_due_{0};
   Time operating_state_due_{0};

@@ -17,6 +17,7 @@
 #include "haptex/exoskeleton/hand_path.h"
 #include "haptex/nodes/emulator.h"
 #include "haptex/nodes/hand_motion.h"
+#include "haptex/nodes/message_threads.h"
 #include "haptex/nodes/periodic_thread.h"
 #include "haptex/nodes/ring.h"
 #include "haptex/nodes/target_input.h"
@@ -57,6 +58,9 @@ class EmulatorNode {
   EmulatorNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~EmulatorNode();
 
+  /// Ends the device. Afterwards only to be destroyed.
+  void stop();
+
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
@@ -72,6 +76,7 @@ class EmulatorNode {
   void diagnose(Status& status);
 
   ros::NodeHandle node_;
+  MessageThreads hand_thread_;
   std::string link_;
   HandMotion motion_;
   TargetInput targets_;

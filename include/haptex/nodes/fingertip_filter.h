@@ -4,6 +4,7 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TwistStamped.h>
+#include <haptex/Fingertips.h>
 #include <ros/time.h>
 
 #include <Eigen/Geometry>
@@ -13,6 +14,7 @@
 #include <string>
 
 #include "haptex/exoskeleton/clock.h"
+#include "haptex/exoskeleton/finger.h"
 
 namespace haptex::nodes {
 
@@ -22,9 +24,16 @@ struct FingertipTwist {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rad/s
 };
 
-/// Takes measured_cp and measured_cv of one finger, in kHandFrame. Drops and counts those that are
-/// in another frame, not finite or beyond what a hand does, stamped more than kStampTolerance
-/// before or after ROS's clock, or not later than the one before of their kind.
+/// By the axes of hand_base.
+struct FingertipMotion {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< m
+  FingertipTwist twist;
+};
+
+/// Takes exoskeleton/fingertips, measured_cp and measured_cv of one finger, in kHandFrame. Drops
+/// and counts those that are in another frame, not finite or beyond what a hand does, stamped more
+/// than kStampTolerance before or after ROS's clock, or not later than the one before of their
+/// kind.
 class FingertipFilter {
  public:
   using Time = exoskeleton::Time;
@@ -42,6 +51,9 @@ class FingertipFilter {
                                         const ros::Time& now, Time steady_now);
   std::optional<FingertipTwist> take(const geometry_msgs::TwistStamped& message,
                                      const ros::Time& now, Time steady_now);
+  /// What is in it of `finger`.
+  std::optional<FingertipMotion> take(const haptex::Fingertips& message, exoskeleton::Finger finger,
+                                      const ros::Time& now, Time steady_now);
 
   /// By any thread: messages dropped since the construction, and why the last of them was.
   std::uint64_t dropped() const;
@@ -60,6 +72,7 @@ class FingertipFilter {
 
   Last last_pose_;
   Last last_twist_;
+  Last last_motion_;
 
   mutable std::mutex mutex_;  // guards the next
   std::uint64_t dropped_ = 0;

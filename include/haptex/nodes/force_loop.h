@@ -94,6 +94,7 @@ class ForceLoop {
     contact::FingertipContact contact;
     tactile::PerContactor<double> contactor_forces{};  ///< N
     tactile::ArrayPlacement array;                     ///< on the fabric, zero without contact
+    Time measured{0};   ///< stamp of the pose that it was computed from, see takePose()
     double gain = 0.0;  ///< share of the contact's force that is to be rendered, 0 to 1
   };
 
@@ -101,7 +102,9 @@ class ForceLoop {
   explicit ForceLoop(const exoskeleton::PerFinger<double>& radii);
 
   // By the thread of what comes in; only what is believed. Arrivals are when the messages came.
-  void takePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival);
+  /// @param measured its stamp, by any clock, to be told with the force that comes of it
+  void takePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival,
+                Time measured = Time{0});
   void takeTwist(Finger finger, const FingertipTwist& in_hand_base, Time arrival);
   /// @param time when the hand was there @param fixed a static transform
   void takeHandBase(const Eigen::Isometry3d& in_world, Time time, Time arrival, bool fixed);
@@ -141,6 +144,7 @@ class ForceLoop {
   struct Pose {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     Time arrival{0};
+    Time measured{0};
     bool known = false;
   };
   struct Twist {

@@ -8,8 +8,8 @@
 #include <haptex/ClothMesh.h>
 #include <haptex/ClothState.h>
 #include <haptex/Contact.h>
+#include <haptex/Fingertips.h>
 #include <haptex/ServoForce.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_msgs/Header.h>
 #include <tf2_ros/buffer.h>
@@ -27,7 +27,10 @@
 #include "haptex/nodes/duration_histogram.h"
 #include "haptex/nodes/fingertip_filter.h"
 #include "haptex/nodes/force_loop.h"
+#include "haptex/nodes/immediate_queue.h"
 #include "haptex/nodes/loop_diagnostics.h"
+#include "haptex/nodes/message_pool.h"
+#include "haptex/nodes/message_threads.h"
 #include "haptex/nodes/patch_supplier.h"
 #include "haptex/nodes/periodic_thread.h"
 #include "haptex/nodes/rate_meter.h"
@@ -46,20 +49,24 @@ struct ForceRendererParameters {
   static ForceRendererParameters read(const ros::NodeHandle& private_node);
 };
 
-/// Below the namespace of `node`: subscribes to cloth/mesh, cloth/state, cloth/heartbeat and, for
-/// each finger, <finger>/measured_cp and measured_cv; needs the transform of hand_base to world and
-/// the service proximity/query; advertises <finger>/servo_cf (ServoForce) and <finger>/contact
-/// (Contact) at 1 kHz, cloth/contact_forces (ContactForces) once per state of the cloth that is
+/// Below the namespace of `node`: subscribes to cloth/mesh, cloth/state, cloth/heartbeat,
+/// exoskeleton/fingertips and, for each finger, <finger>/measured_cp and measured_cv, which count
+/// where a device has no exoskeleton/fingertips; needs the transform of hand_base to world and the
+/// service proximity/query; advertises <finger>/servo_cf (ServoForce) at 1 kHz and <finger>/contact
+/// (Contact) at 250 Hz, cloth/contact_forces (ContactForces) once per state of the cloth that is
 /// touched, and contact/markers (visualization_msgs/MarkerArray, 30 Hz), for subscribers only.
 ///
-/// The loop of 1 kHz runs on a thread of its own and waits for none of the others: one takes what
-/// comes in, one asks the proximity service and prepares patches, and markers and diagnostics run
-/// wherever the caller spins.
+/// The loop of 1 kHz runs on a thread of its own, which exoskeleton/fingertips wakes up, and waits
+/// for none of the others: one takes what comes in from the cloth and tf, one asks the proximity
+/// service and prepares patches, and markers and diagnostics run wherever the caller spins.
 class ForceRendererNode {
  public:
   /// @throws std::exception with a message naming what was wrong with a parameter or a file
   ForceRendererNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~ForceRendererNode();
+
+  /// Commands no force and ends the threads. Afterwards only to be destroyed.
+  void stop();
 
  private:
   using Finger = exoskeleton::Finger;
@@ -77,7 +84,7 @@ class ForceRendererNode {
     std::atomic<std::uint64_t> poses{0};  // taken
     bool has_array = false;               // of the thread of what comes in
     // Of the loop's thread.
-    haptex::ServoForce force_message;
+    MessagePool<haptex::ServoForce> force_messages;
     haptex::Contact contact_message;
   };
 
@@ -87,13 +94,21 @@ class ForceRendererNode {
   void subscribe();
   void subscribeToFinger(Finger finger);
 
+  // Where the messages of the device arrive.
+  void takeFingertips(const haptex::Fingertips& message);
+  bool takesSingly(Time arrival) const;
+
   // On the thread of what comes in.
   void takeState(const haptex::ClothState& message);
   void takeTransforms();
   void takeHandBase();
   void takeArray(Finger finger);
 
-  void work(Time now);  // on the loop's thread
+  // On the loop's thread.
+  void work(Time now);
+  void publishForce(Finger finger, const ros::Time& stamp);
+  void publishContact(Finger finger, const ros::Time& stamp);
+
   void publishMarkers();
 
   void addDiagnostics();
@@ -102,9 +117,10 @@ class ForceRendererNode {
   void diagnoseForce(Finger finger, Status& status);
 
   ros::NodeHandle node_;
-  ros::NodeHandle input_node_;  // whose callbacks run on a thread of their own
-  ros::CallbackQueue input_queue_;
-  ros::AsyncSpinner input_spinner_;
+  ros::NodeHandle device_node_;  // whose callbacks run where the messages arrive
+  ImmediateQueue device_queue_;
+  MessageThreads input_thread_;
+  ros::NodeHandle input_node_;  // whose callbacks run there
   tf2_ros::Buffer transforms_;
   tf2_ros::TransformListener transform_listener_;
 
@@ -112,6 +128,9 @@ class ForceRendererNode {
   ForceLoop loop_;
   exoskeleton::PerFinger<FingerTopics> fingers_;
   DurationHistogram tick_durations_;
+  int ticks_to_contact_ = 0;  // of the loop's thread
+  ros::Subscriber fingertip_subscriber_;
+  Time last_fingertips_{0};  // where they arrive
 
   // Of the thread of what comes in.
   LargeScaleState state_;
@@ -120,7 +139,7 @@ class ForceRendererNode {
   Eigen::Isometry3d fixed_hand_base_ = Eigen::Isometry3d::Identity();
   ros::Subscriber state_subscriber_;
   ros::Subscriber heartbeat_subscriber_;
-  ros::SteadyTimer transform_timer_;
+  ros::Subscriber transform_subscriber_, static_transform_subscriber_;
 
   mutable std::mutex mutex_;  // guards the next
   std::uint64_t dropped_states_ = 0;
@@ -137,6 +156,7 @@ class ForceRendererNode {
   DurationHistogram::Counts diagnosed_durations_;
   ros::SteadyTimer diagnostics_timer_;
 
+  std::atomic<bool> stopping_{false};
   PatchSupplier supplier_;
   PeriodicThread loop_thread_;  // last: it uses the members above
 };

@@ -44,9 +44,13 @@ class PatchSupplier {
   /// @param node in whose namespace topic and service are
   /// @param loop outlives this
   PatchSupplier(const ros::NodeHandle& node, LayerBuilder builder, ForceLoop& loop);
+  /// As stop().
   ~PatchSupplier();
   PatchSupplier(const PatchSupplier&) = delete;
   PatchSupplier& operator=(const PatchSupplier&) = delete;
+
+  /// Ends the thread.
+  void stop();
 
   /// By any thread: mesh and fabric are these from now on. The same ones again change nothing.
   void setMesh(const haptex::ClothMeshConstPtr& message);

@@ -19,6 +19,7 @@
 
 #include "haptex/cloth/obstacle.h"
 #include "haptex/nodes/cloth_proximity.h"
+#include "haptex/nodes/message_threads.h"
 #include "haptex/nodes/proximity_markers.h"
 
 namespace haptex::nodes {
@@ -35,12 +36,19 @@ struct ProximityNodeParameters {
 
 /// Below the namespace of `node`: subscribes to cloth/mesh and cloth/state; advertises the service
 /// proximity/query (srv/QueryProximity) and the topic proximity/markers
-/// (visualization_msgs/MarkerArray), filled for subscribers only. Its callbacks may run on several
-/// threads at once: then a query waits neither for a message nor for another connection's query.
+/// (visualization_msgs/MarkerArray), filled for subscribers only. A query waits neither for a
+/// message nor for another connection's query; markers and diagnostics run wherever the caller
+/// spins.
 class ProximityNode {
  public:
   /// @throws std::exception with a message naming what was wrong with a parameter or a file
   ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
+
+  /// No more answers. Afterwards only to be destroyed.
+  void stop() {
+    service_threads_.stop();
+    input_thread_.stop();
+  }
 
  private:
   ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
@@ -53,6 +61,8 @@ class ProximityNode {
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   ros::NodeHandle node_;
+  MessageThreads input_thread_;     // for mesh and states
+  MessageThreads service_threads_;  // for queries
   ClothProximity proximity_;
   tf2_ros::Buffer transforms_;
   tf2_ros::TransformListener transform_listener_;

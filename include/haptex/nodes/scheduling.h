@@ -7,20 +7,34 @@
 
 namespace haptex::nodes {
 
-/// Of SCHED_FIFO, from 1 to 99: the loops before the threads that bring their messages, and these
-/// before everything ordinary, such as a recorder.
+/// Of SCHED_FIFO, from 1 to 99. On the force path, from the device's position to its force, the
+/// loops of device and driver come first, then the threads of the sockets between driver and force
+/// renderer, then the force renderer's loop, which computes for longest. What brings other messages
+/// comes after them, and before everything ordinary, such as diagnostics, markers and a recorder.
 constexpr int kLoopPriority = 80;
+constexpr int kSocketPriority = 75;
+constexpr int kForcePriority = 70;
 constexpr int kMessagePriority = 20;
 
-/// Asks for SCHED_FIFO for a thread and those that it will start.
+/// Asks for SCHED_FIFO for a thread.
 /// @returns why it was refused; empty if it was granted
 std::string askForFifo(pthread_t thread, int priority);
 
-/// In main(), before ros::init(): roscpp's threads, which bring messages and send them, come before
-/// what is ordinary on a busy machine. Without the permission they are ordinary themselves.
-void preferMessages();
+/// For this thread, once: threads of a library can be reached only from a callback on them.
+void askForFifoOnce(int priority);
 
-/// Makes the calling thread an ordinary one: for what computes for long.
-void beOrdinary();
+/// Keeps a thread of the force path on one processor, the same one for all of them, the last that
+/// the process may use: they wake each other up in turn, thousands of times a second, and waking a
+/// thread up on another processor takes an interrupt there (docs/real_time.md).
+void keepOnForceProcessor(pthread_t thread);
+
+/// After ros::start(): roscpp's thread that reads and writes the sockets comes before what is
+/// ordinary. Its other threads (services of the graph, console) stay as they are.
+void preferMessages(bool on_force_path);
+
+/// Takes SCHED_FIFO from all threads of this process. To be called before it ends: threads that
+/// wait for each other in a loop while the process is taken down would take the processors from
+/// those they wait for.
+void makeAllOrdinary();
 
 }  // namespace haptex::nodes

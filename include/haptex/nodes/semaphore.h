@@ -19,6 +19,8 @@ class Semaphore {
 
   /// Takes one, waiting for it if there is none. @returns false if none came in time
   bool waitFor(exoskeleton::Time patience);
+  /// The same until a time of the steady clock.
+  bool waitUntil(exoskeleton::Time end);
 
  private:
   sem_t semaphore_;

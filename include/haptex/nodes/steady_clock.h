@@ -1,6 +1,7 @@
 // The clock of the exoskeleton's nodes, which nobody can set.
 #pragma once
 
+#include <cerrno>
 #include <ctime>
 
 #include "haptex/exoskeleton/clock.h"
@@ -21,6 +22,13 @@ inline timespec toTimespec(exoskeleton::Time time) {
   converted.tv_sec = whole.count();
   converted.tv_nsec = (time - whole).count();
   return converted;
+}
+
+/// Until a time of the steady clock, >= 0.
+inline void sleepUntil(exoskeleton::Time time) {
+  const timespec end = toTimespec(time);
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &end, nullptr) == EINTR) {
+  }
 }
 
 }  // namespace haptex::nodes

@@ -42,6 +42,9 @@ class TactileNode {
   /// @throws std::exception with a message naming what was wrong with a parameter or a file
   TactileNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
 
+  /// No more steps. Afterwards only to be destroyed.
+  void stop() { step_timer_.stop(); }
+
  private:
   using Finger = exoskeleton::Finger;
   using Status = diagnostic_updater::DiagnosticStatusWrapper;

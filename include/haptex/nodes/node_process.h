@@ -1,0 +1,48 @@
+// The process of a node: how it starts, and how it ends.
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace haptex::nodes {
+
+/// Makes a node, ready to stop: the function that comes back ends it, first what acts on a person,
+/// so that services that wait return and the last owner may destroy it.
+struct RunningNode {
+  std::shared_ptr<void> node;
+  std::function<void()> stop;
+};
+
+struct ProcessTraits {
+  std::string name;            ///< of the node
+  unsigned spinners = 1;       ///< threads for the callbacks of roscpp's own queue
+  bool on_force_path = false;  ///< from the device's position to its force, see scheduling.h
+};
+
+/// Whether this process has been asked to end. For services that wait.
+bool isEnding();
+
+/// Everything that main() of a node does. SIGINT, SIGTERM, SIGHUP, `rosnode kill` and a node of the
+/// same name that starts end it in this order: the node stops, forces at zero first; all threads
+/// give SCHED_FIFO up; the node is destroyed; roscpp shuts down. Left to itself roscpp disables its
+/// queue of callbacks first and waits for the master, while its threads look into that queue again
+/// and again: with SCHED_FIFO these keep the processors from everybody.
+///
+/// @param make the node; may throw what is wrong with its parameters
+/// @returns the status to exit with: 0, or 1 if `make` threw, which is said on the console
+int runNode(int argc, char** argv, const ProcessTraits& traits,
+            const std::function<RunningNode()>& make);
+
+/// The same for a class with the constructor Node(node handle, private node handle) and stop().
+template <typename Node>
+int runNode(int argc, char** argv, const ProcessTraits& traits) {
+  return runNode(argc, argv, traits, [] {
+    const auto node = std::make_shared<Node>(ros::NodeHandle(), ros::NodeHandle("~"));
+    return RunningNode{node, [node] { node->stop(); }};
+  });
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,77 @@
+#include "haptex/nodes/node_process.h"
+
+#include <ros/ros.h>
+#include <ros/xmlrpc_manager.h>
+
+#include <atomic>
+#include <csignal>
+#include <exception>
+
+#include "haptex/nodes/scheduling.h"
+#include "haptex/nodes/semaphore.h"
+
+namespace haptex::nodes {
+namespace {
+
+constexpr auto kLook = std::chrono::milliseconds(100);  // at roscpp, which may end by itself
+std::atomic<bool> ending{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "for use in a signal handler");
+
+Semaphore& endAsked() {
+  static Semaphore semaphore;
+  return semaphore;
+}
+
+void askToEnd() {
+  ending = true;
+  endAsked().post();
+}
+
+void takeSignal(int /*number*/) { askToEnd(); }
+
+/// What the master calls for `rosnode kill` and when another node takes the name.
+void takeShutdown(XmlRpc::XmlRpcValue& parameters, XmlRpc::XmlRpcValue& result) {
+  if (parameters.getType() == XmlRpc::XmlRpcValue::TypeArray && parameters.size() > 1) {
+    const std::string reason = parameters[1];
+    ROS_WARN("Asked to end: %s", reason.c_str());
+  }
+  askToEnd();
+  result = ros::xmlrpc::responseInt(1, "", 0);
+}
+
+void takeOverEnding() {
+  endAsked();  // made before a signal can come
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, takeSignal);
+  ros::XMLRPCManager::instance()->unbind("shutdown");
+  ros::XMLRPCManager::instance()->bind("shutdown", takeShutdown);
+}
+
+}  // namespace
+
+bool isEnding() { return ending || !ros::ok(); }
+
+int runNode(int argc, char** argv, const ProcessTraits& traits,
+            const std::function<RunningNode()>& make) {
+  ros::init(argc, argv, traits.name, ros::init_options::NoSigintHandler);
+  const ros::NodeHandle started;  // without a node ROS_FATAL prints nothing
+  takeOverEnding();
+  preferMessages(traits.on_force_path);
+  int status = 0;
+  try {
+    RunningNode running = make();
+    ros::AsyncSpinner spinner(traits.spinners);
+    spinner.start();
+    while (!isEnding()) endAsked().waitFor(kLook);
+    running.stop();
+    makeAllOrdinary();
+    spinner.stop();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s: %s", traits.name.c_str(), error.what());
+    makeAllOrdinary();
+    status = 1;
+  }
+  ros::shutdown();
+  return status;
+}
+
+}  // namespace haptex::nodes
