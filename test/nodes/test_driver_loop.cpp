@@ -2,6 +2,7 @@
 // is waited for may take long on a busy machine.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -175,6 +176,31 @@ TEST_F(ADriverLoop, EndsForcesWhenAskedTo) {
              now.fingers[Finger::kIndex].force.norm() < 0.3;
     }));
   }
+}
+
+/// A driver whose ticks are the device's, and a commander that answers every state at once.
+TEST(AnsweredDriverLoop, RendersTheForceThatAnswersAStateInTheSamePeriod) {
+  const TemporaryDirectory directory;
+  const std::string port = directory.path() + "/exoskeleton";
+  DriverLoop* answered = nullptr;
+  std::atomic<std::uint64_t> states{0};
+  const auto answer = [&](const DriverSnapshot& snapshot) {
+    ++states;
+    for (const Finger finger : exoskeleton::kFingers) {
+      answered->command(finger, {}, steadyNow(), snapshot.state_time);
+    }
+  };
+  DriverLoop loop(port, exoskeleton::shippedUrdf(), answer);
+  answered = &loop;
+  const PeriodicThread thread(DriverLoop::kPeriod, [&](Time now) { loop.tick(now); },
+                              {[&](Time until) { return loop.awaitState(until); }});
+  const LivingDevice device(port);
+  const Time end = steadyNow() + kPatience;
+  while (states < 200 && steadyNow() < end) std::this_thread::sleep_for(1ms);
+  ASSERT_GE(states, 200u);
+  const DurationHistogram::Counts path = loop.path().counts();
+  EXPECT_GE(path.total(), 2 * 190u);  // both fingers
+  EXPECT_GE(path.quantile(0.01), DriverLoop::kLine);
 }
 
 TEST(DriverLoop, RefusesAUrdfThatIsNone) {

@@ -124,6 +124,35 @@ TEST(PeriodicThread, WorksAndSaysWhyWhereTheSchedulerIsNotPermitted) {
   ASSERT_EQ(setrlimit(RLIMIT_RTPRIO, &limit), 0);
 }
 
+TEST(PeriodicThread, WorksAtOnceWhenItIsCalled) {
+  std::atomic<int> works{0};
+  PeriodicThread thread(1h, [&](Time) { ++works; });
+  thread.call();
+  while (works < 1) std::this_thread::yield();
+  EXPECT_EQ(works, 1);
+}
+
+TEST(PeriodicThread, NeverWorksTwiceWithinHalfAPeriodHoweverOftenItIsCalled) {
+  constexpr Time kPeriod = 4ms;
+  std::vector<Time> works;
+  std::atomic<bool> done{false};
+  PeriodicThread thread(kPeriod, [&](Time now) {
+    if (works.size() < 20) works.push_back(now);
+    done = works.size() == 20;
+  });
+  while (!done) thread.call();
+  thread.stop();
+  for (std::size_t i = 1; i < works.size(); ++i) EXPECT_GE(works[i] - works[i - 1], kPeriod / 2);
+}
+
+TEST(PeriodicThread, GoesOnByItselfWhenNobodyCallsAnyMore) {
+  std::atomic<int> works{0};
+  PeriodicThread thread(1ms, [&](Time) { ++works; });
+  thread.call();
+  while (works < 10) std::this_thread::yield();
+  EXPECT_GE(works, 10);
+}
+
 TEST(PeriodicThread, RefusesPeriodsThatAreNone) {
   EXPECT_THROW(PeriodicThread(0ms, [](Time) {}), std::invalid_argument);
   EXPECT_THROW(PeriodicThread(-1ms, [](Time) {}), std::invalid_argument);
