@@ -170,10 +170,10 @@ class Comparison {
       line(phases()[p], "iterations", iterations / solves, "per_solve");
       line(phases()[p], "taken_anew", anew, "steps");
     }
-    bench::printLine(name + grip_.name + "/mean_ratio", meanSeconds(gripped()) / meanSeconds(hanging()),
-                     "ratio");
-    bench::printLine(name + grip_.name + "/p99_ratio", p99Seconds(gripped()) / p99Seconds(hanging()),
-                     "ratio");
+    bench::printLine(name + grip_.name + "/mean_ratio",
+                     meanSeconds(gripped()) / meanSeconds(hanging()), "ratio");
+    bench::printLine(name + grip_.name + "/p99_ratio",
+                     p99Seconds(gripped()) / p99Seconds(hanging()), "ratio");
   }
 
   std::vector<Sample> gripped() const { return joined(gripped_); }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <type_traits>
 
-
 namespace haptex::cloth {
 namespace {
 

@@ -26,8 +26,7 @@ void BasicBlockCholesky<T>::placeRows(int target, std::vector<int>& panel_row) c
 /// block rows of the target's panel.
 template <typename T>
 void BasicBlockCholesky<T>::applyDescendant(int descendant, int target, int first_row, int end_row,
-                                            const std::vector<int>& panel_row,
-                                            Workspace& work) {
+                                            const std::vector<int>& panel_row, Workspace& work) {
   const Supernode& source = elimination_.supernodes[descendant];
   const Supernode& sink = elimination_.supernodes[target];
   const Panel& from = panel_of_[descendant];
@@ -136,9 +135,8 @@ void BasicBlockCholesky<T>::advance(int descendant, int target, bool into_top) {
   template void BasicBlockCholesky<T>::placeRows(int, std::vector<int>&) const;                    \
   template void BasicBlockCholesky<T>::applyDescendant(int, int, int, int,                         \
                                                        const std::vector<int>&, Workspace&);       \
-  template int BasicBlockCholesky<T>::findRuns(const std::vector<int>&, int, int,                  \
-                                               const std::vector<int>&, std::vector<RowRun>&)      \
-      const;                                                                                       \
+  template int BasicBlockCholesky<T>::findRuns(                                                    \
+      const std::vector<int>&, int, int, const std::vector<int>&, std::vector<RowRun>&) const;     \
   template void BasicBlockCholesky<T>::applyDirectly(int, int, int, int, const std::vector<int>&); \
   template void BasicBlockCholesky<T>::advance(int, int, bool);
 

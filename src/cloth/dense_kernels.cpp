@@ -358,10 +358,9 @@ struct Kernels {
     __VA_ARGS__ static void substituteBackward(int rows, int columns, const T* l, int ldl, T* x) { \
       substituteBackwardOf<R>(rows, columns, l, ldl, x);                                           \
     }                                                                                              \
-    static constexpr Kernels<T> kKernels{subtractProduct,       multiply,                          \
-                                         subtractRuns,          divideThreeColumns,                \
-                                         factoriseThreeColumns, substituteForward,                 \
-                                         substituteBackward};                                      \
+    static constexpr Kernels<T> kKernels{                                                          \
+        subtractProduct,       multiply,          subtractRuns,      divideThreeColumns,           \
+        factoriseThreeColumns, substituteForward, substituteBackward};                             \
   };
 
 HAPTEX_DENSE_KERNELS(Baseline, 32, )

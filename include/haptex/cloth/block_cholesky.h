@@ -87,8 +87,8 @@ class BasicBlockCholesky {
   void placeRows(int target, std::vector<int>& panel_row) const;
   void applyDescendant(int descendant, int target, int first_row, int end_row,
                        const std::vector<int>& panel_row, Workspace& work);
-  int findRuns(const std::vector<int>& rows, int first, int last,
-               const std::vector<int>& panel_row, std::vector<RowRun>& runs) const;
+  int findRuns(const std::vector<int>& rows, int first, int last, const std::vector<int>& panel_row,
+               std::vector<RowRun>& runs) const;
   void applyDirectly(int descendant, int target, int first, int last,
                      const std::vector<int>& panel_row);
   void advance(int descendant, int target, bool into_top);
