@@ -4,8 +4,6 @@
 #include <cmath>
 #include <type_traits>
 
-#include "haptex/cloth/dense_kernels.h"
-
 namespace haptex::cloth {
 namespace {
 
@@ -20,7 +18,12 @@ constexpr int kFetchAhead = 8;         // entries before their blocks are read
 
 template <typename T>
 BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern, ThreadPool* pool)
-    : elimination_(analyse(pattern)),
+    : BasicBlockCholesky(pattern, analyse(pattern), pool) {}
+
+template <typename T>
+BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern,
+                                          const Elimination& elimination, ThreadPool* pool)
+    : elimination_(elimination),
       pool_(pool),
       cost_(factorisationCost(elimination_)),
       permuted_(3, pattern.size()) {
@@ -36,7 +39,8 @@ BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern, T
   work_.resize(pool ? pool->threads() : 1);
   for (Workspace& work : work_) {
     work.panel_row.resize(pattern.size());
-    work.columns.resize(std::size_t{3} * tallest);
+    work.columns.resize(std::size_t{3} * kUpdateColumns * tallest);
+    work.runs.resize(tallest / 3);
     work.front.resize(tallest);
   }
   outside_.resize(top_.empty() ? 0 : std::size_t{3} * kGroups * top_columns_);
@@ -259,7 +263,7 @@ void BasicBlockCholesky<T>::factoriseGroup(int group, const SymmetricBlockMatrix
       load(matrix, s, shift);
       for (int d = first_descendant_[s]; d != -1;) {
         const int next = next_descendant_[d];
-        applyDescendant(d, s, 0, panel_of_[s].leading / 3, work.panel_row, work.columns);
+        applyDescendant(d, s, 0, panel_of_[s].leading / 3, work.panel_row, work);
         advance(d, s, false);
         d = next;
       }
@@ -294,12 +298,11 @@ bool BasicBlockCholesky<T>::factoriseTop(int target, const SymmetricBlockMatrix&
   placeRows(target, panel_row);
   load(matrix, target, shift);
   const int rows = panel_of_[target].leading / 3;
-  constexpr int kRows = kShareRows / 3;
-  share((rows + kRows - 1) / kRows, [&](int task, int thread) {
-    const int first = kRows * task;
+  const int most = pool_ ? kShareRows / 3 : rows;  // no sum depends on it
+  share((rows + most - 1) / most, [&](int task, int thread) {
+    const int first = most * task;
     for (int d = first_descendant_[target]; d != -1; d = next_descendant_[d]) {
-      applyDescendant(d, target, first, std::min(rows, first + kRows), panel_row,
-                      work_[thread].columns);
+      applyDescendant(d, target, first, std::min(rows, first + most), panel_row, work_[thread]);
     }
   });
   for (int d = first_descendant_[target]; d != -1;) {

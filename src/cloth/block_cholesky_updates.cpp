@@ -7,10 +7,9 @@
 namespace haptex::cloth {
 namespace {
 
-// Block columns of supernodes that update others without a buffer. Of 2 to 8, 6 was best for 2048
-// triangles and as good as any for 100352 (scripts/bench linear_solver).
-constexpr int kDirectWidth = 6;
-constexpr int kDirectColumns = 8;  // block columns of such an update
+// Block columns of supernodes that update others without a buffer: for those their depth makes up
+// for the short runs of rows.
+constexpr int kDirectWidth = 24;
 
 }  // namespace
 
@@ -27,8 +26,7 @@ void BasicBlockCholesky<T>::placeRows(int target, std::vector<int>& panel_row) c
 /// block rows of the target's panel.
 template <typename T>
 void BasicBlockCholesky<T>::applyDescendant(int descendant, int target, int first_row, int end_row,
-                                            const std::vector<int>& panel_row,
-                                            std::vector<T>& columns) {
+                                            const std::vector<int>& panel_row, Workspace& work) {
   const Supernode& source = elimination_.supernodes[descendant];
   const Supernode& sink = elimination_.supernodes[target];
   const Panel& from = panel_of_[descendant];
@@ -46,25 +44,42 @@ void BasicBlockCholesky<T>::applyDescendant(int descendant, int target, int firs
   if (source.width() >= kDirectWidth) {
     return applyDirectly(descendant, target, first, last, panel_row);
   }
-  const T* rows = panels_.data() + from.offset + 3 * source.width();
-  for (int b = begin; b < last && source.rows[b] < sink.end; ++b) {
+  int columns_last = begin;
+  while (columns_last < last && source.rows[columns_last] < sink.end) ++columns_last;
+  if (first == last) return;
+  const T* const rows = panels_.data() + from.offset + 3 * source.width();
+  T* const panel = panels_.data() + to.offset;
+  for (int b = begin; b < columns_last; b += kUpdateColumns) {
+    const int columns_end = std::min(columns_last, b + kUpdateColumns);
     const int top = std::max(first, b);
     const int height = 3 * (last - top);
-    multiplyThreeColumns(height, 3 * source.width(), rows + 3 * top, from.leading, rows + 3 * b,
-                         from.leading, columns.data(), height);
-    T* destination = panels_.data() + to.offset +
-                     static_cast<std::size_t>(to.leading) * 3 * (source.rows[b] - sink.first);
-    const T* column = columns.data();
-    for (int c = 0; c < 3; ++c, column += height, destination += to.leading) {
-      const T* value = column;
-      for (int a = top; a < last; ++a, value += 3) {
-        T* place = destination + 3 * panel_row[source.rows[a]];
-        place[0] -= value[0];
-        place[1] -= value[1];
-        place[2] -= value[2];
-      }
+    multiply(height, 3 * (columns_end - b), 3 * source.width(), rows + 3 * top, from.leading,
+             rows + 3 * b, from.leading, work.columns.data(), height);
+    const int runs = findRuns(source.rows, top, last, panel_row, work.runs);
+    const T* column = work.columns.data();
+    for (int c = b; c < columns_end; ++c, column += std::ptrdiff_t{3} * height) {
+      T* const destination =
+          panel + static_cast<std::size_t>(to.leading) * 3 * panel_row[source.rows[c]];
+      subtractRuns(work.runs.data(), runs, column, height, destination, to.leading);
     }
   }
+}
+
+/// Runs of the source rows [first, last) that follow each other in the target as well.
+/// @returns their number
+template <typename T>
+int BasicBlockCholesky<T>::findRuns(const std::vector<int>& rows, int first, int last,
+                                    const std::vector<int>& panel_row,
+                                    std::vector<RowRun>& runs) const {
+  int count = 0;
+  for (int row = first; row < last;) {
+    const int place = panel_row[rows[row]];
+    int end = row + 1;
+    while (end < last && panel_row[rows[end]] == place + end - row) ++end;
+    runs[count++] = {3 * (row - first), 3 * place, 3 * (end - row)};
+    row = end;
+  }
+  return count;
 }
 
 /// The same for the source rows [first, last), without a buffer: rows of wide supernodes that
@@ -89,7 +104,7 @@ void BasicBlockCholesky<T>::applyDirectly(int descendant, int target, int first,
   int columns_last = next_row_[descendant];
   while (columns_last < last && source.rows[columns_last] < sink.end) ++columns_last;
   for (int b = next_row_[descendant]; b < columns_last;) {
-    const int columns_end = runEnd(b, std::min(columns_last, b + kDirectColumns));
+    const int columns_end = runEnd(b, std::min(columns_last, b + kUpdateColumns));
     T* const column = panel + static_cast<std::size_t>(to.leading) * 3 * place(b);
     for (int a = std::max(first, b); a < last;) {
       const int end = runEnd(a, last);
@@ -119,7 +134,9 @@ void BasicBlockCholesky<T>::advance(int descendant, int target, bool into_top) {
 #define HAPTEX_INSTANTIATE(T)                                                                      \
   template void BasicBlockCholesky<T>::placeRows(int, std::vector<int>&) const;                    \
   template void BasicBlockCholesky<T>::applyDescendant(int, int, int, int,                         \
-                                                       const std::vector<int>&, std::vector<T>&);  \
+                                                       const std::vector<int>&, Workspace&);       \
+  template int BasicBlockCholesky<T>::findRuns(                                                    \
+      const std::vector<int>&, int, int, const std::vector<int>&, std::vector<RowRun>&) const;     \
   template void BasicBlockCholesky<T>::applyDirectly(int, int, int, int, const std::vector<int>&); \
   template void BasicBlockCholesky<T>::advance(int, int, bool);
 

@@ -159,6 +159,49 @@ template <typename R, typename T>
   }
 }
 
+/// C = A B^T by parts of A as above. The depths are small.
+template <typename R, typename T>
+[[gnu::always_inline]] inline void multiplyOf(int rows, int columns, int depth, const T* a, int lda,
+                                              const T* b, int ldb, T* c, int ldc) {
+  constexpr int kWide = sizeof(typename R::Lanes) >= 64 ? 6 : 3;
+  constexpr int kRows = 3 * R::kLanes;
+  for (int i = 0; i < rows;) {
+    const int height = rows - i < kRows + R::kLanes ? rows - i : kRows;
+    int j = 0;
+    for (; j + kWide <= columns; j += kWide) {
+      someColumns<Store::kAssign, R, kWide>(height, depth, a + i, lda, b + j, ldb, c + i + j * ldc,
+                                            ldc);
+    }
+    for (; j < columns; j += 3) {
+      someColumns<Store::kAssign, R, 3>(height, depth, a + i, lda, b + j, ldb, c + i + j * ldc,
+                                        ldc);
+    }
+    i += height;
+  }
+}
+
+template <typename R, typename T>
+[[gnu::always_inline]] inline void subtractRun(int count, const T* a, T* c) {
+  int i = 0;
+  for (; i + R::kLanes <= count; i += R::kLanes) lanesAt<R>(c + i) -= lanesAt<R>(a + i);
+  if constexpr (sizeof(typename R::Lanes) > 16) {
+    subtractRun<typename R::Half>(count - i, a + i, c + i);
+  } else {
+    for (; i < count; ++i) c[i] -= a[i];
+  }
+}
+
+template <typename R, typename T>
+[[gnu::always_inline]] inline void subtractRunsOf(const RowRun* runs, int run_count, const T* a,
+                                                  int lda, T* c, int ldc) {
+  for (const RowRun* run = runs; run != runs + run_count; ++run) {
+    for (int column = 0; column < 3; ++column) {
+      subtractRun<R>(run->count, a + run->from + column * lda,
+                     c + run->to + static_cast<std::ptrdiff_t>(column) * ldc);
+    }
+  }
+}
+
 /// L_below = A_below L_top^-T of kVectors registers of rows.
 template <typename R, int kVectors, typename T>
 [[gnu::always_inline]] inline void divideRows(const T (&l)[3][3], T* a, int lda) {
@@ -278,7 +321,8 @@ template <typename R, typename T>
 template <typename T>
 struct Kernels {
   void (*subtract_product)(int, int, int, const T*, int, const T*, int, T*, int);
-  void (*multiply_three_columns)(int, int, const T*, int, const T*, int, T*, int);
+  void (*multiply)(int, int, int, const T*, int, const T*, int, T*, int);
+  void (*subtract_runs)(const RowRun*, int, const T*, int, T*, int);
   void (*divide_three_columns)(int, const T*, int, T*, int);
   bool (*factorise_three_columns)(int, T*, int);
   void (*substitute_forward)(int, int, const T*, int, T*);
@@ -294,9 +338,13 @@ struct Kernels {
                                             const T* b, int ldb, T* c, int ldc) {                  \
       subtractProductOf<R>(rows, columns, depth, a, lda, b, ldb, c, ldc);                          \
     }                                                                                              \
-    __VA_ARGS__ static void multiplyThreeColumns(int rows, int depth, const T* a, int lda,         \
-                                                 const T* b, int ldb, T* c, int ldc) {             \
-      someColumns<Store::kAssign, R, 3>(rows, depth, a, lda, b, ldb, c, ldc);                      \
+    __VA_ARGS__ static void multiply(int rows, int columns, int depth, const T* a, int lda,        \
+                                     const T* b, int ldb, T* c, int ldc) {                         \
+      multiplyOf<R>(rows, columns, depth, a, lda, b, ldb, c, ldc);                                 \
+    }                                                                                              \
+    __VA_ARGS__ static void subtractRuns(const RowRun* runs, int run_count, const T* a, int lda,   \
+                                         T* c, int ldc) {                                          \
+      subtractRunsOf<R>(runs, run_count, a, lda, c, ldc);                                          \
     }                                                                                              \
     __VA_ARGS__ static void divideThreeColumns(int rows, const T* top, int ldtop, T* a, int lda) { \
       divideThreeColumnsOf<R>(rows, top, ldtop, a, lda);                                           \
@@ -310,9 +358,9 @@ struct Kernels {
     __VA_ARGS__ static void substituteBackward(int rows, int columns, const T* l, int ldl, T* x) { \
       substituteBackwardOf<R>(rows, columns, l, ldl, x);                                           \
     }                                                                                              \
-    static constexpr Kernels<T> kKernels{subtractProduct,    multiplyThreeColumns,                 \
-                                         divideThreeColumns, factoriseThreeColumns,                \
-                                         substituteForward,  substituteBackward};                  \
+    static constexpr Kernels<T> kKernels{                                                          \
+        subtractProduct,       multiply,          subtractRuns,      divideThreeColumns,           \
+        factoriseThreeColumns, substituteForward, substituteBackward};                             \
   };
 
 HAPTEX_DENSE_KERNELS(Baseline, 32, )
@@ -343,9 +391,14 @@ void subtractProduct(int rows, int columns, int depth, const T* a, int lda, cons
 }
 
 template <typename T>
-void multiplyThreeColumns(int rows, int depth, const T* a, int lda, const T* b, int ldb, T* c,
-                          int ldc) {
-  kernels<T>().multiply_three_columns(rows, depth, a, lda, b, ldb, c, ldc);
+void multiply(int rows, int columns, int depth, const T* a, int lda, const T* b, int ldb, T* c,
+              int ldc) {
+  kernels<T>().multiply(rows, columns, depth, a, lda, b, ldb, c, ldc);
+}
+
+template <typename T>
+void subtractRuns(const RowRun* runs, int run_count, const T* a, int lda, T* c, int ldc) {
+  kernels<T>().subtract_runs(runs, run_count, a, lda, c, ldc);
 }
 
 template <typename T>
@@ -370,7 +423,8 @@ void substituteBackward(int rows, int columns, const T* l, int ldl, T* x) {
 
 #define HAPTEX_INSTANTIATE(T)                                                          \
   template void subtractProduct(int, int, int, const T*, int, const T*, int, T*, int); \
-  template void multiplyThreeColumns(int, int, const T*, int, const T*, int, T*, int); \
+  template void multiply(int, int, int, const T*, int, const T*, int, T*, int);        \
+  template void subtractRuns(const RowRun*, int, const T*, int, T*, int);              \
   template void divideThreeColumns(int, const T*, int, T*, int);                       \
   template bool factoriseThreeColumns(int, T*, int);                                   \
   template void substituteForward(int, int, const T*, int, T*);                        \

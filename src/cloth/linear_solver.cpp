@@ -60,7 +60,8 @@ int LinearSolver::iterationBudget() const {
 int LinearSolver::lastTry() const { return std::max(iterationBudget(), kMostLastIterations); }
 
 SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
-                                double tolerance, BlockVector& x) {
+                                double tolerance, BlockVector& x, Definiteness definiteness) {
+  const bool worth_more = definiteness == Definiteness::kPositive;
   if (method_ == LinearSolverMethod::kConjugateGradient) {
     // Exact conjugate gradients end after as many iterations as unknowns; rounding makes it more
     // for ill-conditioned systems.
@@ -80,10 +81,11 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
     }
     const SolveResult result = solveByKeptFactor(matrix, rhs, tolerance, x);
     if (result.converged) return result;
+    if (result.indefinite && !worth_more) return result;
     if (result.indefinite) return solveIteratively(matrix, rhs, tolerance, lastTry(), x);
   }
   const SolveResult result = solveDirectly(matrix, rhs, tolerance, x);
-  if (result.converged) return result;
+  if (result.converged || !worth_more) return result;
   // Not positive definite to rounding: a last try that costs a few factorisations at most.
   return solveIteratively(matrix, rhs, tolerance, lastTry(), x);
 }
@@ -153,7 +155,7 @@ SolveResult LinearSolver::solveDirectly(const SymmetricBlockMatrix& matrix, cons
     return result;
   }
   if (!cholesky_) {
-    cholesky_ = std::make_unique<BlockCholesky>(matrix, pool_);
+    cholesky_ = std::make_unique<BlockCholesky>(matrix, factor_->elimination(), pool_);
     residual_.resize(3, matrix.size());
     product_.resize(3, matrix.size());
   }

@@ -168,13 +168,14 @@ bool StageSolver::solveFirst(const Cloth& cloth, const Stage& stage, const Stage
 }
 
 /// Solves matrix_ solution_ = rhs_ from the guess in solution_; false if that did not converge.
-bool StageSolver::solveLinear(StepReport& report) {
+bool StageSolver::solveLinear(StepReport& report, LinearSolver::Definiteness definiteness) {
   const Clock::time_point start = Clock::now();
   for (int i = 0; any_fixed_ && i < matrix_.size(); ++i) {
     if (fixed_[i]) solution_.col(i).setZero();
   }
   if (touching()) contacts_->removeNormal(solution_);
-  const SolveResult result = solver_.solve(matrix_, rhs_, settings_.tolerance, solution_);
+  const SolveResult result =
+      solver_.solve(matrix_, rhs_, settings_.tolerance, solution_, definiteness);
   for (int i = 0; any_fixed_ && i < matrix_.size(); ++i) {
     if (fixed_[i]) solution_.col(i) = prescribed_.col(i);
   }
@@ -223,7 +224,9 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
                                 int most_solves, const std::function<bool()>& enough,
                                 ClothState& result, StepReport& report) {
   constexpr double kNearMinimum = 1e-2;  // relative residual from which the exact Hessian is tried
+  constexpr double kNearer = 0.1;        // of the residual where it was not positive definite
   const double reference = linearised_norm_;
+  double near = kNearMinimum * reference;
   const int last_solve = report.newton_iterations + most_solves;
   prescribed_.setZero();  // the fixed particles have reached their places
   bool converged = false, is_enough = false;
@@ -236,8 +239,9 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     converged = norm <= settings_.newton_tolerance * reference && !contacts_change_;
     if (converged || report.newton_iterations >= last_solve) break;
     solution_.setZero();
-    const bool solved = solveLinear(report);
     const bool exact = hessian == Membrane::Hessian::kExact;
+    const bool solved = solveLinear(report, exact ? LinearSolver::Definiteness::kUnknown
+                                                  : LinearSolver::Definiteness::kPositive);
     if (!exact) report.linear_converged = report.linear_converged && solved;
     // Of the projected Hessian an inexact solution will do: the line search judges it.
     const Descent descent =
@@ -246,10 +250,10 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
       const bool enters = touching() && contacts_->enter(result.velocities);
       is_enough = enough && !enters && enough();
       if (is_enough) break;
-      hessian = norm <= kNearMinimum * reference ? Membrane::Hessian::kExact
-                                                 : Membrane::Hessian::kProjected;
+      hessian = norm <= near ? Membrane::Hessian::kExact : Membrane::Hessian::kProjected;
     } else if (descent == Descent::kNone && exact) {  // not positive definite here
       hessian = Membrane::Hessian::kProjected;
+      near = kNearer * norm;
     } else {
       converged = descent == Descent::kBelowRounding;
       break;

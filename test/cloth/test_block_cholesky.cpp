@@ -155,9 +155,26 @@ TEST(BlockCholesky, IsEqualToTheLastBitForAnyNumberOfThreads) {
     EXPECT_EQ(solution(1.0, threads), solution(1.0, 1));
     EXPECT_EQ(solution(1.0F, threads), solution(1.0F, 1));
   }
+  BasicBlockCholesky<float> alone(matrix);
+  ASSERT_TRUE(alone.factorise(matrix));
+  BlockVector x = rhs;
+  alone.solve(x);
+  EXPECT_EQ(x, solution(1.0F, 3));
   BlockVector product(3, matrix.size());
   matrix.multiply(solution(1.0, 3), product);
   EXPECT_LT((product - rhs).norm(), 1e-10 * rhs.norm());
+}
+
+TEST(BlockCholesky, IsTheSameWithTheSymbolicPartOfAnother) {
+  const SymmetricBlockMatrix matrix = randomDefinite(square(20), 40.0);
+  const BasicBlockCholesky<float> other(matrix);
+  BlockCholesky own(matrix), shared(matrix, other.elimination(), nullptr);
+  ASSERT_TRUE(own.factorise(matrix));
+  ASSERT_TRUE(shared.factorise(matrix));
+  BlockVector x = BlockVector::Random(3, matrix.size()), y = x;
+  own.solve(x);
+  shared.solve(y);
+  EXPECT_EQ(x, y);
 }
 
 TEST(BlockCholesky, PreconditionsInSinglePrecisionWhateverTheScale) {

@@ -54,17 +54,41 @@ TEST(DenseKernels, SubtractTheProductOfLargePanels) {
   expectProductsOfLargePanels<float>(6e-7);
 }
 
-TEST(DenseKernels, MultiplyThreeColumnsOfEveryHeight) {
-  for (int rows = 1; rows <= 60; ++rows) {
-    const int depth = 6, lda = rows + 2, ldb = 5, ldc = rows + 3;
-    const Eigen::MatrixXd a = Eigen::MatrixXd::Random(lda, depth);
-    const Eigen::MatrixXd b = Eigen::MatrixXd::Random(ldb, depth);
-    Eigen::MatrixXd c = Eigen::MatrixXd::Random(ldc, 3);
-    Eigen::MatrixXd exact = c;
-    exact.topRows(rows) = a.topRows(rows) * b.topRows(3).transpose();
-    multiplyThreeColumns(rows, depth, a.data(), lda, b.data(), ldb, c.data(), ldc);
-    EXPECT_LT((c - exact).cwiseAbs().maxCoeff(), 1e-14) << rows;
+TEST(DenseKernels, MultiplyForEverySizeOfRemainder) {
+  for (int rows = 1; rows <= 115; ++rows) {
+    for (int columns : {3, 6, 9, 24}) {
+      const int depth = 6, lda = rows + 2, ldb = columns + 2, ldc = rows + 3;
+      const Eigen::MatrixXd a = Eigen::MatrixXd::Random(lda, depth);
+      const Eigen::MatrixXd b = Eigen::MatrixXd::Random(ldb, depth);
+      Eigen::MatrixXd c = Eigen::MatrixXd::Random(ldc, columns);
+      Eigen::MatrixXd exact = c;
+      exact.topRows(rows) = a.topRows(rows) * b.topRows(columns).transpose();
+      multiply(rows, columns, depth, a.data(), lda, b.data(), ldb, c.data(), ldc);
+      // The rows below must stay as they are.
+      EXPECT_LT((c - exact).cwiseAbs().maxCoeff(), 1e-14) << rows << " x " << columns;
+    }
   }
+}
+
+template <typename T>
+void expectRunsOfEveryLengthSubtracted() {
+  using Matrix = Eigen::Matrix<T, Eigen::Dynamic, 3>;
+  for (int count = 1; count <= 70; ++count) {
+    const Matrix a = Matrix::Random(count + 9, 3);
+    const Matrix start = Matrix::Random(count + 30, 3);
+    // Two runs: their rows are 2 and what follows 5, and they go to 4 and, with a gap, behind.
+    const RowRun runs[] = {{2, 4, count}, {count + 2, count + 20, 5}};
+    Matrix c = start, exact = start;
+    exact.middleRows(4, count) -= a.middleRows(2, count);
+    exact.middleRows(count + 20, 5) -= a.middleRows(count + 2, 5);
+    subtractRuns(runs, 2, a.data(), count + 9, c.data(), count + 30);
+    EXPECT_EQ(c, exact) << count;
+  }
+}
+
+TEST(DenseKernels, SubtractRunsOfEveryLengthAndNothingBesideThem) {
+  expectRunsOfEveryLengthSubtracted<double>();
+  expectRunsOfEveryLengthSubtracted<float>();
 }
 
 TEST(DenseKernels, AreTheSameInSinglePrecisionToItsRounding) {
@@ -75,7 +99,7 @@ TEST(DenseKernels, AreTheSameInSinglePrecisionToItsRounding) {
     const Eigen::MatrixXd product =
         a.topRows(rows).cast<double>() * a.topRows(3).cast<double>().transpose();
     Eigen::MatrixXf c = start;
-    multiplyThreeColumns(rows, depth, a.data(), ld, a.data(), ld, c.data(), ld);
+    multiply(rows, 3, depth, a.data(), ld, a.data(), ld, c.data(), ld);
     // Nine products of numbers up to 1 with a rounding of 6e-8 each.
     EXPECT_LT((c.topRows(rows).cast<double>() - product).cwiseAbs().maxCoeff(), 2e-6) << rows;
     EXPECT_EQ(c.row(rows), start.row(rows));

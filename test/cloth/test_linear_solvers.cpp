@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "fixtures.h"
@@ -196,6 +197,81 @@ TEST(LinearSolver, SolvesWhatIsTooStiffForAFactorInSinglePrecisionAlone) {
   EXPECT_TRUE(solver.solve(matrix, rhs, 1e-6, x).converged);
   matrix.multiply(x, product);
   EXPECT_LE((product - rhs).norm(), 1.01e-6 * rhs.norm());
+}
+
+TEST(LinearSolver, GivesUpWhatIsNotPositiveDefiniteAfterItsFactorsIfThatIsWorthNoSearch) {
+  SymmetricBlockMatrix matrix = randomDefinite(square(20), 1e4);
+  const BlockVector rhs = BlockVector::Random(3, matrix.size());
+  LinearSolver solver(matrix, LinearSolverMethod::kAutomatic);
+  BlockVector x = BlockVector::Zero(3, matrix.size());
+  const auto solve = [&](LinearSolver::Definiteness definiteness) {
+    x.setZero();
+    return solver.solve(matrix, rhs, 1e-6, x, definiteness);
+  };
+  EXPECT_TRUE(solve(LinearSolver::Definiteness::kUnknown).converged);
+  matrix.diagonal(17) -= 1e7 * Eigen::Matrix3d::Identity();
+  EXPECT_FALSE(solve(LinearSolver::Definiteness::kUnknown).converged);
+  const long before = solver.factorisations();
+  const SolveResult result = solve(LinearSolver::Definiteness::kUnknown);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_LE(solver.factorisations(), before + 2);  // in single and in double precision
+}
+
+/// The system of a step of cloth that is folded into waves of this height (m), which go on.
+class FoldedSystem {
+ public:
+  explicit FoldedSystem(const material::Fabric& fabric)
+      : cloth_(square(32, 0.2), fabric, {}), matrix_(cloth_.pattern()) {}
+
+  void assemble(double height, double phase, BlockVector& rhs) {
+    ClothState state = cloth_.initialState();
+    for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
+      Eigen::Vector3d& place = state.positions[i];
+      const double along = place.z() + 0.3 * place.y();
+      place.x() += height * std::sin(80.0 * along + phase);
+      place.z() *= 0.8;  // compressed
+      state.velocities[i].x() = 4.0 * height * std::cos(80.0 * along + phase);
+    }
+    matrix_.setZero();
+    rhs.setZero();
+    for (int i = 0; i < matrix_.size(); ++i) {
+      matrix_.diagonal(i).diagonal().setConstant(cloth_.masses()[i]);
+    }
+    cloth_.addStep(state.positions, state.velocities, state.plastic_bends, {0.0125, 0.0125, 0.0},
+                   matrix_, rhs);
+  }
+  const SymmetricBlockMatrix& matrix() const { return matrix_; }
+
+ private:
+  Cloth cloth_;
+  SymmetricBlockMatrix matrix_;
+};
+
+material::Fabric timesStiffer(double factor) {
+  using material::StrainStressCurve;
+  material::Fabric fabric = linearFabric();
+  fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(100.0 * factor);
+  fabric.shear.elastic = StrainStressCurve::linear(50.0 * factor);
+  return fabric;
+}
+
+TEST(LinearSolver, NeedsOneFactorInSinglePrecisionPerSystemOfFoldedClothWhateverItsStiffness) {
+  for (double factor : {1.0, 10.0, 100.0}) {
+    FoldedSystem system(timesStiffer(factor));
+    const SymmetricBlockMatrix& matrix = system.matrix();
+    BlockVector rhs(3, matrix.size()), x = BlockVector::Zero(3, matrix.size()), product = x;
+    LinearSolver solver(matrix, LinearSolverMethod::kAutomatic);
+    for (int step = 0; step < 12; ++step) {
+      system.assemble(0.01, 0.3 * step, rhs);
+      const long before = solver.factorisations();
+      const SolveResult result = solver.solve(matrix, rhs, 1e-6, x);
+      EXPECT_TRUE(result.converged);
+      EXPECT_LE(solver.factorisations(), before + 1) << factor << ", step " << step;
+      matrix.multiply(x, product);
+      EXPECT_LE((product - rhs).norm(), 1.01e-6 * rhs.norm()) << factor << ", step " << step;
+    }
+  }
 }
 
 TEST(SymmetricBlockMatrix, HasTheBlocksOfFurtherPairsForBothSolvers) {

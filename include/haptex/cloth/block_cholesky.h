@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "haptex/cloth/block_matrix.h"
+#include "haptex/cloth/dense_kernels.h"
 #include "haptex/cloth/elimination.h"
 #include "haptex/cloth/thread_pool.h"
 
@@ -25,6 +26,13 @@ class BasicBlockCholesky {
   /// @param pool shares the work if it is given; has to outlive this
   explicit BasicBlockCholesky(const SymmetricBlockMatrix& pattern, ThreadPool* pool = nullptr);
 
+  /// With the symbolic part of another factor of the same pattern, which costs most of the
+  /// construction.
+  BasicBlockCholesky(const SymmetricBlockMatrix& pattern, const Elimination& elimination,
+                     ThreadPool* pool);
+
+  const Elimination& elimination() const { return elimination_; }
+
   /// Factorises a matrix with the constructor's pattern, or the leading part of a larger one that
   /// has the constructor's pattern there.
   /// @param shift added to the unit diagonal of the scaled matrix in single precision
@@ -42,6 +50,8 @@ class BasicBlockCholesky {
   double numbers() const { return static_cast<double>(panels_.size()); }
 
  private:
+  static constexpr int kUpdateColumns = 8;  // block columns of an update that share a buffer
+
   struct Panel {
     std::size_t offset;  // of its first number in panels_
     int leading;         // numbers from one column to the next
@@ -60,7 +70,8 @@ class BasicBlockCholesky {
   };
   struct Workspace {             // of a thread
     std::vector<int> panel_row;  // by block row: its place in the current target panel
-    std::vector<T> columns;      // three of an update
+    std::vector<T> columns;      // of an update
+    std::vector<RowRun> runs;    // of its rows
     std::vector<T> front;        // of the unknowns that a panel couples, in its order
     bool positive = true;
   };
@@ -75,7 +86,9 @@ class BasicBlockCholesky {
   void load(const SymmetricBlockMatrix& matrix, int target, T shift);
   void placeRows(int target, std::vector<int>& panel_row) const;
   void applyDescendant(int descendant, int target, int first_row, int end_row,
-                       const std::vector<int>& panel_row, std::vector<T>& columns);
+                       const std::vector<int>& panel_row, Workspace& work);
+  int findRuns(const std::vector<int>& rows, int first, int last, const std::vector<int>& panel_row,
+               std::vector<RowRun>& runs) const;
   void applyDirectly(int descendant, int target, int first, int last,
                      const std::vector<int>& panel_row);
   void advance(int descendant, int target, bool into_top);

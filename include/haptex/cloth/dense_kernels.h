@@ -13,10 +13,22 @@ template <typename T>
 void subtractProduct(int rows, int columns, int depth, const T* a, int lda, const T* b, int ldb,
                      T* c, int ldc);
 
-/// C = A B^T without aliasing. A is rows x depth, B is 3 x depth, C is rows x 3.
+/// C = A B^T without aliasing. A is rows x depth, B is columns x depth, C is rows x columns.
+/// @param columns a multiple of 3
 template <typename T>
-void multiplyThreeColumns(int rows, int depth, const T* a, int lda, const T* b, int ldb, T* c,
-                          int ldc);
+void multiply(int rows, int columns, int depth, const T* a, int lda, const T* b, int ldb, T* c,
+              int ldc);
+
+/// Rows that follow each other in two matrices.
+struct RowRun {
+  int from;   // first row where they are read
+  int to;     // first row where they are changed
+  int count;  // > 0
+};
+
+/// C -= A in the rows of the runs, without aliasing, of three columns.
+template <typename T>
+void subtractRuns(const RowRun* runs, int run_count, const T* a, int lda, T* c, int ldc);
 
 /// A := A L_top^-T, where A is rows x 3 and the 3 x 3 top is as factoriseThreeColumns() leaves it.
 template <typename T>

@@ -31,7 +31,11 @@ enum class LinearSolverMethod {
 ///
 /// A system that is not positive definite to single precision, or that the factor does not solve,
 /// is factorised in double precision; in patterns of more than 500 rows the first such one, and no
-/// other solve, allocates memory.
+/// other solve, allocates memory. Folded cloth does not need it: what costs there is that every
+/// system needs a factor of its own.
+///
+/// A system that need not be positive definite, and is not, is given up once a factor has said so,
+/// instead of being iterated on.
 ///
 /// All costs are counts of operations times the times of one that scripts/bench linear_solver
 /// measured, so that the choices depend on the systems alone and a run repeats exactly.
@@ -41,10 +45,16 @@ class LinearSolver {
   LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMethod method,
                ThreadPool* pool = nullptr);
 
+  /// What is known of a system. Matters for kAutomatic and kCholesky.
+  enum class Definiteness {
+    kPositive,  ///< but for rounding
+    kUnknown,   ///< without a solution that is worth a search where it is not positive definite
+  };
+
   /// Solves A x = b until |b - A x| <= tolerance |b|.
   /// @param x initial guess of the conjugate gradients, overwritten by the solution
   SolveResult solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs, double tolerance,
-                    BlockVector& x);
+                    BlockVector& x, Definiteness definiteness = Definiteness::kPositive);
 
   /// What gave the last solution: kConjugateGradient, or kCholesky for any factor.
   LinearSolverMethod lastMethod() const { return last_method_; }

@@ -105,7 +105,8 @@ class StageSolver {
   void eliminate();
   bool solveFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                   StepReport& report);
-  bool solveLinear(StepReport& report);
+  bool solveLinear(StepReport& report,
+                   LinearSolver::Definiteness definiteness = LinearSolver::Definiteness::kPositive);
   bool touching() const { return contacts_ && !contacts_->empty(); }
   bool iterateNewton(const Cloth& cloth, const Stage& stage, double potential, int most_solves,
                      const std::function<bool()>& enough, ClothState& result, StepReport& report);
