@@ -9,6 +9,7 @@
 
 #include "haptex/contact/scene_fabric.h"
 #include "haptex/nodes/cloth_messages.h"
+#include "haptex/nodes/loop_diagnostics.h"
 #include "haptex/nodes/node_parameters.h"
 #include "haptex/nodes/steady_clock.h"
 
@@ -209,6 +210,7 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) co
   status.add("time step (ms)", 1e3 * time_step_);
   status.add("mean computing time of a step (ms)", 1e3 * loop.mean_step_seconds);
   status.add("largest computing time of a step (ms)", 1e3 * loop.largest_step_seconds);
+  addQuantiles(status, "computing time of a step", "since the start", loop_.stepTimes());
   status.add("linear solver", direct ? "Cholesky" : "conjugate gradient");
   status.add("linear iterations", loop.last_report.linear_iterations);
   status.add("largest residual", loop.largest_residual);

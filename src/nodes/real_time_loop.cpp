@@ -178,14 +178,16 @@ double RealTimeLoop::step(std::unique_lock<std::mutex>& lock) {
   lock.unlock();
   const Clock::time_point begin = Clock::now();
   if (prepare_) prepare_(simulation_);
+  const bool slept = simulation_.asleep();
   const bool accepted = simulation_.step();
-  const double seconds = inSeconds(Clock::now() - begin);
+  const Clock::duration took = Clock::now() - begin;
+  if (!slept) step_times_.add(took);
   if (accepted) observer_(simulation_, rests);
   lock.lock();
   status_.rejected_steps += accepted ? 0 : 1;
   status_.unsolved_steps += simulation_.lastReport().linear_converged ? 0 : 1;
   recordSimulation();
-  return seconds;
+  return inSeconds(took);
 }
 
 void RealTimeLoop::resume() {

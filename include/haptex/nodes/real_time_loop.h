@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "haptex/nodes/duration_histogram.h"
 #include "haptex/nodes/simulated_cloth.h"
 
 namespace haptex::nodes {
@@ -81,6 +82,8 @@ class RealTimeLoop {
   StepsTaken takeSteps(std::uint32_t count);
 
   LoopStatus status() const;
+  /// Computing times since the start of all steps that were not slept through.
+  DurationHistogram::Counts stepTimes() const { return step_times_.counts(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -106,6 +109,7 @@ class RealTimeLoop {
   SimulatedCloth simulation_;  // touched by the loop's thread only
   Observer observer_;
   Command prepare_;  // may be empty
+  DurationHistogram step_times_;
 
   mutable std::mutex mutex_;           // guards all below
   std::condition_variable wake_loop_;  // for the loop: there is something to do
