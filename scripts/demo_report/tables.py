@@ -77,6 +77,18 @@ def slid(contact, begin, end):
     return np.sum(speeds[1:] * np.diff(contact.times[within]))
 
 
+def qualities(recording):
+    """Those by which the cloth was computed, and for which share of the demo."""
+    names = recording.qualities.values
+    if not names:
+        return 'as the scene says'
+    lengths = {}
+    for name, length in zip(names, np.diff(recording.qualities.times)):
+        lengths[name] = lengths.get(name, 0.0) + length
+    total = sum(lengths.values())
+    return '; '.join(f'{name} for {100 * length / total:.1f} %' for name, length in lengths.items())
+
+
 def print_rates(recording):
     states = recording.states
     steps = np.array([state[0] for state in states.values], dtype=float)
@@ -91,6 +103,7 @@ def print_rates(recording):
               f'ms (p99), {gaps.max():.1f} ms (largest)')
     print(f'cloth                {(steps[-1] - steps[0]) / elapsed:.2f} Hz, real-time factor '
           f'{simulated / elapsed:.4f}  ({simulated:.3f} s simulated in {elapsed:.3f} s)')
+    print(f'quality              {qualities(recording)}')
     print(f"queries              {int(sources['queries answered']) / elapsed:.1f} Hz, "
           f"{sources['queries failed']} failed")
     print(f"dropped              {float(cloth['dropped simulated time (s)']):g} s of cloth, "
