@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "haptex/nodes/cloth_node.h"
+#include "haptex/nodes/refusal.h"
 #include "haptex/nodes/scheduling.h"
 
 int main(int argc, char** argv) {
@@ -14,8 +15,7 @@ int main(int argc, char** argv) {
     const haptex::nodes::ClothNode cloth_node(node, ros::NodeHandle("~"));
     ros::MultiThreadedSpinner(4).spin();  // a service that waits must not hold up the others
   } catch (const std::exception& error) {
-    ROS_FATAL("cloth_simulation: %s", error.what());
-    return 1;
+    return haptex::nodes::refuseToRun("cloth_simulation", error);
   }
   return 0;
 }

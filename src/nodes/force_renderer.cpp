@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "haptex/nodes/force_renderer_node.h"
+#include "haptex/nodes/refusal.h"
 #include "haptex/nodes/scheduling.h"
 
 int main(int argc, char** argv) {
@@ -14,8 +15,7 @@ int main(int argc, char** argv) {
     const haptex::nodes::ForceRendererNode force_renderer_node(node, ros::NodeHandle("~"));
     ros::spin();
   } catch (const std::exception& error) {
-    ROS_FATAL("force_renderer: %s", error.what());
-    return 1;
+    return haptex::nodes::refuseToRun("force_renderer", error);
   }
   return 0;
 }

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "haptex/nodes/proximity_node.h"
+#include "haptex/nodes/refusal.h"
 #include "haptex/nodes/scheduling.h"
 
 int main(int argc, char** argv) {
@@ -14,8 +15,7 @@ int main(int argc, char** argv) {
     const haptex::nodes::ProximityNode proximity_node(node, ros::NodeHandle("~"));
     ros::MultiThreadedSpinner(4).spin();  // two fingertips, the states, and the rest
   } catch (const std::exception& error) {
-    ROS_FATAL("proximity: %s", error.what());
-    return 1;
+    return haptex::nodes::refuseToRun("proximity", error);
   }
   return 0;
 }

@@ -3,6 +3,7 @@
 
 #include <exception>
 
+#include "haptex/nodes/refusal.h"
 #include "haptex/nodes/scheduling.h"
 #include "haptex/nodes/tactile_node.h"
 
@@ -14,8 +15,7 @@ int main(int argc, char** argv) {
     const haptex::nodes::TactileNode tactile_node(node, ros::NodeHandle("~"));
     ros::spin();
   } catch (const std::exception& error) {
-    ROS_FATAL("tactile_renderer: %s", error.what());
-    return 1;
+    return haptex::nodes::refuseToRun("tactile_renderer", error);
   }
   return 0;
 }
