@@ -9,6 +9,7 @@
 
 #include "haptex/contact/scene_fabric.h"
 #include "haptex/nodes/cloth_messages.h"
+#include "haptex/nodes/loop_diagnostics.h"
 #include "haptex/nodes/node_parameters.h"
 #include "haptex/nodes/steady_clock.h"
 
@@ -183,7 +184,7 @@ void ClothNode::republishIfResting() {
   }
 }
 
-void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   const LoopStatus loop = loop_.status();
   if (loop.last_step_rejected) {
@@ -194,12 +195,16 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) co
     status.summary(DiagnosticStatus::OK, "paused");
   } else if (loop.asleep) {
     status.summary(DiagnosticStatus::OK, "asleep: nothing moves, and nothing is computed");
+  } else if (loop.dropped_seconds > diagnosed_drop_) {
+    status.summaryf(DiagnosticStatus::WARN, "gave up %.3f s of simulated time",
+                    loop.dropped_seconds - diagnosed_drop_);
   } else if (loop.real_time_factor < 0.99) {
     status.summaryf(DiagnosticStatus::WARN, "%.1f %% slower than real time",
                     100.0 * (1.0 - loop.real_time_factor));
   } else {
     status.summary(DiagnosticStatus::OK, "in real time");
   }
+  diagnosed_drop_ = loop.dropped_seconds;
   const bool direct = loop.last_report.solver == cloth::LinearSolverMethod::kCholesky;
   status.add("simulated time (s)", loop.simulated_time);
   status.add("steps", loop.steps);
@@ -209,6 +214,7 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) co
   status.add("time step (ms)", 1e3 * time_step_);
   status.add("mean computing time of a step (ms)", 1e3 * loop.mean_step_seconds);
   status.add("largest computing time of a step (ms)", 1e3 * loop.largest_step_seconds);
+  addQuantiles(status, "computing time of a step", "since the start", loop_.stepTimes());
   status.add("linear solver", direct ? "Cholesky" : "conjugate gradient");
   status.add("linear iterations", loop.last_report.linear_iterations);
   status.add("largest residual", loop.largest_residual);
@@ -238,6 +244,11 @@ void ClothNode::diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& sta
   if (quality.within_budget < kShareToKeep) {
     status.mergeSummaryf(DiagnosticStatus::WARN, "only %.0f %% of the cycles within %g ms",
                          100.0 * quality.within_budget, quality.budget_ms);
+  }
+  if (quality_->reduced(quality)) {
+    status.mergeSummary(
+        DiagnosticStatus::WARN,
+        "by less quality to keep the budget: " + point.name + " instead of " + quality_->wanted());
   }
   status.add("quality", point.name);
   status.add("integrator", point.integrator);

@@ -68,6 +68,9 @@ int runNode(int argc, char** argv, const ProcessTraits& traits,
   } catch (const std::exception& error) {
     ROS_FATAL("%s: %s", traits.name.c_str(), error.what());
     makeAllOrdinary();
+    if (ros::param::param("~stay", false)) {
+      while (!isEnding()) endAsked().waitFor(kLook);
+    }
     status = 1;
   }
   ros::shutdown();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "haptex/nodes/quality_controller.h"
@@ -18,6 +20,12 @@ double studiedCost(const cloth::Quality& quality) {
   return cost;
 }
 
+std::string milliseconds(double seconds) {
+  std::ostringstream text;
+  text << 1e3 * seconds << " ms";
+  return text.str();
+}
+
 bool sameSettings(const cloth::Quality& a, const cloth::Quality& b) {
   return a.time_step == b.time_step && a.step.method == b.step.method &&
          a.step.solver == b.step.solver && a.step.tolerance == b.step.tolerance &&
@@ -32,7 +40,7 @@ int substepsOf(double cycle, double time_step) {
 }
 
 StepPlan planOf(const Candidate& candidate, int threads) {
-  StepPlan plan{candidate.quality.step, candidate.substeps};
+  StepPlan plan{candidate.quality.step, candidate.substeps, candidate.cycles};
   plan.step.threads = threads;
   return plan;
 }
@@ -129,6 +137,39 @@ std::vector<Candidate> ladder(const std::vector<Candidate>& candidates, double c
     if (candidate.quality.cell_size == cell_size) borrowed.push_back(candidate);
   }
   return ladder(borrowed);
+}
+
+std::vector<Candidate> reductions(const cloth::Quality& quality, double cycle, double seconds) {
+  Candidate next;
+  next.quality = quality;
+  next.substeps = substepsOf(cycle, quality.time_step);
+  next.seconds = seconds;
+  next.measured = true;
+  std::vector<Candidate> rungs = {next};
+  const auto solves = [](const Candidate& candidate) {
+    return static_cast<double>(candidate.quality.step.newton_iterations * candidate.substeps) /
+           candidate.cycles;
+  };
+  next.quality.measured.clear();
+  next.measured = false;
+  while (cloth::isImplicit(quality.step.method) && next.cycles == 1) {
+    int& iterations = next.quality.step.newton_iterations;
+    if (iterations > 1) {
+      --iterations;
+    } else if (next.substeps > 1) {
+      next.substeps /= 2;
+    } else {
+      next.cycles = 2;
+    }
+    next.quality.time_step = next.cycles * cycle / next.substeps;
+    next.quality.name = quality.name + ", " + std::to_string(iterations) +
+                        (iterations == 1 ? " solve in " : " solves in ") +
+                        milliseconds(next.quality.time_step);
+    next.seconds = seconds * solves(next) / solves(rungs.front());
+    rungs.push_back(next);
+  }
+  std::reverse(rungs.begin(), rungs.end());
+  return rungs;
 }
 
 void sortByTime(std::vector<Candidate>& candidates) {

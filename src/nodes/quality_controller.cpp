@@ -51,8 +51,9 @@ QualityController::QualityController(std::vector<double> costs, double budget, d
   sorted_.resize(recorded_.size());
 }
 
-std::size_t QualityController::record(double seconds) {
-  elapsed_ += std::max(cycle_, seconds);
+std::size_t QualityController::record(double step_seconds, int cycles) {
+  elapsed_ += std::max(cycles * cycle_, step_seconds);
+  const double seconds = step_seconds / cycles;
   const double ratio = seconds / costs_[running_];
   recorded_[next_] = {seconds, ratio};
   next_ = (next_ + 1) % recorded_.size();
@@ -74,14 +75,24 @@ std::size_t QualityController::record(double seconds) {
   return running_;
 }
 
+bool QualityController::runsCheapest() const { return running_ == 0 || std::isinf(budget_); }
+
+void QualityController::relieve() {
+  if (!runsCheapest()) leave(0);
+}
+
 void QualityController::stepDown() {
   if (running_ == 0) return;
+  std::size_t quality = running_ - 1;
+  while (quality > 0 && expectedSeconds(quality) > kTarget * budget_) --quality;
+  leave(quality);
+}
+
+void QualityController::leave(std::size_t quality) {
   const bool lasted = elapsed_ - changed_at_ >= kTrial;
   if (lasted) waits_[running_] = kShortestWait;
   try_again_[running_] = elapsed_ + waits_[running_];
   waits_[running_] = std::min(2.0 * waits_[running_], kLongestWait);
-  std::size_t quality = running_ - 1;
-  while (quality > 0 && expectedSeconds(quality) > kTarget * budget_) --quality;
   change(quality);
 }
 

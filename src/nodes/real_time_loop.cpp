@@ -142,7 +142,7 @@ bool RealTimeLoop::carryOutRequests(std::unique_lock<std::mutex>& lock) {
 }
 
 void RealTimeLoop::takeRequestedStep(std::unique_lock<std::mutex>& lock) {
-  step(lock);
+  step(lock, false);
   if (status_.last_step_rejected) {
     endSteps(StepsTaken::End::kRejected);
     return;
@@ -152,16 +152,21 @@ void RealTimeLoop::takeRequestedStep(std::unique_lock<std::mutex>& lock) {
 }
 
 void RealTimeLoop::takeDueStep(std::unique_lock<std::mutex>& lock) {
-  const double seconds = step(lock);
+  const bool cheapest = simulation_.runsCheapest();
+  const double seconds = step(lock, true);
   const Clock::time_point now = Clock::now();
-  due_ += clockDuration(simulation_.timeStep());
+  const double simulated = simulation_.lastStepDuration();
+  due_ += clockDuration(simulated);
   const Clock::duration excess = now - due_ - clockDuration(kLargestBacklog);
-  if (excess > Clock::duration::zero()) {
+  if (excess > Clock::duration::zero() && !cheapest) {
+    simulation_.relieve();
+  } else if (excess > Clock::duration::zero()) {
     due_ += excess;
     status_.dropped_seconds += inSeconds(excess);
   }
   ++window_.attempts;
   window_.steps += status_.last_step_rejected ? 0 : 1;
+  window_.simulated_seconds += status_.last_step_rejected ? 0.0 : simulated;
   window_.computing_seconds += seconds;
   window_.largest_step_seconds = std::max(window_.largest_step_seconds, seconds);
   window_.largest_residual =
@@ -170,19 +175,24 @@ void RealTimeLoop::takeDueStep(std::unique_lock<std::mutex>& lock) {
 }
 
 /// Takes a step and shows it to the observer. @returns its computing time, s
-double RealTimeLoop::step(std::unique_lock<std::mutex>& lock) {
+double RealTimeLoop::step(std::unique_lock<std::mutex>& lock, bool in_real_time) {
   const bool rests = steps_wanted_ == 1;
+  const Clock::time_point ready = std::max(due_, computed_);
   lock.unlock();
   const Clock::time_point begin = Clock::now();
   if (prepare_) prepare_(simulation_);
-  const bool accepted = simulation_.step();
-  const double seconds = inSeconds(Clock::now() - begin);
+  const bool slept = simulation_.asleep();
+  const bool accepted = in_real_time ? simulation_.stepInRealTime(inSeconds(Clock::now() - ready))
+                                     : simulation_.step();
+  computed_ = Clock::now();
+  const Clock::duration took = computed_ - begin;
+  if (!slept) step_times_.add(took);
   if (accepted) observer_(simulation_, rests);
   lock.lock();
   status_.rejected_steps += accepted ? 0 : 1;
   status_.unsolved_steps += simulation_.lastReport().linear_converged ? 0 : 1;
   recordSimulation();
-  return seconds;
+  return inSeconds(took);
 }
 
 void RealTimeLoop::resume() {
@@ -211,8 +221,9 @@ void RealTimeLoop::startWindow() {
 void RealTimeLoop::closeWindow() {
   const Window window = window_;
   startWindow();
-  status_.step_rate = window.steps / inSeconds(window_.begin - window.begin);
-  status_.real_time_factor = status_.step_rate * simulation_.timeStep();
+  const double elapsed = inSeconds(window_.begin - window.begin);
+  status_.step_rate = window.steps / elapsed;
+  status_.real_time_factor = window.simulated_seconds / elapsed;
   status_.mean_step_seconds = window.computing_seconds / window.attempts;
   status_.largest_step_seconds = window.largest_step_seconds;
   status_.largest_residual = window.largest_residual;

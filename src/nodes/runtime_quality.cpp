@@ -58,19 +58,20 @@ QualityRequest QualityRequest::read(const ros::NodeHandle& private_node) {
   QualityRequest request;
   request.budget = 1e-3 * readPositive(private_node, "budget_ms", 0.0);
   if (!private_node.hasParam("quality")) return request;
-  request.preset_path = readConfigPath(private_node, "quality", "presets");
-  if (request.budget > 0.0) {
-    throw std::invalid_argument("parameters " + private_node.resolveName("quality") + " and " +
-                                private_node.resolveName("budget_ms") +
-                                " are both set: allowed is one of them");
-  }
+  std::string quality;
+  request.of_scene =
+      private_node.getParam("quality", quality) && quality == QualityRequest::kOfScene;
+  if (!request.of_scene) request.preset_path = readConfigPath(private_node, "quality", "presets");
   return request;
 }
 
 RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityRequest& request)
     : scene_(cloth::loadScene(scene_path)),
       fabric_(contact::loadSceneFabric(scene_path, scene_)),
-      budget_(request.budget > 0.0 ? request.budget : std::numeric_limits<double>::infinity()) {
+      budget_(request.budget > 0.0 ? request.budget : std::numeric_limits<double>::infinity()),
+      reducible_(request.reducible()) {
+  const double cycle = scene_.time_step;
+  if (reducible_) budget_ = std::min(budget_, kLargestShare * cycle);
   std::vector<cloth::Quality> preset;
   if (!request.preset_path.empty()) preset.push_back(loadPreset(request.preset_path));
   std::vector<cloth::Quality> front = cloth::loadQualities(findConfigFile("presets", "front"));
@@ -78,11 +79,13 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
   const auto measure = [&](const cloth::Quality& quality, int substeps) {
     return measureCycle(scene_path, fabric_, quality, substeps);
   };
-  const double cycle = scene_.time_step;
   candidates_ =
-      calibrate(front, cycle, measure, {kAllowance, kLongestInBudgets * std::min(budget_, cycle)});
+      calibrate(front, cycle, measure,
+                {reducible_ ? 0.0 : kAllowance, kLongestInBudgets * std::min(budget_, cycle)});
   if (!scene_.any_cells) sortByTime(candidates_);
-  if (preset.empty()) {
+  if (reducible_) {
+    reduce(scene_path, preset.empty() ? qualityOfScene() : preset.front());
+  } else if (preset.empty()) {
     choose(scene_path);
   } else {
     rungs_ = calibrate(preset, cycle, measure, {});
@@ -92,12 +95,34 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
                                 "' cannot compute this scene: its steps are not finite");
   }
   cell_size_ = rungs_[first_].quality.cell_size;
-  if (scene_.any_cells) scene_ = cloth::loadScene(scene_path, cell_size_);
+  if (scene_.any_cells && !request.of_scene) scene_ = cloth::loadScene(scene_path, cell_size_);
   front.insert(front.end(), preset.begin(), preset.end());
   for (const std::string& name : studiedFabricNames(front)) {
     const material::Fabric fabric = material::loadFabric(findConfigFile("fabrics", name));
     studied_.push_back({name, tensileModulus(fabric)});
   }
+}
+
+void RuntimeQuality::reduce(const std::string& scene_path, const cloth::Quality& wanted) {
+  const int substeps = substepsOf(scene_.time_step, wanted.time_step);
+  double seconds = measureCycle(scene_path, fabric_, wanted, substeps).seconds;
+  // The load tells what a cycle takes; the measurement is but where it begins.
+  if (!std::isfinite(seconds)) seconds = budget_;
+  rungs_ = reductions(wanted, scene_.time_step, seconds);
+  first_ = rungs_.size() - 1;
+}
+
+cloth::Quality RuntimeQuality::qualityOfScene() const {
+  cloth::Quality quality;
+  quality.name = QualityRequest::kOfScene;
+  quality.cell_size = meanCellSize(scene_.mesh);
+  quality.time_step = scene_.time_step;
+  quality.step = scene_.step;
+  return quality;
+}
+
+bool RuntimeQuality::reduced(const haptex::ClothQuality& message) const {
+  return reducible_ && message.quality.name != wanted();
 }
 
 void RuntimeQuality::choose(const std::string& scene_path) {
@@ -151,7 +176,7 @@ haptex::QualityPoint RuntimeQuality::pointMessage(const Candidate& candidate,
   haptex::QualityPoint point;
   point.name = quality.name;
   point.integrator = nameOf(quality.step.method);
-  point.time_step = scene_.time_step / candidate.substeps;
+  point.time_step = candidate.cycles * scene_.time_step / candidate.substeps;
   point.substeps = static_cast<std::uint32_t>(candidate.substeps);
   point.solver_tolerance = quality.step.tolerance;
   point.newton_iterations = static_cast<std::uint32_t>(quality.step.newton_iterations);
@@ -176,7 +201,8 @@ haptex::ClothQuality RuntimeQuality::message(const SimulatedCloth& simulation,
   message.header.frame_id = kFixedFrame;
   const Candidate& running = rungs_[simulation.plan()];
   message.quality = pointMessage(running, simulation.cloth().fabric());
-  message.quality.cells_as_measured = scene_.any_cells && running.quality.cell_size == cell_size_;
+  message.quality.cells_as_measured = scene_.any_cells && !running.quality.measured.empty() &&
+                                      running.quality.cell_size == cell_size_;
   message.budget_ms = std::isinf(budget_) ? 0.0 : milliseconds(budget_);
   message.cycle_ms = milliseconds(times.smoothed);
   message.worst_cycle_ms = milliseconds(times.worst);

@@ -62,25 +62,33 @@ SimulatedCloth::SimulatedCloth(cloth::Scene scene, material::Fabric fabric,
   if (plans_.empty()) refuse("plans is empty: allowed is at least one plan");
   for (const StepPlan& plan : plans_) {
     if (plan.substeps < 1) refuse("substeps = ", plan.substeps, ": allowed are numbers >= 1");
+    if (plan.cycles < 1 || (plan.cycles > 1 && plan.substeps > 1)) {
+      refuse("cycles = ", plan.cycles, ": allowed are numbers >= 1, and 1 with several substeps");
+    }
   }
   if (scene.effects.contacts) collision_.emplace(cloth_, std::move(scene.obstacles));
   attachInitially();
   makeIntegrators();
 }
 
-bool SimulatedCloth::step() {
+bool SimulatedCloth::step() { return take(1, 0.0); }
+
+bool SimulatedCloth::stepInRealTime(double waited) { return take(plans_[plan_].cycles, waited); }
+
+bool SimulatedCloth::take(int cycles, double waited) {
+  last_cycles_ = asleep_ ? 1 : cycles;
   if (asleep_) {
     state_.time += time_step_;
     ++steps_;
     return true;
   }
   if (!controller_) {
-    takeSubsteps();
+    takeSubsteps(cycles * time_step_);
   } else {
     const auto begin = std::chrono::steady_clock::now();
-    takeSubsteps();
+    takeSubsteps(cycles * time_step_);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    plan_ = controller_->record(took.count());
+    plan_ = controller_->record(waited + took.count(), cycles);
   }
   last_step_rejected_ = !report_.accepted;
   if (!report_.accepted) {
@@ -107,12 +115,12 @@ void SimulatedCloth::wake() {
   asleep_ = false;
 }
 
-void SimulatedCloth::takeSubsteps() {
+void SimulatedCloth::takeSubsteps(double duration) {
   const int substeps = plans_[plan_].substeps;
   if (substeps > 1) before_ = state_;
-  report_ = takeSubstep(time_step_ / substeps);
+  report_ = takeSubstep(duration / substeps);
   for (int i = 1; i < substeps && report_.accepted; ++i) {
-    report_ = sum(report_, takeSubstep(time_step_ / substeps));
+    report_ = sum(report_, takeSubstep(duration / substeps));
   }
   if (substeps > 1 && !report_.accepted) state_ = before_;
 }
@@ -136,6 +144,12 @@ void SimulatedCloth::setController(QualityController controller) {
            plans_.size(), ", one per plan");
   }
   controller_.emplace(std::move(controller));
+  plan_ = controller_->running();
+}
+
+void SimulatedCloth::relieve() {
+  if (!controller_) return;
+  controller_->relieve();
   plan_ = controller_->running();
 }
 

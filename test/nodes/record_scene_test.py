@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """A bag is recorded if the scene lists recording, or if somebody asks for one."""
+import os
 import pathlib
 import signal
 import subprocess
@@ -9,7 +10,8 @@ import rosbag
 import roslib.packages
 import rospy
 import rostest
-from ros_fixtures import NodeTest
+from diagnostic_msgs.msg import DiagnosticStatus
+from ros_fixtures import Diagnostics, NodeTest
 from std_msgs.msg import String
 
 TOPIC = '/haptex/said'
@@ -57,6 +59,44 @@ class RecordScene(NodeTest):
 
     def test_records_what_a_person_asks_for(self):
         self.assert_records(self.start('wool_sample', f'--bag={self.folder}/mine.bag'), 'mine.bag')
+
+    def start_growing(self):
+        """A recorder whose bag grows, and the process that writes it."""
+        run = self.start('wool_sample', f'--bag={self.folder}/mine.bag')
+        self.eventually(self.publisher.get_num_connections, 'nobody records')
+        stream = rospy.Timer(rospy.Duration(0.1), lambda _: self.publisher.publish('x' * (1 << 20)))
+        self.addCleanup(stream.shutdown)
+        self.eventually(lambda: sum(path.stat().st_size for path in self.folder.glob('mine.bag*'))
+                        > (8 << 20), 'the bag grows')
+        rospy.sleep(3.0)  # a few looks
+        children = pathlib.Path(f'/proc/{run.pid}/task/{run.pid}/children').read_text().split()
+        recorder, = map(int, children)
+        return run, recorder
+
+    def assert_says(self, what):
+        diagnostics = Diagnostics()
+        self.addCleanup(diagnostics.subscriber.unregister)
+        self.eventually(lambda: diagnostics.next('recording').level == DiagnosticStatus.ERROR,
+                        'an error in the diagnostics')
+        self.assertIn(what, diagnostics.next('recording').message)
+
+    def test_says_that_the_recorder_has_died(self):
+        run, recorder = self.start_growing()
+        os.kill(recorder, signal.SIGKILL)
+        self.assert_says('has ended')
+        run.send_signal(signal.SIGINT)
+        code, _, errors = self.ended(run)
+        self.assertNotEqual(code, 0)
+        self.assertIn('the bag is not written any more: the recorder has ended', errors)
+
+    def test_says_that_a_bag_does_not_grow_any_more(self):
+        run, recorder = self.start_growing()
+        os.kill(recorder, signal.SIGSTOP)
+        self.addCleanup(lambda: run.poll() is None and os.kill(recorder, signal.SIGKILL))
+        self.assert_says('has not grown')
+        os.kill(recorder, signal.SIGCONT)
+        run.send_signal(signal.SIGINT)
+        self.assertIn('the bag is not written any more', self.ended(run)[2])
 
     def test_records_nothing_unasked(self):
         for scene in (self.scene('gravity'), 'wool_sample'):

@@ -56,7 +56,6 @@ class RefusedParameters(unittest.TestCase):
         self.refused(scene, '_quality:=best', says=['~quality', "there is no 'best'", 'balanced'])
         self.refused(scene, '_quality:=3', says=['~quality', 'is not set to a string'])
         self.refused(scene, '_quality:=front', says=['front.yaml', 'allowed is a file with one'])
-        self.refused(scene, '_quality:=fast', '_budget_ms:=5', says=['~quality', '~budget_ms'])
         for value in ('0', '-1', 'much'):
             self.refused(scene, f'_budget_ms:={value}', says=['~budget_ms'])
 

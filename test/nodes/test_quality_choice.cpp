@@ -176,5 +176,39 @@ TEST(StudiedFabrics, HaveTheirOwnMeasurements) {
   EXPECT_TRUE(measurementsOf(front()[0], "silk").empty());
 }
 
+cloth::Quality implicitQuality(double time_step, int solves) {
+  cloth::Quality quality;
+  quality.name = "fine";
+  quality.cell_size = 0.01;
+  quality.time_step = time_step;
+  quality.step.newton_iterations = solves;
+  quality.measured.resize(1);
+  return quality;
+}
+
+TEST(Reductions, AreFewerSolvesThenFewerSubstepsThenLongerSteps) {
+  const std::vector<Candidate> rungs = reductions(implicitQuality(0.005, 2), 0.01, 8e-3);
+  ASSERT_EQ(rungs.size(), 4u);
+  const std::vector<int> solves = {1, 1, 1, 2}, substeps = {1, 1, 2, 2}, cycles = {2, 1, 1, 1};
+  const std::vector<double> seconds = {1e-3, 2e-3, 4e-3, 8e-3};
+  for (std::size_t i = 0; i < rungs.size(); ++i) {
+    EXPECT_EQ(rungs[i].quality.step.newton_iterations, solves[i]) << i;
+    EXPECT_EQ(rungs[i].substeps, substeps[i]) << i;
+    EXPECT_EQ(rungs[i].cycles, cycles[i]) << i;
+    EXPECT_NEAR(rungs[i].seconds, seconds[i], 1e-12) << i;
+    EXPECT_EQ(rungs[i].quality.cell_size, 0.01) << i;
+    EXPECT_EQ(rungs[i].quality.measured.empty(), i < 3) << i;  // nobody has measured its error
+  }
+  EXPECT_EQ(rungs[3].quality.name, "fine");
+  EXPECT_EQ(rungs[2].quality.name, "fine, 1 solve in 5 ms");
+  EXPECT_EQ(rungs[0].quality.name, "fine, 1 solve in 20 ms");
+}
+
+TEST(Reductions, KeepTheStepsOfExplicitMethods) {
+  cloth::Quality quality = implicitQuality(0.001, 1);
+  quality.step.method = cloth::IntegrationMethod::kExplicitEuler;
+  EXPECT_EQ(reductions(quality, 0.01, 1e-3).size(), 1u);
+}
+
 }  // namespace
 }  // namespace haptex::nodes

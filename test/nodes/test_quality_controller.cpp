@@ -184,6 +184,45 @@ TEST(QualityController, TellsTheTimesOfTheLastSecond) {
   EXPECT_DOUBLE_EQ(times.within_budget, 79.0 / 80.0);
 }
 
+TEST(QualityController, GoesToTheCheapestAtOnceWhenItsLoopIsAboutToGiveUpTime) {
+  QualityController controller = makeController(5e-3, 3);
+  controller.record(4e-3);
+  EXPECT_FALSE(controller.runsCheapest());
+  controller.relieve();
+  EXPECT_EQ(controller.running(), 0u);
+  EXPECT_EQ(controller.changes(), 1u);
+  EXPECT_TRUE(controller.runsCheapest());
+  controller.relieve();
+  EXPECT_EQ(controller.changes(), 1u);
+}
+
+TEST(QualityController, ComesBackStepByStepAfterItWasRelieved) {
+  QualityController controller = makeController(6e-3, 3);
+  controller.relieve();
+  const auto exact = [](double cost, double) { return cost; };
+  run(controller, exact, 10.0, [](double) { return true; });
+  EXPECT_EQ(controller.running(), 3u);
+  EXPECT_EQ(controller.changes(), 4u);
+}
+
+TEST(QualityController, HasNothingCheaperWithoutABudget) {
+  QualityController controller = makeController(kInfinity, 1);
+  EXPECT_TRUE(controller.runsCheapest());
+  controller.relieve();
+  EXPECT_EQ(controller.running(), 1u);
+}
+
+TEST(QualityController, SharesAStepOfSeveralCyclesAmongThem) {
+  QualityController of_two = makeController(5e-3, 2);
+  QualityController of_one = makeController(5e-3, 2);
+  for (int i = 0; i < 30; ++i) {
+    of_two.record(4.4e-3, 2);
+    of_one.record(2.2e-3);
+  }
+  EXPECT_DOUBLE_EQ(of_two.load(), of_one.load());
+  EXPECT_EQ(of_two.times().worst, 2.2e-3);
+}
+
 TEST(QualityController, RefusesWhatIsNoCostBudgetCycleOrQuality) {
   const auto make = [](std::vector<double> costs, double budget, double cycle, std::size_t first) {
     return QualityController(std::move(costs), budget, cycle, first);

@@ -132,5 +132,52 @@ TEST(RealTimeLoop, RefusesCommandsAfterItsEnd) {
   EXPECT_THROW(loop.execute([](SimulatedCloth&) {}), std::runtime_error);
 }
 
+/// The second plan takes one step of the scene at once, the first, cheaper one takes two.
+SimulatedCloth governedSimulation() {
+  cloth::Scene scene = smallScene();
+  const double cycle = scene.time_step;
+  const cloth::StepSettings step = scene.step;
+  SimulatedCloth simulation(std::move(scene), smallFabric(), {{step, 1, 2}, {step, 1, 1}});
+  simulation.setController(QualityController({0.1 * cycle, 0.2 * cycle}, 0.8 * cycle, cycle, 1));
+  return simulation;
+}
+
+TEST(RealTimeLoop, GivesUpNoTimeWhileALowerQualityIsLeft) {
+  std::promise<std::size_t> plan_of_second;
+  std::promise<void> second, third;
+  int steps = 0;
+  const auto beyond_backlog = std::chrono::duration<double>(1.5 * RealTimeLoop::kLargestBacklog);
+  RealTimeLoop loop(governedSimulation(), ignore, [&](SimulatedCloth& simulation) {
+    ++steps;
+    if (steps == 2) {  // the first one has been accounted for
+      plan_of_second.set_value(simulation.plan());
+      second.get_future().wait();
+    }
+    if (steps == 3) third.get_future().wait();
+    if (steps <= 2) std::this_thread::sleep_for(beyond_backlog);
+  });
+  loop.start();
+  EXPECT_EQ(plan_of_second.get_future().get(), 0u);
+  EXPECT_EQ(loop.status().dropped_seconds, 0.0);
+  second.set_value();
+  while (loop.status().steps < 2) std::this_thread::yield();
+  EXPECT_GT(loop.status().simulated_time, 0.0);
+  third.set_value();
+  while (loop.status().steps < 3) std::this_thread::yield();
+  EXPECT_GT(loop.status().dropped_seconds, 0.0);  // the cheapest was as late
+}
+
+TEST(RealTimeLoop, CountsTheWaitForItsTurnAsComputingTime) {
+  std::promise<double> worst;
+  int steps = 0;
+  RealTimeLoop loop(governedSimulation(), ignore, [&](SimulatedCloth& simulation) {
+    ++steps;
+    if (steps == 1) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (steps == 2) worst.set_value(simulation.controller()->times().worst);
+  });
+  loop.start();
+  EXPECT_GE(worst.get_future().get(), 0.020);
+}
+
 }  // namespace
 }  // namespace haptex::nodes

@@ -90,5 +90,41 @@ TEST_F(RuntimeQualityOfAScene, RefusesFilesWithSeveralQualitiesAndBudgetsThatAre
   }
 }
 
+TEST_F(RuntimeQualityOfAScene, ABudgetForTheScenesOwnSettingsKeepsItsMeshAndStartsWithThem) {
+  const RuntimeQuality quality(scene("top"), {"", 5e-3, true});
+  SimulatedCloth simulation = quality.simulate();
+  EXPECT_EQ(simulation.cloth().mesh().triangles.size(), 2u * 3u * 3u);
+  haptex::ClothQuality message = quality.message(simulation, ros::Time(1.0));
+  EXPECT_EQ(message.quality.name, "scene");
+  EXPECT_EQ(message.quality.time_step, 0.0125);
+  EXPECT_EQ(message.budget_ms, 5.0);
+  EXPECT_FALSE(message.quality.cells_as_measured);
+  EXPECT_TRUE(message.quality.motion.empty());
+  EXPECT_FALSE(quality.reduced(message));
+  EXPECT_EQ(quality.wanted(), "scene");
+  SimulatedCloth alone(cloth::loadScene(path_.string()), simulation.cloth().fabric());
+  ASSERT_TRUE(simulation.step());
+  ASSERT_TRUE(alone.step());
+  EXPECT_EQ(simulation.state().positions, alone.state().positions);
+
+  simulation.relieve();
+  message = quality.message(simulation, ros::Time(1.0));
+  EXPECT_EQ(message.quality.name, "scene, 1 solve in 25 ms");
+  EXPECT_EQ(message.quality.time_step, 0.025);
+  EXPECT_TRUE(quality.reduced(message));
+}
+
+TEST_F(RuntimeQualityOfAScene, APresetMayBeReducedForABudgetOfAtMostFourFifthsOfACycle) {
+  const cloth::Quality fast = cloth::loadQualities(kFast).front();
+  const RuntimeQuality quality(scene("top"), {kFast, 1.0});
+  const SimulatedCloth simulation = quality.simulate();
+  const haptex::ClothQuality message = quality.message(simulation, ros::Time(1.0));
+  EXPECT_EQ(message.quality.name, "fast");
+  EXPECT_TRUE(message.quality.cells_as_measured);
+  EXPECT_EQ(message.budget_ms, 10.0);
+  EXPECT_EQ(simulation.controller()->size(),
+            static_cast<std::size_t>(fast.step.newton_iterations) + 1);
+}
+
 }  // namespace
 }  // namespace haptex::nodes

@@ -179,5 +179,35 @@ TEST(StepPlans, RefusesPlansThatThereCannotBe) {
   EXPECT_EQ(simulation.plan(), 0u);
 }
 
+TEST(StepPlans, InRealTimeSeveralStepsOfTheSceneAreTakenAtOnce) {
+  cloth::StepSettings step;
+  SimulatedCloth at_once = plannedSimulation({{step, 1, 2}});
+  cloth::Scene scene = smallScene();
+  scene.time_step *= 2.0;
+  SimulatedCloth of_twice(std::move(scene), smallFabric());
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(at_once.stepInRealTime(0.0));
+    ASSERT_TRUE(of_twice.step());
+  }
+  EXPECT_EQ(at_once.lastStepDuration(), 2.0 * at_once.timeStep());
+  EXPECT_EQ(at_once.state().time, of_twice.state().time);
+  EXPECT_EQ(at_once.state().positions, of_twice.state().positions);
+  EXPECT_EQ(at_once.steps(), 20u);
+}
+
+TEST(StepPlans, AStepThatIsAskedForIsOneOfTheScene) {
+  SimulatedCloth at_once = plannedSimulation({{cloth::StepSettings(), 1, 2}});
+  SimulatedCloth one_by_one = plannedSimulation({{cloth::StepSettings(), 1, 1}});
+  ASSERT_TRUE(at_once.step());
+  ASSERT_TRUE(one_by_one.step());
+  EXPECT_EQ(at_once.state().positions, one_by_one.state().positions);
+  EXPECT_EQ(at_once.lastStepDuration(), at_once.timeStep());
+}
+
+TEST(StepPlans, RefusesSeveralStepsAtOnceInSeveralSubsteps) {
+  EXPECT_THROW(plannedSimulation({{cloth::StepSettings(), 2, 2}}), std::invalid_argument);
+  EXPECT_THROW(plannedSimulation({{cloth::StepSettings(), 1, 0}}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace haptex::nodes

@@ -38,7 +38,8 @@ struct ClothNodeParameters {
   double state_rate = 0.0;    ///< ~state_rate: Hz of simulated time; 0, the default: every step
   double marker_rate = 0.0;   ///< ~marker_rate: Hz of simulated time, default 25
   double strain_scale = 0.0;  ///< ~strain_scale: strain with the last colour, default 0.01
-  QualityRequest quality;     ///< ~quality, ~budget_ms; by default the scene's own settings
+  QualityRequest quality;     ///< ~quality, ~budget_ms; by default the scene's own settings,
+                              ///< which ~quality = scene with a budget lets be reduced
 
   /// Rates are rounded to whole numbers of steps between two messages.
   /// @throws std::invalid_argument naming the parameter, its value and what is allowed
@@ -85,7 +86,7 @@ class ClothNode {
   void publishQuality(const SimulatedCloth& simulation);
   void publishQualityIfDue(const SimulatedCloth& simulation);
   void takeContactForces(SimulatedCloth& simulation);
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   bool reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
@@ -107,6 +108,7 @@ class ClothNode {
   diagnostic_updater::Updater diagnostics_;
   ros::Timer diagnostics_timer_;
   ros::SteadyTimer rest_timer_;
+  double diagnosed_drop_ = 0.0;  // s of simulated time, at the last diagnostics
 
   // Used by the loop's thread only.
   std::uint64_t steps_per_state_;

@@ -31,8 +31,11 @@ bool isEnding();
 /// queue of callbacks first and waits for the master, while its threads look into that queue again
 /// and again: with SCHED_FIFO these keep the processors from everybody.
 ///
-/// @param make the node; may throw what is wrong with its parameters
-/// @returns the status to exit with: 0, or 1 if `make` threw, which is said on the console
+/// @param make the node; may throw what is wrong with its parameters, or that it has nothing to do.
+///   That is said on the console. With the parameter ~stay, which launch files set for nodes that
+///   they respawn after a crash, the process then waits to be ended: what was refused would be
+///   refused again.
+/// @returns the status to exit with: 0, or 1 if `make` threw
 int runNode(int argc, char** argv, const ProcessTraits& traits,
             const std::function<RunningNode()>& make);
 

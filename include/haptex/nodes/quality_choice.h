@@ -15,6 +15,7 @@ namespace haptex::nodes {
 struct Candidate {
   cloth::Quality quality;
   int substeps = 1;       ///< in a cycle
+  int cycles = 1;         ///< that are taken as one step, in real time
   double seconds = 0.0;   ///< s, computing time of a cycle when nothing else runs; infinity: this
                           ///< quality cannot compute the cloth
   bool measured = false;  ///< here; false: seconds follow from what the study measured
@@ -73,6 +74,13 @@ std::vector<Candidate> ladder(const std::vector<Candidate>& candidates);
 /// @param borrowed measured on the cells of that size
 std::vector<Candidate> ladder(const std::vector<Candidate>& candidates, double cell_size,
                               std::vector<Candidate> borrowed);
+
+/// A quality and the ways down from it on the same cells, in ascending order of cost: fewer solves
+/// in every substep, then fewer substeps, at last two cycles in one step. An explicit method, whose
+/// steps must be short, has none. Times follow from the number of solves.
+/// @param cycle   s
+/// @param seconds of a cycle by the quality
+std::vector<Candidate> reductions(const cloth::Quality& quality, double cycle, double seconds);
 
 /// For settings on one mesh, where what takes longer counts as more accurate.
 void sortByTime(std::vector<Candidate>& candidates);

@@ -59,9 +59,15 @@ class QualityController {
   double expectedSeconds(std::size_t quality) const { return load_ * costs_[quality]; }
   CycleTimes times() const;
 
-  /// @param seconds computing time of the last cycle, by running(); finite, >= 0
+  /// @param seconds computing time of the last step, by running(); finite, >= 0
+  /// @param cycles  that the step took at once, > 0; each counts as having taken its share
   /// @returns running()
-  std::size_t record(double seconds);
+  std::size_t record(double seconds, int cycles = 1);
+
+  /// Whether the cheapest runs, or there is no budget for which to change.
+  bool runsCheapest() const;
+  /// Goes to the cheapest at once, for a loop that else had to give up time.
+  void relieve();
 
  private:
   struct Recorded {
@@ -70,6 +76,7 @@ class QualityController {
   };
 
   void stepDown();
+  void leave(std::size_t quality);
   void stepUpIfSafe();
   double highRatio();
   void change(std::size_t quality);

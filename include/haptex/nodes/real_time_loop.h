@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "haptex/nodes/duration_histogram.h"
 #include "haptex/nodes/simulated_cloth.h"
 
 namespace haptex::nodes {
@@ -43,8 +44,9 @@ struct StepsTaken {
 /// come meanwhile wait for the next gap, so that neither steps nor commands starve.
 ///
 /// Every step has a time at which it is due. When the steps take longer than they simulate, the
-/// loop computes without rest and its lag grows to kLargestBacklog; what exceeds that is given up
-/// and counted: simulated time falls behind, and the real-time factor shows by how much.
+/// loop computes without rest and its lag grows. Beyond kLargestBacklog the simulation goes to the
+/// cheapest quality that its controller knows. What exceeds the backlog after a step by that one is
+/// given up and counted: simulated time falls behind, and the real-time factor shows by how much.
 class RealTimeLoop {
  public:
   static constexpr double kLargestBacklog = 0.1;  ///< s
@@ -81,6 +83,8 @@ class RealTimeLoop {
   StepsTaken takeSteps(std::uint32_t count);
 
   LoopStatus status() const;
+  /// Computing times since the start of all steps that were not slept through.
+  DurationHistogram::Counts stepTimes() const { return step_times_.counts(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -95,7 +99,7 @@ class RealTimeLoop {
   bool carryOutRequests(std::unique_lock<std::mutex>& lock);
   void takeRequestedStep(std::unique_lock<std::mutex>& lock);
   void takeDueStep(std::unique_lock<std::mutex>& lock);
-  double step(std::unique_lock<std::mutex>& lock);
+  double step(std::unique_lock<std::mutex>& lock, bool in_real_time);
   void resume();
   void endSteps(StepsTaken::End end);
   void startWindow();
@@ -106,6 +110,7 @@ class RealTimeLoop {
   SimulatedCloth simulation_;  // touched by the loop's thread only
   Observer observer_;
   Command prepare_;  // may be empty
+  DurationHistogram step_times_;
 
   mutable std::mutex mutex_;           // guards all below
   std::condition_variable wake_loop_;  // for the loop: there is something to do
@@ -115,12 +120,14 @@ class RealTimeLoop {
   bool steps_requested_ = false;    // a caller waits in takeSteps()
   std::uint32_t steps_wanted_ = 0;  // still to be taken for it
   StepsTaken steps_taken_;
-  Clock::time_point due_;  // of the next step
+  Clock::time_point due_;       // of the next step
+  Clock::time_point computed_;  // the last step
 
   LoopStatus status_;
   struct Window {  // in which rates are measured
     Clock::time_point begin;
     std::uint64_t steps = 0;
+    double simulated_seconds = 0.0;
     std::uint64_t attempts = 0;  // accepted and rejected steps
     double computing_seconds = 0.0;
     double largest_step_seconds = 0.0;

@@ -18,26 +18,34 @@
 
 namespace haptex::nodes {
 
-/// What a person asks for; at most one of the two.
+/// What a person asks for: a quality, a budget to choose a quality for, or a quality that may be
+/// reduced for a budget.
 struct QualityRequest {
   std::string preset_path;  ///< ~quality: of a file with one quality; empty: none
   double budget = 0.0;      ///< ~budget_ms: s of computing time per cycle; 0: none
+  bool of_scene = false;    ///< ~quality is kOfScene: the scene's own cells and settings
+
+  static constexpr char kOfScene[] = "scene";
 
   bool any() const { return !preset_path.empty() || budget > 0.0; }
+  bool reducible() const { return budget > 0.0 && (of_scene || !preset_path.empty()); }
 
   /// @throws std::invalid_argument naming the parameter, its value and what is allowed
   static QualityRequest read(const ros::NodeHandle& private_node);
 };
 
 /// Made at the start of a node: measures on this machine what the points of the front take for the
-/// scene's cloth, and chooses.
+/// scene's cloth, and chooses. For a quality that may be reduced it measures no more than that one
+/// and the cheapest of the front.
 class RuntimeQuality {
  public:
   // The constructor measures for as long as that, and the time of two measurements.
   static constexpr double kAllowance = 1.5;          ///< s, for the front
   static constexpr double kBorrowedAllowance = 0.5;  ///< s, for borrowedSettings()
+  /// Of a cycle, the longest budget of a quality that may be reduced: the rest is for messages.
+  static constexpr double kLargestShare = 0.8;
 
-  /// @param request for one of the two
+  /// @param request with any()
   /// @throws std::exception naming what was wrong with a file
   RuntimeQuality(const std::string& scene_path, const QualityRequest& request);
 
@@ -50,6 +58,10 @@ class RuntimeQuality {
   /// @param simulation of simulate(); here and below
   haptex::ClothQuality message(const SimulatedCloth& simulation, const ros::Time& stamp) const;
 
+  /// Whether less runs than the quality that was asked for, for the sake of the budget.
+  bool reduced(const haptex::ClothQuality& message) const;
+  const std::string& wanted() const { return rungs_.back().quality.name; }
+
   /// Fills in all but success. @param budget s @returns the message
   /// @throws std::invalid_argument naming the budget unless it is finite and > 0
   std::string query(const SimulatedCloth& simulation, double budget,
@@ -57,6 +69,8 @@ class RuntimeQuality {
 
  private:
   void choose(const std::string& scene_path);
+  void reduce(const std::string& scene_path, const cloth::Quality& wanted);
+  cloth::Quality qualityOfScene() const;
   std::vector<Candidate> borrowed(const std::string& scene_path, std::size_t chosen) const;
   haptex::QualityPoint pointMessage(const Candidate& candidate,
                                     const material::Fabric& fabric) const;
@@ -64,6 +78,7 @@ class RuntimeQuality {
   cloth::Scene scene_;
   material::Fabric fabric_;
   double budget_;                      // s, infinity: none
+  bool reducible_;                     // the last of rungs_ is what was asked for
   std::vector<Candidate> candidates_;  // the front, from the cheapest to the most accurate
   std::vector<Candidate> rungs_;       // what a running cloth switches among
   std::size_t first_ = 0;              // of rungs_, to begin with

@@ -25,6 +25,8 @@ constexpr double kLargestCoordinate = 100.0;
 struct StepPlan {
   cloth::StepSettings step;
   int substeps = 1;  ///< > 0
+  int cycles = 1;    ///< > 0, how many steps of the scene stepInRealTime() takes as one; 1 with
+                     ///< several substeps
 };
 
 /// Steps a scene and changes it between two steps. Every change checks its whole request first and
@@ -48,7 +50,7 @@ class SimulatedCloth {
 
   const cloth::Cloth& cloth() const { return cloth_; }
   const cloth::ClothState& state() const { return state_; }
-  double timeStep() const { return time_step_; }  ///< s, of all substeps together
+  double timeStep() const { return time_step_; }  ///< s, of the scene: of all substeps together
   std::uint64_t steps() const { return steps_; }  ///< accepted since the start or reset()
   /// Of the last step: sums of counts and times over its substeps, the rest of the last of them.
   const cloth::StepReport& lastReport() const { return report_; }
@@ -58,6 +60,11 @@ class SimulatedCloth {
   /// Takes one step, with all its substeps. @returns false if one was rejected and the state is as
   /// before the first
   bool step();
+  /// As step(), but as many steps of the scene at once as the plan says.
+  /// @param waited s, how long the step has waited for its turn; counts as computing time for the
+  ///   controller
+  bool stepInRealTime(double waited);
+  double lastStepDuration() const { return last_cycles_ * time_step_; }  ///< s of simulated time
   bool asleep() const { return asleep_; }
   /// Accepted since the construction, without those that were slept through.
   std::uint64_t computedSteps() const { return computed_steps_; }
@@ -72,6 +79,10 @@ class SimulatedCloth {
   /// next.
   /// @throws std::invalid_argument unless it chooses among as many qualities as there are plans
   void setController(QualityController controller);
+  /// Whether no plan is left that is cheaper than the next step's and that the controller may take.
+  bool runsCheapest() const { return !controller_ || controller_->runsCheapest(); }
+  /// For a loop that else had to give up time: the next steps are by the cheapest of those.
+  void relieve();
   /// Null without one.
   const QualityController* controller() const { return controller_ ? &*controller_ : nullptr; }
 
@@ -115,7 +126,8 @@ class SimulatedCloth {
   std::vector<int> requireAttached(const std::vector<std::uint32_t>& particles) const;
   void attachInitially();
   void makeIntegrators();
-  void takeSubsteps();
+  bool take(int cycles, double waited);
+  void takeSubsteps(double duration);
   cloth::StepReport takeSubstep(double duration);
   void wake();
   void sleepIfResting();
@@ -130,6 +142,7 @@ class SimulatedCloth {
   std::optional<contact::ObstacleCollision> collision_;
   std::vector<int> initially_attached_;
   double time_step_;
+  int last_cycles_ = 1;
   cloth::StepReport report_;
   bool last_step_rejected_ = false;
   std::uint64_t steps_ = 0;

@@ -1,0 +1,1 @@
+"""What the bag of a demo tells: reading, judging, tables and pictures."""
