@@ -62,6 +62,7 @@ void validateIncline(const NamedIntegrationMethod& method, const Sink& sink) {
 
 void validateCapstan(const Sink& sink) {
   for (const double friction : {0.1, 0.3, 0.5}) {
+    if (kSanitized && friction > 0.1) break;
     const double exact = std::exp(friction * M_PI);
     sink(relativeTo(exact, kPrefix + "capstan/" + std::to_string(std::lround(100.0 * friction)),
                     exact, pullOverCapsule(friction), 0.02));

@@ -11,6 +11,7 @@
 #include "haptex/evaluation/hanging_strip.h"
 #include "haptex/evaluation/validation.h"
 #include "haptex/evaluation/virtual_test.h"
+#include "haptex/evaluation/workload.h"
 
 namespace haptex::evaluation {
 namespace {
@@ -183,7 +184,7 @@ TEST(Validation, EveryQuantityOfObstaclesPasses) {
     ++quantities;
     expectPass(quantity);
   });
-  EXPECT_EQ(quantities, 41);
+  EXPECT_EQ(quantities, unlessSanitized(41, 39));
 }
 
 TEST(Validation, ExoskeletonNamesTheUrdfThatItCannotRead) {
