@@ -12,6 +12,7 @@
 #include "haptex/evaluation/pinch.h"
 #include "haptex/evaluation/static_force.h"
 #include "haptex/evaluation/validation.h"
+#include "haptex/evaluation/workload.h"
 #include "haptex/exoskeleton/finger_kinematics.h"
 
 namespace haptex::evaluation {
@@ -30,11 +31,7 @@ using exoskeleton::MotorVector;
 constexpr int kSteps = 11;           // of the grid in each driven joint, from limit to limit
 constexpr double kMotorStep = 1e-3;  // rad, for differences: truncation and rounding below 1e-9
 constexpr double kDegree = M_PI / 180.0;
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kForcePoses = 2;  // a second of the simulated loop takes one of the processor
-#else
-constexpr int kForcePoses = 24;
-#endif
+constexpr int kForcePoses = unlessSanitized(24, 2);
 constexpr double kForceTolerance = 0.005;  // N, the resolution of the HAPTEX exoskeleton
 
 /// What the URDF's comment says of a finger, typed here anew.

@@ -7,6 +7,7 @@
 #include "haptex/evaluation/deformed_sheets.h"
 #include "haptex/evaluation/fcl_sheet.h"
 #include "haptex/evaluation/validation.h"
+#include "haptex/evaluation/workload.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 
 namespace haptex::evaluation {
@@ -17,11 +18,7 @@ using Eigen::Vector3d;
 using Positions = std::vector<Vector3d>;
 
 constexpr int kCells = 16;  // 512 triangles: brute force is to be affordable
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kQueriesPerState = 100;  // brute force takes ten times as long
-#else
-constexpr int kQueriesPerState = 1000;
-#endif
+constexpr int kQueriesPerState = unlessSanitized(1000, 50);
 
 /// A place and sizes to make a cursor of, on the scale of a few elements.
 struct Ingredients {

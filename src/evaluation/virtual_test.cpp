@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "haptex/evaluation/workload.h"
 #include "haptex/material/strain_measures.h"
 
 namespace haptex::evaluation {
@@ -11,8 +12,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // 2500 elements, longer across the jaws than along, like the sample.
-constexpr int kCellsAlongJaw = 50;
-constexpr int kCellsBetweenJaws = 25;
+constexpr int kCellsAlongJaw = unlessSanitized(50, 12);
+constexpr int kCellsBetweenJaws = unlessSanitized(25, 6);
 
 /// Regular for springs, which need that.
 cloth::ClothMesh sampleMesh(bool weft, unsigned seed,
