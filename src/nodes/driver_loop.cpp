@@ -21,7 +21,7 @@ DriverLoop::DriverLoop(const std::string& port, const std::string& urdf)
 void DriverLoop::tick(Time now) {
   takePort();
   receive(now);
-  takeCommands();
+  takeCommands(now);
   DriverRequest request{};
   const bool asked = requests_.take(request);
   Refusal refusal;
@@ -50,11 +50,14 @@ void DriverLoop::receive(Time now) {
   ++snapshot_.states;
 }
 
-void DriverLoop::takeCommands() {
+void DriverLoop::takeCommands(Time now) {
   for (const Finger finger : kFingers) {
-    TripleBuffer<StampedCommand>& newest = commands_[finger].newest;
-    if (!newest.update()) continue;
-    controller_.command(finger, newest.value().command, newest.value().arrival);
+    CommandBox& box = commands_[finger];
+    const bool died = box.died.exchange(false);  // first: a command after it is another one's
+    if (box.newest.update()) {
+      controller_.command(finger, box.newest.value().command, box.newest.value().arrival);
+    }
+    if (died) controller_.commanderDied(finger, now);
   }
 }
 
@@ -94,6 +97,7 @@ void DriverLoop::show() {
   for (const Finger finger : kFingers) snapshot_.fingers[finger] = controller_.measured(finger);
   snapshot_.operating_state = controller_.operatingState();
   snapshot_.fault = FixedText(controller_.fault());
+  snapshot_.fault_is_a_stall = controller_.faultIsAStall();
   snapshot_.link = link_.status();
   snapshot_.link_statistics = link_.statistics();
   snapshot_.identity = link_.identity();

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/nodes/driver_announcement.h"
 #include "haptex/nodes/driver_messages.h"
 #include "haptex/nodes/hand_markers.h"
 #include "haptex/nodes/node_parameters.h"
@@ -37,13 +38,23 @@ bool sameState(const exoskeleton::OperatingState& a, const exoskeleton::Operatin
   return a.mode == b.mode && a.is_homed == b.is_homed && a.is_busy == b.is_busy;
 }
 
+void announce(const DriverSnapshot& snapshot) {
+  const std::string text = announcement(snapshot.operating_state, snapshot.fault.str());
+  if (snapshot.operating_state.mode == exoskeleton::Mode::kFault) {
+    ROS_ERROR("%s", text.c_str());
+  } else {
+    ROS_INFO("%s", text.c_str());
+  }
+}
+
 }  // namespace
 
 DriverNodeParameters DriverNodeParameters::read(const ros::NodeHandle& private_node) {
   const std::string port =
       readText(private_node, "port", "the path of a serial port, for example /dev/ttyUSB0");
   const RobotDescription description = readRobotDescription(private_node);
-  return {port, description.urdf, kinematicsOf(description)};
+  return {port, description.urdf, kinematicsOf(description),
+          readSwitch(private_node, "auto_recover")};
 }
 
 DriverNode::DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
@@ -55,6 +66,7 @@ DriverNode::DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& priva
       force_node_(node),
       force_spinner_(1, &force_queue_),
       kinematics_(std::move(parameters.kinematics)),
+      auto_recover_(parameters.auto_recover),
       loop_(parameters.port, parameters.urdf),
       loop_thread_(DriverLoop::kPeriod, [this](Time now) { loop_.tick(now); }),
       diagnostics_(node, private_node) {
@@ -79,18 +91,22 @@ void DriverNode::advertiseTopics() {
   force_node_.setCallbackQueue(&force_queue_);
   for (const Finger finger : kFingers) {
     FingerTopics& topics = fingers_[finger];
-    topics.pose =
-        node_.advertise<geometry_msgs::PoseStamped>(topic(finger, "measured_cp"), kMeasuredQueue);
+    // On the queue of the forces: who has gone is told after what it had commanded.
+    topics.pose = force_node_.advertise<geometry_msgs::PoseStamped>(
+        topic(finger, "measured_cp"), kMeasuredQueue, ros::SubscriberStatusCallback(),
+        [this](const ros::SingleSubscriberPublisher& subscriber) { subscriberGone(subscriber); });
     topics.twist =
         node_.advertise<geometry_msgs::TwistStamped>(topic(finger, "measured_cv"), kMeasuredQueue);
     topics.wrench =
         node_.advertise<geometry_msgs::WrenchStamped>(topic(finger, "measured_cf"), kMeasuredQueue);
-    const boost::function<void(const haptex::ServoForceConstPtr&)> take =
-        [this, finger](const haptex::ServoForceConstPtr& message) { takeForce(finger, message); };
+    using Event = const ros::MessageEvent<haptex::ServoForce const>&;
+    const boost::function<void(Event)> take = [this, finger](Event event) {
+      takeForce(finger, event);
+    };
     // Only the latest force counts.
-    topics.forces = force_node_.subscribe<haptex::ServoForce>(topic(finger, "servo_cf"), 1, take,
-                                                              ros::VoidConstPtr(),
-                                                              ros::TransportHints().tcpNoDelay());
+    topics.forces = force_node_.subscribe<haptex::ServoForce, Event>(
+        topic(finger, "servo_cf"), 1, take, ros::VoidConstPtr(),
+        ros::TransportHints().tcpNoDelay());
   }
   marker_publisher_ =
       node_.advertise<visualization_msgs::MarkerArray>("exoskeleton/force_markers", 2);
@@ -99,12 +115,27 @@ void DriverNode::advertiseTopics() {
       node_.advertise<haptex::OperatingState>("exoskeleton/operating_state", 1, true);
 }
 
-void DriverNode::takeForce(Finger finger, const haptex::ServoForceConstPtr& message) {
+void DriverNode::subscriberGone(const ros::SingleSubscriberPublisher& subscriber) {
+  const std::string node = subscriber.getSubscriberName();
+  for (const Finger finger : kFingers) {
+    if (!commanders_.hasDied(finger, node)) continue;
+    loop_.commanderDied(finger);
+    fingers_[finger].filter.commanderDied(ros::Time::now(), steadyNow());
+    ++commander_deaths_;
+    ROS_WARN("%s, which commanded the %s, has gone: its force goes to zero", node.c_str(),
+             name(finger));
+  }
+}
+
+void DriverNode::takeForce(Finger finger,
+                           const ros::MessageEvent<haptex::ServoForce const>& event) {
+  const haptex::ServoForceConstPtr& message = event.getConstMessage();
   const Time arrival = steadyNow();
   const ros::Time now = ros::Time::now();
   FingerTopics& topics = fingers_[finger];
   if (const auto command = topics.filter.take(*message, now, arrival)) {
     loop_.command(finger, *command, arrival);
+    commanders_.commanded(finger, event.getPublisherName());
     return;
   }
   const std::string why = topics.filter.explain(*message, now);
@@ -124,6 +155,7 @@ void DriverNode::publish() {
       snapshot = loop_.status();
     }
     publishOperatingState(snapshot);
+    recover(snapshot);
   }
 }
 
@@ -167,6 +199,8 @@ void DriverNode::publishOperatingState(const DriverSnapshot& snapshot) {
   operating_state_due_ = now + kOperatingStatePeriod;
   published_state_ = snapshot.operating_state;
   published_fault_ = snapshot.fault;
+  if (changed) announce(snapshot);
+  publishStateMarker(snapshot);
   operating_state_publisher_.publish(
       operatingStateMessage(snapshot.operating_state, snapshot.fault.str(), ros::Time::now()));
 }

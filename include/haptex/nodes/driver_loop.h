@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
@@ -37,7 +38,8 @@ struct DriverSnapshot {
   exoskeleton::Time state_time{0};  ///< when the newest state of the device was received
   exoskeleton::PerFinger<exoskeleton::FingerMeasurement> fingers;
   exoskeleton::OperatingState operating_state;
-  FixedText fault;  ///< what latched the fault; empty without one
+  FixedText fault;                ///< what latched the fault; empty without one
+  bool fault_is_a_stall = false;  ///< the device was silent for a moment
   exoskeleton::LinkStatus link = exoskeleton::LinkStatus::kConnecting;
   exoskeleton::LinkStatistics link_statistics;
   exoskeleton::Identity identity;
@@ -70,6 +72,10 @@ class DriverLoop {
   /// @param arrival when it came
   void command(exoskeleton::Finger finger, const exoskeleton::ForceCommand& command, Time arrival);
 
+  /// By any thread: the one who commanded this finger is dead, see DeviceController. A command that
+  /// came before is older.
+  void commanderDied(exoskeleton::Finger finger) { commands_[finger].died = true; }
+
   /// By any thread: asks between two ticks. See RequestBox::ask(). After it status() shows what it
   /// led to.
   exoskeleton::Refusal ask(DriverRequest request) { return requests_.ask(request); }
@@ -98,11 +104,12 @@ class DriverLoop {
   struct CommandBox {
     std::mutex writers;  // guards writing; never taken by the loop
     TripleBuffer<StampedCommand> newest;
+    std::atomic<bool> died{false};  // the commander has, after the newest
   };
 
   void takePort();
   void receive(Time now);
-  void takeCommands();
+  void takeCommands(Time now);
   exoskeleton::Refusal carryOut(DriverRequest request);
   void send(exoskeleton::Bytes bytes);
   void dropClosedPort();

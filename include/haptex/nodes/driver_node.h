@@ -13,7 +13,9 @@
 #include <thread>
 #include <vector>
 
+#include "haptex/exoskeleton/auto_recovery.h"
 #include "haptex/exoskeleton/finger_kinematics.h"
+#include "haptex/nodes/commander_watch.h"
 #include "haptex/nodes/driver_loop.h"
 #include "haptex/nodes/loop_diagnostics.h"
 #include "haptex/nodes/periodic_thread.h"
@@ -26,6 +28,7 @@ struct DriverNodeParameters {
   std::string port;  ///< ~port: path of the device's serial port; it need not be there yet
   std::string urdf;  ///< robot_description, of the nearest namespace that has one
   exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematics;  ///< of the urdf
+  bool auto_recover = false;  ///< ~auto_recover: see exoskeleton::AutoRecovery
 
   /// @throws std::invalid_argument naming the parameter, what is wrong with it and what is allowed
   static DriverNodeParameters read(const ros::NodeHandle& private_node);
@@ -36,7 +39,9 @@ struct DriverNodeParameters {
 /// state of the device, joint_states at 100 Hz, exoskeleton/force_markers
 /// (visualization_msgs/MarkerArray, 25 Hz) and exoskeleton/operating_state (latched); nothing is
 /// measured before the device is homed. Services exoskeleton/enable, disable, pause, home,
-/// clear_fault (std_srvs/Trigger). Nothing is computed for topics without subscribers.
+/// clear_fault (std_srvs/Trigger). Every change of the operating state is said on the console, and
+/// the state with why there is no force is a text in the markers. Nothing is computed for topics
+/// without subscribers.
 ///
 /// Forces come in on one thread, the loop of 1 kHz runs on another, a third publishes, a fourth
 /// opens the port, and services and diagnostics run wherever the caller spins; the loop waits for
@@ -69,13 +74,16 @@ class DriverNode {
              DriverNodeParameters parameters);
 
   void advertiseTopics();
-  void takeForce(Finger finger, const haptex::ServoForceConstPtr& message);
+  void takeForce(Finger finger, const ros::MessageEvent<haptex::ServoForce const>& event);
+  void subscriberGone(const ros::SingleSubscriberPublisher& subscriber);
 
   // On the publishing thread.
   void publish();
   void publishMeasured(const DriverSnapshot& snapshot);
   void publishFinger(Finger finger, const DriverSnapshot& snapshot, const ros::Time& stamp);
   void publishOperatingState(const DriverSnapshot& snapshot);
+  void publishStateMarker(const DriverSnapshot& snapshot);
+  void recover(const DriverSnapshot& snapshot);
 
   void advertiseServices();
   bool enable(Trigger::Request& request, Trigger::Response& response);
@@ -94,6 +102,7 @@ class DriverNode {
   ros::NodeHandle node_;
   ros::NodeHandle force_node_;  // whose callbacks run on a thread of their own
   ros::CallbackQueue force_queue_;
+  CommanderWatch commanders_;  // used by the thread of force_queue_ only
   ros::AsyncSpinner force_spinner_;
 
   // Used by the publishing thread only.
@@ -103,6 +112,10 @@ class DriverNode {
   Time operating_state_due_{0};
   exoskeleton::OperatingState published_state_;
   FixedText published_fault_;
+  const bool auto_recover_;
+  exoskeleton::AutoRecovery recovery_;
+  std::atomic<std::uint64_t> recoveries_{0};  // for diagnostics
+  std::atomic<std::uint64_t> commander_deaths_{0};
 
   DriverLoop loop_;
   PeriodicThread loop_thread_;
