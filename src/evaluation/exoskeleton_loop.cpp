@@ -106,7 +106,8 @@ void ExoskeletonLoop::step() {
 void ExoskeletonLoop::stepDevice() {
   const std::vector<std::uint8_t>& bytes = to_device_.arrived(now_);
   device_end_.receive(bytes.data(), bytes.size(), now_);
-  device_.step(device_end_.command(now_));
+  if (!driver_lives_ || !port_open_) device_end_.hangUp(now_);
+  device_.step(motors_live_ ? device_end_.command(now_) : DeviceCommand{});
   if (!port_open_) return;
   to_driver_.send(device_end_.answer(), now_);
   if (steps_ % kStepsPerTick == 0) {
@@ -115,19 +116,32 @@ void ExoskeletonLoop::stepDevice() {
 }
 
 void ExoskeletonLoop::stepCommander() {
+  if (commander_lives_ && now_ < commander_stalls_until_) return;
   for (const Finger finger : kFingers) {
     commanded_[finger].setZero();
     if (!commander_lives_) continue;
     const ForceCommand command = commander_(finger, now_);
     commanded_[finger] = command.force;
-    if (driver_lives_) controller_.command(finger, command, now_);
+    arrivals_[finger] = {command, now_, true};
   }
 }
 
+void ExoskeletonLoop::takeCommands() {
+  for (const Finger finger : kFingers) {
+    Arrival& arrival = arrivals_[finger];
+    if (arrival.is_new) controller_.command(finger, arrival.command, arrival.time);
+    arrival.is_new = false;
+    if (!commander_lives_ && !death_is_known_) controller_.commanderDied(finger, now_);
+  }
+  death_is_known_ = !commander_lives_;
+}
+
 void ExoskeletonLoop::stepDriver() {
+  if (driver_lives_ && now_ < driver_stalls_until_) return;
   const std::vector<std::uint8_t>& bytes = to_driver_.arrived(now_);
   if (!driver_lives_) return;
   link_.receive(bytes.data(), bytes.size(), now_);
+  takeCommands();
   const DeviceCommand& command = controller_.tick(link_.takeState(), now_);
   if (!port_open_) return;
   to_device_.send(link_.poll(now_), now_);

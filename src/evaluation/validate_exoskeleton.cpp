@@ -1,4 +1,6 @@
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -10,10 +12,12 @@
 #include <vector>
 
 #include "haptex/evaluation/pinch.h"
+#include "haptex/evaluation/stalled_hold.h"
 #include "haptex/evaluation/static_force.h"
 #include "haptex/evaluation/validation.h"
 #include "haptex/evaluation/workload.h"
 #include "haptex/exoskeleton/finger_kinematics.h"
+#include "haptex/exoskeleton/hand_path.h"
 
 namespace haptex::evaluation {
 namespace {
@@ -32,6 +36,13 @@ constexpr int kSteps = 11;           // of the grid in each driven joint, from l
 constexpr double kMotorStep = 1e-3;  // rad, for differences: truncation and rounding below 1e-9
 constexpr double kDegree = M_PI / 180.0;
 constexpr int kForcePoses = unlessSanitized(24, 2);
+constexpr double kOpen = 1.5;              // s, of config/paths/pinch.yaml: open around the sample
+constexpr double kHold = 1.6;              // N, felt in the demo's pinch
+constexpr double kHoldStiffness = 800;     // N/m, of a fingertip in wool that is held with it
+constexpr double kDeathForce = 3.0;        // N
+constexpr double kKnownDeath = 10.0;       // ms, of a death that the other end of a connection sees
+constexpr double kSilentDeath = 20.0;      // ms, of one that is seen by silence only
+constexpr double kForceLeft = 0.1;         // N, more than without motors
 constexpr double kForceTolerance = 0.005;  // N, the resolution of the HAPTEX exoskeleton
 
 /// What the URDF's comment says of a finger, typed here anew.
@@ -229,6 +240,48 @@ void validateForces(const std::string& urdf, const Sink& sink) {
   }
 }
 
+/// Stalls while the sample is held as the demo holds it. Up to 15 ms nothing that opens the hand
+/// may be felt; from 19 ms on the force has to go to zero, and has to come back without a jump.
+void validateStalls(const std::string& urdf, const exoskeleton::PerFinger<Vector3d>& open,
+                    const Sink& sink) {
+  const std::vector<int> stalls = {5, 11, 15, 19, 25};  // ms
+  std::vector<exoskeleton::Time> durations;
+  for (const int stall : stalls) durations.push_back(std::chrono::milliseconds(stall));
+  for (const StalledPart part : kStalledParts) {
+    const std::vector<StalledHold> holds =
+        holdThroughStalls(urdf, open, kHold, kHoldStiffness, part, durations);
+    for (std::size_t i = 0; i < stalls.size(); ++i) {
+      const StalledHold& hold = holds[i];
+      const std::string prefix =
+          "exoskeleton/stall/" + std::to_string(stalls[i]) + "ms/" + name(part) + "_";
+      const bool bridged = stalls[i] <= 15;
+      sink({prefix + "least_felt_share", 1.0, hold.least, 1.0 - hold.least, bridged ? 0.2 : 1.0});
+      sink({prefix + "below_80_percent_ms", 0.0, hold.below, hold.below, bridged ? 5.0 : 60.0});
+      sink({prefix + "jump_N", 0.0, hold.jump, hold.jump, bridged ? 0.3 : 0.6});
+      sink({prefix + "overshoot_N", 0.0, hold.overshoot, hold.overshoot, 0.3});
+    }
+  }
+}
+
+/// With 3 N. What is felt after the motors are off is the finger's own way back, in which it takes
+/// links and rotors along: the same as if they had been off at once.
+void validateDeaths(const std::string& urdf, const exoskeleton::PerFinger<Vector3d>& open,
+                    const Sink& sink) {
+  const Death limit = dieInAHold(urdf, open, kDeathForce, DyingPart::kMotors);
+  const auto death = [&](const std::string& which, DyingPart part, double allowed) {
+    const Death found = dieInAHold(urdf, open, kDeathForce, part);
+    const std::string prefix = "exoskeleton/death/" + which + "_";
+    sink({prefix + "motors_on_ms", 0.0, found.motors_on, found.motors_on, allowed});
+    if (allowed > kKnownDeath) return;
+    sink({prefix + "force_left_after_20_ms_N", limit.force_left, found.force_left,
+          std::max(0.0, found.force_left - limit.force_left), kForceLeft});
+  };
+  death("commander", DyingPart::kCommander, kKnownDeath);
+  death("driver", DyingPart::kDriver, kKnownDeath);
+  death("silent_commander", DyingPart::kSilentCommander, kSilentDeath);
+  death("silent_driver", DyingPart::kSilentDriver, kSilentDeath);
+}
+
 }  // namespace
 
 void validateExoskeleton(const std::string& config_directory, const Sink& sink) {
@@ -236,6 +289,10 @@ void validateExoskeleton(const std::string& config_directory, const Sink& sink) 
   for (const Finger finger : kFingers) validateKinematics(urdf, finger, sink);
   validatePinch(urdf, sink);
   validateForces(urdf, sink);
+  const exoskeleton::PerFinger<Vector3d> open =
+      exoskeleton::loadHandPath(config_directory + "/paths/pinch.yaml").at(kOpen).fingertips;
+  validateStalls(urdf, open, sink);
+  validateDeaths(urdf, open, sink);
 }
 
 }  // namespace haptex::evaluation

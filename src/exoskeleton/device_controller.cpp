@@ -28,11 +28,6 @@ const char* describe(Status status) {
   return "";
 }
 
-std::uint32_t microseconds(Time time) {
-  return static_cast<std::uint32_t>(
-      std::chrono::duration_cast<std::chrono::microseconds>(time).count());
-}
-
 }  // namespace
 
 DeviceController::DeviceController(const std::string& urdf)
@@ -76,22 +71,9 @@ void DeviceController::latch(const char* why) {
   for (FingerController& finger : fingers_.values) finger.latchFault();
 }
 
-// A device that was switched off has a clock that starts over. Ours knows how much time has passed;
-// the device's may lag behind, because states wait in the line, but neither run ahead nor back.
-bool DeviceController::isAnotherLife(const DeviceState& state, Time now) const {
-  const Time passed = now - last_state_;
-  const std::uint32_t expected = device_time_ + microseconds(passed);
-  const auto lead = std::chrono::microseconds(static_cast<std::int32_t>(state.time - expected));
-  return lead > kClockTolerance + passed / 1000 || lead < -passed - std::chrono::milliseconds(1);
-}
-
 void DeviceController::accept(const DeviceState& state, Time now) {
-  double dt = 0.0;
-  bool another_life = false;
-  if (state_seen_) {
-    another_life = isAnotherLife(state, now);
-    dt = 1e-6 * (state.time - device_time_);
-  }
+  const bool another_life = !clock_.take(state.time, now);
+  const double dt = state_seen_ ? 1e-6 * (state.time - device_time_) : 0.0;
   if (another_life) {
     for (FingerController& finger : fingers_.values) finger.restartEncoders();
   }

@@ -16,7 +16,7 @@ DeviceEnd::DeviceEnd(const Identity& identity) : identity_(identity) {}
 void DeviceEnd::receive(const std::uint8_t* bytes, std::size_t count, Time now) {
   if (count == 0) return;
   // Else the first bytes of a dead driver's last command would wait for something to complete them.
-  if (now - last_bytes_ >= kMotorsOff) parser_.discard();
+  if (now - last_bytes_ >= kInterrupted) parser_.discard();
   last_bytes_ = now;
   Bytes rest{bytes, count};
   while (const Frame* frame = parser_.next(rest)) {
@@ -43,6 +43,7 @@ void DeviceEnd::takeCommand(const Frame& frame, Time now) {
   if (!command) return;
   approach(*command, ahead, now);
   last_command_ = now;
+  ramp_start_ = now + kRampStart;
   command_ = *command;
   command_number_ = obeyed_number_ = frame.sequence;
 }
@@ -52,7 +53,8 @@ void DeviceEnd::takeCommand(const Frame& frame, Time now) {
 // does itself.
 void DeviceEnd::approach(const DeviceCommand& command, int ahead, Time now) {
   const PerFinger<MotorVector> present = torques(now);
-  const double fallen = (1.0 - watchdogShare(now)) * seconds(kMotorsOff - kRampStart);
+  const Time rise = last_command_ ? kReturn : kRamp;
+  const double fallen = (1.0 - watchdogShare(now)) * seconds(rise);
   double left = fallen;
   if (last_command_) left += std::max(0.0, seconds(reached_ - lineEnd(now)));
   double duration = fallen;  // at least: the first command of a driver may be any
@@ -70,6 +72,8 @@ void DeviceEnd::approach(const DeviceCommand& command, int ahead, Time now) {
   reached_ = now + std::chrono::round<Time>(std::chrono::duration<double>(duration));
 }
 
+void DeviceEnd::hangUp(Time now) { ramp_start_ = std::min(ramp_start_, now); }
+
 Bytes DeviceEnd::answer() {
   if (!to_answer_) return {};
   to_answer_ = false;
@@ -78,11 +82,12 @@ Bytes DeviceEnd::answer() {
 
 double DeviceEnd::watchdogShare(Time now) const {
   if (!last_command_) return 0.0;
-  const double left = seconds(*last_command_ + kMotorsOff - now);
-  return std::clamp(left / seconds(kMotorsOff - kRampStart), 0.0, 1.0);
+  return std::clamp(seconds(ramp_start_ + kRamp - now) / seconds(kRamp), 0.0, 1.0);
 }
 
-Time DeviceEnd::lineEnd(Time now) const { return std::min(now, *last_command_ + kRampStart); }
+bool DeviceEnd::isOff(Time now) const { return !last_command_ || now >= ramp_start_ + kRamp; }
+
+Time DeviceEnd::lineEnd(Time now) const { return std::min(now, ramp_start_); }
 
 PerFinger<MotorVector> DeviceEnd::torques(Time now) const {
   double way = 1.0;
@@ -101,8 +106,7 @@ PerFinger<MotorVector> DeviceEnd::torques(Time now) const {
 }
 
 DeviceCommand DeviceEnd::command(Time now) {
-  const bool off = !last_command_ || now - *last_command_ >= kMotorsOff;
-  if (off || command_.mode == DriveMode::kOff) return {};
+  if (isOff(now) || command_.mode == DriveMode::kOff) return {};
   DeviceCommand command;
   command.mode = command_.mode;
   command.torques = torques(now);
@@ -113,8 +117,7 @@ Bytes DeviceEnd::report(DeviceState state, Time now) {
   if (!greeted_) return {};
   state.last_command = command_number_;
   state.mode = command(now).mode;
-  state.watchdog_tripped =
-      command_.mode != DriveMode::kOff && last_command_ && now - *last_command_ >= kMotorsOff;
+  state.watchdog_tripped = command_.mode != DriveMode::kOff && last_command_ && isOff(now);
   return encode(state, ++state_number_, outgoing_);
 }
 

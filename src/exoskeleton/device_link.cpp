@@ -18,8 +18,7 @@ const char* describe(LinkStatus status) {
 
 void DeviceLink::receive(const std::uint8_t* bytes, std::size_t count, Time now) {
   if (count == 0) return;
-  // The rest of a frame that was interrupted for so long is too old to be of use.
-  if (now - last_bytes_ >= kStateTimeout) parser_.discard();
+  if (now - last_bytes_ >= kInterrupted) parser_.discard();
   last_bytes_ = now;
   Bytes rest{bytes, count};
   while (const Frame* frame = parser_.next(rest)) take(*frame, now);

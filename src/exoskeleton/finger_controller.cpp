@@ -75,7 +75,12 @@ void FingerController::command(const ForceCommand& command, bool obeyed, Time no
     return;
   }
   if (!obeyed) return;
-  command_.take(command, measurement_.pose.translation(), measurement_.velocity);
+  const Vector3d& p = measurement_.pose.translation();
+  if (has_command_ && chain_.commandsStopped()) {
+    command_.takeFrom(chain_.force(), command, p, measurement_.velocity);
+  } else {
+    command_.take(command, p, measurement_.velocity);
+  }
   has_command_ = true;
   chain_.commandAccepted(now);
 }
@@ -122,8 +127,9 @@ ForceInput FingerController::forceInput(bool obeyed) const {
 MotorVector FingerController::renderForces(NoForceReason hold, Time now) {
   const bool held = hold != NoForceReason::kNone || !has_command_ || outside_limits_ || singular_;
   Vector3d wanted = Vector3d::Zero();
-  if (held || chain_.commandsStopped()) {
+  if (held || chain_.commandsExpired()) {
     command_.rest();
+    chain_.interrupt();
   } else {
     wanted = command_.tick(measurement_.pose.translation(), measurement_.velocity);
     if (command_.saturated()) chain_.countSaturated();

@@ -58,7 +58,8 @@ void makeRaw(int descriptor, const std::string& path) {
   if (::tcgetattr(descriptor, &settings) != 0) throwSystemError(path, "not a serial port");
   ::cfmakeraw(&settings);
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
-  settings.c_cflag |= CLOCAL | CREAD;
+  // HUPCL: a driver that ends drops DTR, so that the firmware needs not wait for its watchdog.
+  settings.c_cflag |= CLOCAL | CREAD | HUPCL;
   settings.c_iflag &= ~static_cast<tcflag_t>(IXOFF | IXANY);
   settings.c_cc[VMIN] = 1;
   settings.c_cc[VTIME] = 0;

@@ -76,8 +76,10 @@ std::size_t PseudoTerminal::read(std::uint8_t* buffer, std::size_t capacity) {
   return line_.read(buffer, capacity).count;
 }
 
+bool PseudoTerminal::isConnected() const { return !nobodyAtOtherEnd(line_.get()); }
+
 bool PseudoTerminal::write(Bytes bytes) {
-  if (nobodyAtOtherEnd(line_.get())) {
+  if (!isConnected()) {
     line_.forget();
     return true;
   }

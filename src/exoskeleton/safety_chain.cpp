@@ -2,11 +2,20 @@
 
 #include <algorithm>
 
+#include "haptex/exoskeleton/device_end.h"
+
 namespace haptex::exoskeleton {
 namespace {
 
 // m/s. No finger is faster; keeps the products of the passivity observer finite.
 constexpr double kFastest = 10.0;
+// How far the return has come for a device that got no command for dt (s).
+Time returned(double dt) {
+  const double left = seconds(DeviceEnd::kMotorsOff) - dt;
+  const double share = std::clamp(left / seconds(DeviceEnd::kRamp), 0.0, 1.0);
+  return std::chrono::duration_cast<Time>(std::chrono::duration<double>(share * kReturn));
+}
+
 // A ramp at exactly kMaximumSlew must end in exactly zero, not in what rounding leaves of it.
 constexpr double kRounding = 1.0 + 1e-12;
 
@@ -36,6 +45,8 @@ Vector3d slewLimited(const Vector3d& target, const Vector3d& previous, double dt
 
 double softStartGain(double since_start) { return std::clamp(since_start / kSoftStart, 0.0, 1.0); }
 
+double returnGain(double since_return) { return std::clamp(since_return / kReturn, 0.0, 1.0); }
+
 Vector3d rampedDown(const Vector3d& previous, Time before, Time now, Time end) {
   if (now >= end) return Vector3d::Zero();
   return previous * (seconds(end - now) / seconds(end - std::min(before, now)));
@@ -45,12 +56,21 @@ void SafetyChain::start(Time now) {
   started_ = true;
   start_ = now;
   command_seen_ = false;
+  commands_expired_ = interrupted_ = false;  // there is nothing to come back from
+  return_ = now - std::chrono::duration_cast<Time>(std::chrono::duration<double>(kReturn));
   passivity_.reset();
 }
 
 void SafetyChain::commandAccepted(Time now) {
+  if (commands_expired_) interrupt();
   command_seen_ = true;
   last_command_ = now;
+}
+
+void SafetyChain::commanderDied(Time now) {
+  const Time ramp =
+      std::chrono::duration_cast<Time>(std::chrono::duration<double>(force_.norm() / kMaximumSlew));
+  last_command_ = std::min(last_command_, now + ramp - kCommandTimeout - kWatchdogRamp);
 }
 
 void SafetyChain::latchFault() {
@@ -59,14 +79,18 @@ void SafetyChain::latchFault() {
   fault_end_ = last_tick_ + kWatchdogRamp;
 }
 
-Vector3d SafetyChain::watchdog(const Vector3d& force, Time now) {
-  const Time ramp_start = last_command_ + kCommandTimeout;
-  const bool stopped = !command_seen_ || now > ramp_start;
+Vector3d SafetyChain::watchdog(const Vector3d& force, Time now, double dt) {
+  const bool stopped = !command_seen_ || now > last_command_ + kCommandTimeout;
   if (stopped && !commands_stopped_ && !force_.isZero(0.0)) ++statistics_.watchdog_trips;
   commands_stopped_ = stopped;
+  commands_expired_ = !command_seen_ || now >= commandsEnd();
+  if (commands_expired_) return Vector3d::Zero();
   if (!stopped) return force;
-  // Straight on from what is rendered, not from `force`: nobody vouches for that any more.
-  return rampedDown(force_, std::max(last_tick_, ramp_start), now, ramp_start + kWatchdogRamp);
+  // Whatever `force` does, nobody vouches for it any more: if it cannot be followed within what is
+  // left, straight on from what is rendered.
+  const double left = kMaximumSlew * seconds(commandsEnd() - now);
+  const Vector3d followed = slewLimited(saturated(force, left), force_, dt);
+  return followed.norm() <= left * kRounding ? followed : saturated(force_, left);
 }
 
 Vector3d SafetyChain::latchedFault(const Vector3d& force, Time now) const {
@@ -99,8 +123,12 @@ const Vector3d& SafetyChain::tick(const Vector3d& wanted, const Vector3d& veloci
   if (passivity_.damping() > 0.0) ++statistics_.passivity_limited;
   statistics_.observed_energy = passivity_.energy();
 
-  force *= started_ ? softStartGain(seconds(now - start_)) : 0.0;
-  force = latchedFault(watchdog(force, now), now);
+  return_ = std::max(return_, now - returned(dt));
+  if (interrupted_) return_ = now;
+  interrupted_ = false;
+  force *=
+      started_ ? softStartGain(seconds(now - start_)) * returnGain(seconds(now - return_)) : 0.0;
+  force = latchedFault(watchdog(force, now, dt), now);
 
   force = slewLimited(saturated(finiteOrZero(force, force_finite), kMaximumForce), force_, dt);
   force_ = saturated(force, kMaximumForce);

@@ -28,6 +28,14 @@ void SmoothCommand::take(const ForceCommand& command, const Vector3d& p, const V
   difference_ += change;
 }
 
+void SmoothCommand::takeFrom(const Vector3d& rendered, const ForceCommand& command,
+                             const Vector3d& p, const Vector3d& v) {
+  command_ = command;
+  const Vector3d force = value(p, v);
+  resting_ = !force.allFinite();
+  if (!resting_) half_faded_ = difference_ = force - rendered;
+}
+
 void SmoothCommand::rest() {
   resting_ = true;
   saturated_ = false;

@@ -39,7 +39,8 @@ double contactForceFraction(double force) {
   return force > 0.0 ? 1.0 + std::log10(force / kFullForce) / kForceDecades : 0.0;
 }
 
-std::string rateText(const LoopRates& rates, const exoskeleton::PerFinger<double>& forces) {
+std::string rateText(const LoopRates& rates, const exoskeleton::PerFinger<double>& forces,
+                     const exoskeleton::PerFinger<std::string>& why) {
   std::string text = rateLine("force loop", rates.force) + "\n" + rateLine("cloth", rates.cloth) +
                      "\n" + rateLine("proximity", rates.proximity) + "\n" +
                      rateLine("exoskeleton", rates.exoskeleton);
@@ -47,6 +48,7 @@ std::string rateText(const LoopRates& rates, const exoskeleton::PerFinger<double
     char line[64];
     std::snprintf(line, sizeof(line), "\n%s %.3f N", exoskeleton::name(finger), forces[finger]);
     text += line;
+    if (!why[finger].empty()) text += " (no force: " + why[finger] + ")";
   }
   return text;
 }
@@ -70,9 +72,9 @@ ContactMarkers::ContactMarkers() {
   markers.back().color = colourMessage(Eigen::Vector3f(0.1F, 0.1F, 0.1F));
 }
 
-const visualization_msgs::MarkerArray& ContactMarkers::update(const ContactPicture& picture,
-                                                              const LoopRates& rates,
-                                                              const ros::Time& stamp) {
+const visualization_msgs::MarkerArray& ContactMarkers::update(
+    const ContactPicture& picture, const LoopRates& rates, const ros::Time& stamp,
+    const exoskeleton::PerFinger<std::string>& why) {
   updatePoints(picture);
   updatePatch(picture);
   exoskeleton::PerFinger<double> forces;
@@ -80,7 +82,7 @@ const visualization_msgs::MarkerArray& ContactMarkers::update(const ContactPictu
     updateForce(finger, picture);
     forces[finger] = picture.gains[finger] * picture.contacts[finger].force.norm();
   }
-  markers_.markers[kRates].text = rateText(rates, forces);
+  markers_.markers[kRates].text = rateText(rates, forces, why);
   for (Marker& marker : markers_.markers) marker.header.stamp = stamp;
   return markers_;
 }

@@ -1,7 +1,9 @@
 // The diagnostics of DriverNode: the link, the loop, and for each finger why it feels no force.
 #include <string>
 
+#include "haptex/nodes/driver_announcement.h"
 #include "haptex/nodes/driver_node.h"
+#include "haptex/nodes/hand_markers.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
@@ -11,6 +13,7 @@ using diagnostic_msgs::DiagnosticStatus;
 using exoskeleton::kFingers;
 using exoskeleton::LinkStatistics;
 using exoskeleton::LinkStatus;
+using exoskeleton::Mode;
 using exoskeleton::NoForceReason;
 using exoskeleton::Time;
 
@@ -88,6 +91,9 @@ void DriverNode::diagnoseLoop(Status& status) {
   status.add("position to force p99.9 (ms)", milliseconds(path.quantile(0.999)));
   status.add("position to force largest (ms)", milliseconds(path.largest));
   status.add("states that were answered by a force", path.total());
+  status.add("commanders that have died", commander_deaths_.load());
+  status.add("auto_recover", auto_recover_ ? "true" : "false");
+  status.add("times it was enabled by auto_recover", recoveries_.load());
 }
 
 std::string DriverNode::whyNoForce(Finger finger, const DriverSnapshot& snapshot) {
@@ -101,7 +107,7 @@ std::string DriverNode::whyNoForce(Finger finger, const DriverSnapshot& snapshot
       }
       return "no device: " + whyNoDevice(snapshot);
     case NoForceReason::kFault:
-      return "fault: " + snapshot.fault.str() + "; then call exoskeleton/clear_fault";
+      return announcement(snapshot.operating_state, snapshot.fault.str());
     case NoForceReason::kNoCommand: {
       FingerTopics& topics = fingers_[finger];
       const std::lock_guard<std::mutex> lock(topics.mutex);
@@ -114,6 +120,21 @@ std::string DriverNode::whyNoForce(Finger finger, const DriverSnapshot& snapshot
     default:
       return describe(reason);
   }
+}
+
+/// Also where there are no states, or no calibration.
+void DriverNode::publishStateMarker(const DriverSnapshot& snapshot) {
+  if (marker_publisher_.getNumSubscribers() == 0) return;
+  std::string text = announcement(snapshot.operating_state, snapshot.fault.str());
+  for (const Finger finger : kFingers) {
+    const NoForceReason reason = snapshot.fingers[finger].no_force;
+    // The state says it of all of them.
+    if (reason == NoForceReason::kFault || snapshot.operating_state.mode != Mode::kEnabled)
+      continue;
+    const std::string why = whyNoForce(finger, snapshot);
+    if (!why.empty()) text += std::string("\nno force on the ") + name(finger) + ": " + why;
+  }
+  marker_publisher_.publish(stateMarker(text, snapshot.operating_state.mode, ros::Time::now()));
 }
 
 void DriverNode::diagnoseForce(Finger finger, Status& status) {

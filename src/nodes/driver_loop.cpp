@@ -79,12 +79,16 @@ void DriverLoop::receive(Time now) {
   ++snapshot_.states;
 }
 
-void DriverLoop::takeCommands() {
+void DriverLoop::takeCommands(Time now) {
   for (const Finger finger : kFingers) {
-    TripleBuffer<StampedCommand>& newest = commands_[finger].newest;
-    if (!newest.update()) continue;
-    controller_.command(finger, newest.value().command, newest.value().arrival);
-    answered_[finger] = newest.value().answers;
+    CommandBox& box = commands_[finger];
+    const bool died = box.died.exchange(false);  // first: a command after it is another one's
+    if (box.newest.update()) {
+      const StampedCommand& newest = box.newest.value();
+      controller_.command(finger, newest.command, newest.arrival);
+      answered_[finger] = newest.answers;
+    }
+    if (died) controller_.commanderDied(finger, now);
   }
 }
 
@@ -102,15 +106,15 @@ unsigned DriverLoop::answersDue() const {
 
 /// @returns when it is now
 Time DriverLoop::awaitAnswers(Time now) {
-  takeCommands();
+  takeCommands(now);
   const Time end = snapshot_.state_time + kAnswerPatience;
   bool in_time = true;
   for (unsigned due = answersDue(); due != 0 && in_time; due = answersDue()) {
     answers_due_ = due;
-    takeCommands();  // what came before the bits were there
+    takeCommands(now);  // what came before the bits were there
     if ((due = answersDue()) == 0) break;
     in_time = answered_all_.waitUntil(end);
-    takeCommands();
+    takeCommands(now);
   }
   answers_due_ = 0;
   return std::max(now, steadyNow());
@@ -173,6 +177,7 @@ void DriverLoop::show() {
   for (const Finger finger : kFingers) snapshot_.fingers[finger] = controller_.measured(finger);
   snapshot_.operating_state = controller_.operatingState();
   snapshot_.fault = FixedText(controller_.fault());
+  snapshot_.fault_is_a_stall = controller_.faultIsAStall();
   snapshot_.link = link_.status();
   snapshot_.link_statistics = link_.statistics();
   snapshot_.identity = link_.identity();

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/nodes/driver_announcement.h"
 #include "haptex/nodes/driver_messages.h"
 #include "haptex/nodes/hand_markers.h"
 #include "haptex/nodes/node_parameters.h"
@@ -51,13 +52,23 @@ Time timeOf(const ros::Time& stamp, const ros::Time& now, Time steady_now) {
   return age >= Time{0} && age <= kNewestStamp ? steady_now - age : Time{-1};
 }
 
+void announce(const DriverSnapshot& snapshot) {
+  const std::string text = announcement(snapshot.operating_state, snapshot.fault.str());
+  if (snapshot.operating_state.mode == exoskeleton::Mode::kFault) {
+    ROS_ERROR("%s", text.c_str());
+  } else {
+    ROS_INFO("%s", text.c_str());
+  }
+}
+
 }  // namespace
 
 DriverNodeParameters DriverNodeParameters::read(const ros::NodeHandle& private_node) {
   const std::string port =
       readText(private_node, "port", "the path of a serial port, for example /dev/ttyUSB0");
   const RobotDescription description = readRobotDescription(private_node);
-  return {port, description.urdf, kinematicsOf(description)};
+  return {port, description.urdf, kinematicsOf(description),
+          readSwitch(private_node, "auto_recover")};
 }
 
 DriverNode::DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
@@ -70,6 +81,7 @@ DriverNode::DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& priva
       loop_kinematics_{{{{parameters.urdf, Finger::kIndex}, {parameters.urdf, Finger::kThumb}}}},
       fingertip_publisher_(node_.advertise<haptex::Fingertips>("exoskeleton/fingertips", 1)),
       kinematics_(std::move(parameters.kinematics)),
+      auto_recover_(parameters.auto_recover),
       loop_(parameters.port, parameters.urdf,
             [this](const DriverSnapshot& snapshot) { publishFingertips(snapshot); }),
       loop_thread_(DriverLoop::kPeriod, [this](Time now) { loop_.tick(now); },
@@ -107,18 +119,22 @@ void DriverNode::advertiseTopics() {
   force_node_.setCallbackQueue(&force_queue_);
   for (const Finger finger : kFingers) {
     FingerTopics& topics = fingers_[finger];
-    topics.pose =
-        node_.advertise<geometry_msgs::PoseStamped>(topic(finger, "measured_cp"), kMeasuredQueue);
+    // On the queue of the forces: who has gone is told after what it had commanded.
+    topics.pose = force_node_.advertise<geometry_msgs::PoseStamped>(
+        topic(finger, "measured_cp"), kMeasuredQueue, ros::SubscriberStatusCallback(),
+        [this](const ros::SingleSubscriberPublisher& subscriber) { subscriberGone(subscriber); });
     topics.twist =
         node_.advertise<geometry_msgs::TwistStamped>(topic(finger, "measured_cv"), kMeasuredQueue);
     topics.wrench =
         node_.advertise<geometry_msgs::WrenchStamped>(topic(finger, "measured_cf"), kMeasuredQueue);
-    const boost::function<void(const haptex::ServoForceConstPtr&)> take =
-        [this, finger](const haptex::ServoForceConstPtr& message) { takeForce(finger, message); };
+    using Event = const ros::MessageEvent<haptex::ServoForce const>&;
+    const boost::function<void(Event)> take = [this, finger](Event event) {
+      takeForce(finger, event);
+    };
     // Only the latest force counts.
-    topics.forces = force_node_.subscribe<haptex::ServoForce>(topic(finger, "servo_cf"), 1, take,
-                                                              ros::VoidConstPtr(),
-                                                              ros::TransportHints().tcpNoDelay());
+    topics.forces = force_node_.subscribe<haptex::ServoForce, Event>(
+        topic(finger, "servo_cf"), 1, take, ros::VoidConstPtr(),
+        ros::TransportHints().tcpNoDelay());
   }
   marker_publisher_ =
       node_.advertise<visualization_msgs::MarkerArray>("exoskeleton/force_markers", 2);
@@ -127,12 +143,31 @@ void DriverNode::advertiseTopics() {
       node_.advertise<haptex::OperatingState>("exoskeleton/operating_state", 1, true);
 }
 
-void DriverNode::takeForce(Finger finger, const haptex::ServoForceConstPtr& message) {
+void DriverNode::subscriberGone(const ros::SingleSubscriberPublisher& subscriber) {
+  const std::string node = subscriber.getSubscriberName();
+  for (const Finger finger : kFingers) {
+    {
+      const std::lock_guard<std::mutex> lock(commanders_mutex_);
+      if (!commanders_.hasDied(finger, node)) continue;
+    }
+    loop_.commanderDied(finger);
+    fingers_[finger].filter.commanderDied(ros::Time::now(), steadyNow());
+    ++commander_deaths_;
+    ROS_WARN("%s, which commanded the %s, has gone: its force goes to zero", node.c_str(),
+             name(finger));
+  }
+}
+
+void DriverNode::takeForce(Finger finger,
+                           const ros::MessageEvent<haptex::ServoForce const>& event) {
+  const haptex::ServoForceConstPtr& message = event.getConstMessage();
   const Time arrival = steadyNow();
   const ros::Time now = ros::Time::now();
   FingerTopics& topics = fingers_[finger];
   if (const auto command = topics.filter.take(*message, now, arrival)) {
     loop_.command(finger, *command, arrival, timeOf(message->measured, now, arrival));
+    const std::lock_guard<std::mutex> lock(commanders_mutex_);
+    commanders_.commanded(finger, event.getPublisherName());
     return;
   }
   const std::string why = topics.filter.explain(*message, now);
@@ -163,6 +198,7 @@ void DriverNode::publish() {
     }
     if (!measured) snapshot = loop_.status();
     publishOperatingState(snapshot);
+    recover(snapshot);
   }
 }
 
@@ -212,6 +248,8 @@ void DriverNode::publishOperatingState(const DriverSnapshot& snapshot) {
   operating_state_due_ = now + kOperatingStatePeriod;
   published_state_ = snapshot.operating_state;
   published_fault_ = snapshot.fault;
+  if (changed) announce(snapshot);
+  publishStateMarker(snapshot);
   operating_state_publisher_.publish(
       operatingStateMessage(snapshot.operating_state, snapshot.fault.str(), ros::Time::now()));
 }

@@ -90,6 +90,7 @@ void Emulator::livePeriod(Time now) {
   const exoskeleton::Bytes received = line_.receive(now);
   if (firmware_) {
     firmware_->receive(received.data, received.size, now);
+    if (!line_.isConnected()) firmware_->hangUp(now);
     line_.send(firmware_->answer(), now);
   }
   stepMechanics(now);

@@ -40,15 +40,6 @@ std::string readPath(const ros::NodeHandle& private_node) {
   return readConfigPath(private_node, "path", kPathDirectory);
 }
 
-bool readSwitch(const ros::NodeHandle& private_node, const std::string& name) {
-  bool value = false;
-  if (private_node.hasParam(name) && !private_node.getParam(name, value)) {
-    throw std::invalid_argument("parameter " + private_node.resolveName(name) +
-                                " is not true or false");
-  }
-  return value;
-}
-
 geometry_msgs::WrenchStamped forceMessage(const Eigen::Vector3d& force, const ros::Time& stamp) {
   geometry_msgs::WrenchStamped message;
   message.header.stamp = stamp;

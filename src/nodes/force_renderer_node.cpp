@@ -289,7 +289,10 @@ void ForceRendererNode::publishMarkers() {
                            proximity_rate_.update(supplier_.status().queries, now),
                            exoskeleton_rate_.update(fingers_[Finger::kIndex].poses, now)};
   if (marker_publisher_.getNumSubscribers() == 0) return;
-  marker_publisher_.publish(markers_.update(loop_.picture(), rates, ros::Time::now()));
+  const ForceLoopStatus status = loop_.status();
+  const exoskeleton::PerFinger<std::string> why{
+      {whySilent(Finger::kIndex, status.news, now), whySilent(Finger::kThumb, status.news, now)}};
+  marker_publisher_.publish(markers_.update(loop_.picture(), rates, ros::Time::now(), why));
   loop_.askForPicture();
 }
 

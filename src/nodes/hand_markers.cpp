@@ -20,6 +20,8 @@ constexpr double kHandSize = 0.1;         // m, of the rings
 constexpr double kSkin = 0.011;           // m, from the centre of a fingertip to outside of its cap
 constexpr double kArrowShaft = 0.0025;    // m, diameter
 constexpr double kArrowHead = 0.006;      // m, diameter
+constexpr double kTextAbove = 0.07;       // m, over the back of the hand
+constexpr double kTextHeight = 0.008;     // m, of a line
 
 Eigen::Vector3f colour(Finger finger) {
   return finger == Finger::kIndex ? Eigen::Vector3f(0.80F, 0.36F, 0.10F)
@@ -97,6 +99,25 @@ visualization_msgs::MarkerArray forceMarkers(
     deleteIfEmpty(marker);
     markers.markers.push_back(marker);
   }
+  return markers;
+}
+
+visualization_msgs::MarkerArray stateMarker(const std::string& text, exoskeleton::Mode mode,
+                                            const ros::Time& stamp) {
+  Marker marker = makeMarker("state", 0, Marker::TEXT_VIEW_FACING);
+  marker.header.frame_id = kHandFrame;
+  marker.header.stamp = stamp;
+  marker.frame_locked = true;
+  marker.pose.position.z = kTextAbove;
+  marker.scale.z = kTextHeight;
+  marker.text = text;
+  const bool fault = mode == exoskeleton::Mode::kFault;
+  const bool enabled = mode == exoskeleton::Mode::kEnabled;
+  marker.color = colourMessage(fault     ? Eigen::Vector3f(0.80F, 0.05F, 0.10F)
+                               : enabled ? Eigen::Vector3f(0.05F, 0.45F, 0.15F)
+                                         : Eigen::Vector3f(0.55F, 0.35F, 0.0F));
+  visualization_msgs::MarkerArray markers;
+  markers.markers.push_back(marker);
   return markers;
 }
 

@@ -23,6 +23,15 @@ double readPositive(const ros::NodeHandle& private_node, const std::string& name
   return value;
 }
 
+bool readSwitch(const ros::NodeHandle& private_node, const std::string& name) {
+  bool value = false;
+  if (private_node.hasParam(name) && !private_node.getParam(name, value)) {
+    throw std::invalid_argument("parameter " + private_node.resolveName(name) +
+                                " is not true or false");
+  }
+  return value;
+}
+
 std::string readText(const ros::NodeHandle& private_node, const std::string& name,
                      const std::string& allowed) {
   std::string text;

@@ -1,5 +1,6 @@
 #include "haptex/nodes/point_load_messages.h"
 
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +15,19 @@ void requireLength(const char* name, std::size_t length, std::size_t points, std
   throw std::invalid_argument(std::string(name) + " has " + std::to_string(length) +
                               " elements and triangles " + std::to_string(points) +
                               ": allowed is " + std::to_string(each) + " for each triangle");
+}
+
+/// Before anything is computed of the numbers: squares of 1e308 are not finite.
+template <typename Numbers>
+void requireWithin(const char* name, std::size_t point, const Numbers& numbers, double largest,
+                   const char* unit) {
+  if (!numbers.allFinite()) return;  // which checkedLoad() says
+  if (numbers.cwiseAbs().maxCoeff() <= largest && numbers.norm() <= largest) return;
+  std::ostringstream message;
+  message << name << " of point " << point << " = ("
+          << numbers.template reshaped<Eigen::RowMajor>().transpose()
+          << "): allowed are numbers of a norm up to " << largest << ' ' << unit;
+  throw std::invalid_argument(message.str());
 }
 
 }  // namespace
@@ -48,6 +62,10 @@ std::vector<cloth::PointLoad> pointLoads(const haptex::ContactForces& message,
     load.force = {force.x, force.y, force.z};
     load.stiffness =
         Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&message.stiffness[9 * i]);
+    requireWithin("force", i, load.force, kLargestPointForce, "N");
+    requireWithin("stiffness", i, load.stiffness, kLargestPointStiffness, "N/m");
+    requireWithin("position", i, load.position, kFarthestPoint, "m");
+    requireWithin("weights", i, load.weights, kLargestWeights, "");
     loads.push_back(cloth::checkedLoad(load, i, triangle_count));
   }
   return loads;

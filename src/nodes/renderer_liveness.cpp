@@ -126,9 +126,11 @@ void RendererLiveness::update(const RendererNews& news, Time now) {
       since = now;
     }
     const bool settles = all_live && gains_[finger] == 0.0 && now - *since < kSettle;
-    const double rise = settles ? 0.0 : share(elapsed, kRise);
+    const double rise = settles ? 0.0 : share(elapsed, from_zero_[finger] ? kRise : kResume);
     gains_[finger] =
         std::clamp(gains_[finger] + (all_live ? rise : -share(elapsed, kFall)), 0.0, 1.0);
+    if (gains_[finger] == 0.0) from_zero_[finger] = true;
+    if (gains_[finger] == 1.0) from_zero_[finger] = false;
   }
   for (std::size_t i = 0; i < kRendererSourceCount; ++i) silences_[i] += fell_silent[i] ? 1 : 0;
   last_update_ = now;
@@ -137,6 +139,7 @@ void RendererLiveness::update(const RendererNews& news, Time now) {
 void RendererLiveness::restart() {
   for (const Finger finger : exoskeleton::kFingers) {
     gains_[finger] = 0.0;
+    from_zero_[finger] = true;
     alive_since_[finger].reset();
   }
 }

@@ -2,11 +2,13 @@
 
 #include <sstream>
 
+#include "haptex/exoskeleton/command_check.h"
 #include "haptex/nodes/driver_messages.h"
 
 namespace haptex::nodes {
 namespace {
 
+using exoskeleton::CommandFlaw;
 using exoskeleton::ForceCommand;
 using exoskeleton::Time;
 
@@ -25,23 +27,6 @@ ForceCommand commandOf(const haptex::ServoForce& message) {
   return command;
 }
 
-/// Name and value of the first field that is not finite.
-std::string notFinite(const ForceCommand& command) {
-  std::ostringstream text;
-  if (!command.force.allFinite()) {
-    text << "force = (" << command.force.transpose();
-  } else if (!command.position.allFinite()) {
-    text << "position = (" << command.position.transpose();
-  } else if (!command.velocity.allFinite()) {
-    text << "velocity = (" << command.velocity.transpose();
-  } else if (!command.stiffness.allFinite()) {
-    text << "stiffness = (" << command.stiffness.reshaped<Eigen::RowMajor>().transpose();
-  } else {
-    text << "damping = (" << command.damping.reshaped<Eigen::RowMajor>().transpose();
-  }
-  return text.str() + ")";
-}
-
 /// ns. (ros::Duration would throw for stamps beyond 68 years.)
 std::int64_t difference(const ros::Time& later, const ros::Time& earlier) {
   return static_cast<std::int64_t>(later.toNSec()) - static_cast<std::int64_t>(earlier.toNSec());
@@ -57,6 +42,10 @@ const char* name(ServoForceFlaw flaw) {
       return "another frame";
     case ServoForceFlaw::kNotFinite:
       return "not finite";
+    case ServoForceFlaw::kTooLarge:
+      return "too large";
+    case ServoForceFlaw::kActive:
+      return "stiffness or damping not positive semidefinite";
     case ServoForceFlaw::kTooOld:
       return "too old";
     case ServoForceFlaw::kTooNew:
@@ -85,7 +74,16 @@ std::optional<ServoForceFlaw> ServoForceFilter::findFlaw(const haptex::ServoForc
                                                          const ros::Time& now,
                                                          Time steady_now) const {
   if (message.header.frame_id != kHandFrame) return ServoForceFlaw::kFrame;
-  if (!isFinite(commandOf(message))) return ServoForceFlaw::kNotFinite;
+  switch (exoskeleton::findFlaw(commandOf(message))) {
+    case CommandFlaw::kNotFinite:
+      return ServoForceFlaw::kNotFinite;
+    case CommandFlaw::kTooLarge:
+      return ServoForceFlaw::kTooLarge;
+    case CommandFlaw::kActive:
+      return ServoForceFlaw::kActive;
+    case CommandFlaw::kNone:
+      break;
+  }
   const Time age{difference(now, message.header.stamp)};
   if (age > kStampTolerance) return ServoForceFlaw::kTooOld;
   if (age < -kStampTolerance) return ServoForceFlaw::kTooNew;
@@ -106,7 +104,9 @@ std::string ServoForceFilter::explain(const haptex::ServoForce& message,
            << "'";
       break;
     case ServoForceFlaw::kNotFinite:
-      text << notFinite(commandOf(message)) << ": allowed are finite numbers";
+    case ServoForceFlaw::kTooLarge:
+    case ServoForceFlaw::kActive:
+      text << exoskeleton::explainFlaw(commandOf(message));
       break;
     case ServoForceFlaw::kTooOld:
     case ServoForceFlaw::kTooNew:

@@ -120,10 +120,10 @@ TEST(DeviceController, DisablingEndsHoming) {
   EXPECT_EQ(reason(device), NoForceReason::kNotHomed);
 }
 
-TEST(DeviceController, AForceEndsSixteenMillisecondsAfterTheLastCommand) {
+TEST(DeviceController, AForceIsHeldForTwelveMillisecondsAndEndsEighteenAfterTheLastCommand) {
   ControlledDevice device = rendering(3.0 * kDown);
   for (const Finger finger : kFingers) device.wanted[finger].reset();
-  device.run(0.010);
+  device.run(0.012);
   EXPECT_NEAR(desired(device), 3.0, 1e-6);
   device.run(0.006);
   EXPECT_EQ(desired(device), 0.0);
@@ -137,6 +137,21 @@ TEST(DeviceController, AForceEndsSixteenMillisecondsAfterTheLastCommand) {
   for (const Finger finger : kFingers) device.want(finger, 3.0 * kDown);
   device.run(0.5);
   EXPECT_EQ(reason(device), NoForceReason::kNone);
+  EXPECT_NEAR(desired(device), 3.0, 1e-6);
+}
+
+TEST(DeviceController, TheForceOfADeadCommanderEndsAtOnceAndThatOfTheOtherFingerStays) {
+  ControlledDevice device = rendering(3.0 * kDown);
+  device.wanted[Finger::kIndex].reset();
+  device.controller.commanderDied(Finger::kIndex, device.now);
+  device.run(0.003);
+  EXPECT_EQ(desired(device), 0.0);
+  EXPECT_NEAR(desired(device, Finger::kThumb), 3.0, 1e-6);
+  device.run(0.003);  // for the correction, and a command on its way
+  EXPECT_TRUE(device.obeyed.torques[Finger::kIndex].isZero(0.0));
+  EXPECT_EQ(reason(device), NoForceReason::kNoCommand);
+  device.want(Finger::kIndex, 3.0 * kDown);  // another one commands
+  device.run(0.5);
   EXPECT_NEAR(desired(device), 3.0, 1e-6);
 }
 
@@ -154,7 +169,7 @@ TEST(DeviceController, CommandsThatAreNotFiniteAreDroppedAndCounted) {
   EXPECT_EQ(device.controller.measured(Finger::kThumb).safety.not_finite, 0u);
   // Nothing but bad commands is the same as none.
   device.wanted[Finger::kIndex] = bad;
-  device.run(0.016);
+  device.run(0.018);
   EXPECT_EQ(desired(device), 0.0);
   EXPECT_EQ(reason(device), NoForceReason::kNoCommand);
   EXPECT_NEAR(desired(device, Finger::kThumb), 2.0, 1e-6);

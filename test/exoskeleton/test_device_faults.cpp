@@ -13,13 +13,13 @@ TEST(DeviceFaults, WithoutStatesItHoldsTheMeasurementAndThenFaults) {
   ControlledDevice device = rendering(3.0 * kDown);
   const FingerMeasurement before = device.controller.measured(Finger::kIndex);
   device.states_arrive = false;
-  device.run(0.003);
+  device.run(0.013);
   EXPECT_EQ(device.controller.measured(Finger::kIndex).pose.matrix(), before.pose.matrix());
   EXPECT_NEAR(desired(device), 3.0, 1e-6);
-  device.run(0.007);
+  device.run(0.005);
   EXPECT_EQ(device.controller.operatingState().mode, Mode::kEnabled);
   EXPECT_EQ(desired(device), 0.0) << "the device may not get the commands either";
-  device.run(0.040);
+  device.run(0.032);
   EXPECT_EQ(device.controller.operatingState().mode, Mode::kEnabled) << "silent, but not lost";
   device.run(0.001);
   EXPECT_EQ(device.controller.operatingState().mode, Mode::kFault);
@@ -80,9 +80,9 @@ TEST(DeviceFaults, LosingTheDeviceWhileHomingIsAFault) {
 TEST(DeviceFaults, CommandsThatDoNotReachTheDeviceEndTheForce) {
   ControlledDevice device = rendering(3.0 * kDown);
   device.commands_arrive = false;
-  device.run(0.004);
+  device.run(0.013);
   EXPECT_NEAR(desired(device), 3.0, 1e-6);
-  device.run(0.006);
+  device.run(0.007);
   EXPECT_EQ(desired(device), 0.0);
   EXPECT_EQ(reason(device), NoForceReason::kNoDevice);
   EXPECT_EQ(device.controller.operatingState().mode, Mode::kEnabled);

@@ -52,6 +52,17 @@ TEST(SmoothCommand, AStepBecomesTheStepResponseOfTwoFilters) {
   EXPECT_NEAR(force.x(), 2.0 - 2.0 * stepResponse(1), 1e-5);
 }
 
+TEST(SmoothCommand, GoesOnFromWhatWasRendered) {
+  SmoothCommand smooth;
+  smooth.take(constant({2.0, 0.0, 0.0}), kZero, kZero);
+  smooth.tick(kZero, kZero);
+  smooth.takeFrom({0.5, 0.0, 0.0}, constant({2.0, 1.0, 0.0}), kZero, kZero);
+  for (int i = 1; i <= 60; ++i) {
+    const Vector3d expected = Vector3d(0.5, 0.0, 0.0) + stepResponse(i) * Vector3d(1.5, 1.0, 0.0);
+    EXPECT_LT((smooth.tick(kZero, kZero) - expected).norm(), 1e-12) << i;
+  }
+}
+
 TEST(SmoothCommand, TheForceOfAPlaceIsNotLate) {
   SmoothCommand smooth;
   const Vector3d rest(0.1, 0.0, 0.0);

@@ -38,8 +38,9 @@ def difference(a, b):
     return norm(Vector3(a.x - b.x, a.y - b.y, a.z - b.z))
 
 
-def command(force=Vector3(0.0, 0.0, 0.0), age=0.0, frame='hand_base'):
+def command(force=Vector3(0.0, 0.0, 0.0), age=0.0, frame='hand_base', stiffness=0.0, damping=0.0):
     message = ServoForce(force=force)
+    message.stiffness[0], message.damping[4] = stiffness, damping
     message.header.frame_id = frame
     message.header.stamp = rospy.Time.now() - rospy.Duration(age)
     return message
@@ -134,11 +135,11 @@ class Exoskeleton(NodeTest):
 
         self.eventually(is_ready, 'homed and enabled', 3 * WAIT)
 
-    def hold(self, force=HELD):
+    def hold(self, force=HELD, *options):
         """Another process that commands the force."""
         script = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'hold_force.py')
         process = subprocess.Popen([sys.executable, script, 'index', str(force.x), str(force.y),
-                                    str(force.z)])
+                                    str(force.z), *options])
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
         return process
@@ -211,6 +212,32 @@ class Exoskeleton(NodeTest):
         self.await_no_force(killed, 'commander', [self.measured])
         self.assertGreater(int(self.diagnostics.values(FORCE)['watchdog trips']), 0)
 
+    def test_knows_at_once_that_a_commander_that_listens_was_killed(self):
+        key = 'commanders that have died'
+        before = int(self.diagnostics.values(LOOP)[key])
+        commander = self.hold(HELD, 'listen')
+        self.await_held()
+        killed = rospy.Time.now()
+        commander.send_signal(signal.SIGKILL)
+        self.await_no_force(killed, 'commander that listens', [self.measured])
+        self.eventually(lambda: int(self.diagnostics.values(LOOP)[key]) == before + 1, 'its death')
+
+    def test_a_driver_that_stood_still_does_not_say_that_the_device_was_switched_off(self):
+        self.hold()
+        self.await_held()
+        driver = self.process('exoskeleton_driver')
+        os.kill(driver, signal.SIGSTOP)
+        self.addCleanup(os.kill, driver, signal.SIGCONT)
+        self.eventually(lambda: norm(self.driven.force) < NO_FORCE, 'motors that are off', 1.0)
+        time.sleep(4.0)  # longer than the pseudo-terminal holds states
+        self.state.last = None
+        os.kill(driver, signal.SIGCONT)
+        self.eventually(lambda: self.state.last, 'a state')
+        time.sleep(0.5)
+        self.assertNotIn('switched off', self.state.last.fault)
+        self.assertTrue(self.state.last.is_homed)
+        self.await_held()
+
     def test_no_force_after_the_driver_was_killed_and_works_when_it_is_back(self):
         self.hold()
         self.await_held()
@@ -229,6 +256,10 @@ class Exoskeleton(NodeTest):
         bad = {'not finite': lambda: [command(Vector3(0.0, 0.0, number))
                                       for number in (NAN, INFINITY, -INFINITY)],
                'another frame': lambda: [command(HELD, frame='index_tip'), command(HELD, frame='')],
+               'too large': lambda: [command(Vector3(1e308, 0.0, 0.0)),
+                                     command(stiffness=-1e6), command(damping=1e300)],
+               'stiffness or damping not positive semidefinite':
+                   lambda: [command(stiffness=-1e3), command(damping=-1.0)],
                'too old': lambda: [command(HELD, age=1.0)],
                'from the future': lambda: [command(HELD, age=-1.0)],
                'out of order': lambda: [command(), command(HELD, age=0.01)]}

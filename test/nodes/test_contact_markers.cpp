@@ -85,9 +85,10 @@ TEST(ContactMarkers, DeleteWhatThereIsNothingOf) {
 
 TEST(ContactMarkers, NameTheRateOfEveryLoopAndTheForceOfEveryFinger) {
   LoopRates rates{999.7, 80.2, 160.0, std::nan("")};
-  const std::string text = rateText(rates, {{0.0589, 1.5}});
-  for (const std::string part : {"force loop 1000 Hz", "cloth 80 Hz", "proximity 160 Hz",
-                                 "exoskeleton ...", "index 0.059 N", "thumb 1.500 N"}) {
+  const std::string text = rateText(rates, {{0.0589, 1.5}}, {{"", "cloth/heartbeat: nothing"}});
+  for (const std::string part :
+       {"force loop 1000 Hz", "cloth 80 Hz", "proximity 160 Hz", "exoskeleton ...",
+        "index 0.059 N\n", "thumb 1.500 N (no force: cloth/heartbeat: nothing)"}) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   }
 }

@@ -79,7 +79,10 @@ class ADriverLoop : public ::testing::Test {
   const TemporaryDirectory directory_;
   const std::string port_ = directory_.path() + "/exoskeleton";
   DriverLoop loop_{port_, exoskeleton::shippedUrdf()};
-  PeriodicThread thread_{DriverLoop::kPeriod, [this](Time now) { loop_.tick(now); }};
+  std::atomic<bool> frozen_{false};
+  PeriodicThread thread_{DriverLoop::kPeriod, [this](Time now) {
+                           if (!frozen_) loop_.tick(now);
+                         }};
 };
 
 TEST_F(ADriverLoop, NamesAPortThatIsNotThere) {
@@ -141,6 +144,36 @@ TEST_F(ADriverLoop, RendersTheCommandedForceAndNoneAfterTheLastCommand) {
            now.fingers[Finger::kIndex].force.norm() < 0.3;
   }));
   EXPECT_GE(loop_.status().fingers[Finger::kIndex].safety.watchdog_trips, 1u);
+}
+
+TEST_F(ADriverLoop, EndsTheForceOfADeadCommanderSoonerThanThatOfASilentOne) {
+  const LivingDevice device(port_);
+  ASSERT_TRUE(connects());
+  ASSERT_TRUE(feelsThreeNewtons());
+  loop_.command(Finger::kIndex, threeNewtons(), steadyNow() + 1h);  // the watchdog never ends it
+  loop_.commanderDied(Finger::kIndex);
+  ASSERT_TRUE(eventually([](const DriverSnapshot& now) {
+    return now.fingers[Finger::kIndex].desired_force.norm() == 0.0;
+  }));
+  EXPECT_EQ(loop_.status().fingers[Finger::kIndex].no_force, NoForceReason::kNoCommand);
+  EXPECT_TRUE(feelsThreeNewtons()) << "of another commander";
+}
+
+TEST_F(ADriverLoop, GoesOnWithoutAFaultAfterItStoodStillForLong) {
+  const LivingDevice device(port_);
+  ASSERT_TRUE(connects());
+  ASSERT_TRUE(feelsThreeNewtons());
+  // Longer than the pseudo-terminal's buffers hold states: the driver reads old ones first, and
+  // then those of 2 s later.
+  frozen_ = true;
+  std::this_thread::sleep_for(3500ms);
+  const std::uint64_t states = loop_.status().states;
+  frozen_ = false;
+  ASSERT_TRUE(eventually([&](const DriverSnapshot& now) { return now.states > states + 500; }));
+  const DriverSnapshot now = loop_.status();
+  EXPECT_EQ(now.fault.str().find("switched off"), std::string::npos) << now.fault.str();
+  EXPECT_TRUE(now.operating_state.is_homed);
+  EXPECT_TRUE(feelsThreeNewtons());
 }
 
 TEST_F(ADriverLoop, LatchesAFaultWhenThePortVanishesAndWorksAgainWhenItIsBack) {

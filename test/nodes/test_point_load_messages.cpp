@@ -75,6 +75,15 @@ TEST(PointLoadMessages, AreRefusedForWhatIsWrongWithThem) {
   expectRefused([](Message& m) { m.barycentric[0] = 0.3; }, "the weights sum to 1.1");
   expectRefused([](Message& m) { m.stiffness[1] = 2.5; }, "differs from its transpose");
   expectRefused([](Message& m) { m.stiffness[0] = -1.0; }, "positive semidefinite");
+  expectRefused(
+      [](Message& m) { m.forces[1].y = -1e308; },
+      "force of point 1 = (      0 -1e+308   -0.02): allowed are numbers of a norm up to 1000");
+  expectRefused([](Message& m) { m.forces[0].y = 1001.0; }, "up to 1000 N");
+  expectRefused([](Message& m) { m.stiffness[0] = 1e308; }, "stiffness of point 0");
+  expectRefused([](Message& m) { m.stiffness[0] = -1e6; }, "up to 100000 N/m");
+  expectRefused([](Message& m) { m.positions[1].x = 1e300; }, "position of point 1");
+  expectRefused([](Message& m) { m.barycentric = {1e9, -1e9, 1.0, 1.0, 0.0, 0.0}; },
+                "weights of point 0");
 }
 
 TEST(PointLoadMessages, WhatIsAcceptedTheClothAccepts) {

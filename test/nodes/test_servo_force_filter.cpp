@@ -75,23 +75,42 @@ TEST_F(AServoForceFilter, TakesAllOfACommand) {
   message.velocity.y = 0.02;
   message.velocity.z = 0.03;
   for (std::size_t i = 0; i < 9; ++i) {
-    message.stiffness[i] = 100.0 + static_cast<double>(i);
-    message.damping[i] = 10.0 + static_cast<double>(i);
+    // As symmetric as rounding leaves it, but every number another one.
+    message.stiffness[i] = (i % 4 == 0 ? 1000.0 : 0.0) + 1e-4 * static_cast<double>(i);
+    message.damping[i] = (i % 4 == 0 ? 100.0 : 0.0) + 1e-5 * static_cast<double>(i);
   }
   const auto command = filter_.take(message, clocks_.ros, clocks_.steady);
   ASSERT_TRUE(command);
   EXPECT_EQ(command->force, Eigen::Vector3d(1.0, 2.0, 3.0));
   EXPECT_EQ(command->position, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(command->velocity, Eigen::Vector3d(0.01, 0.02, 0.03));
-  EXPECT_EQ(command->stiffness.row(1), Eigen::RowVector3d(103.0, 104.0, 105.0));  // row-major
-  EXPECT_EQ(command->damping.row(2), Eigen::RowVector3d(16.0, 17.0, 18.0));
+  EXPECT_EQ(command->stiffness.row(1), Eigen::RowVector3d(3e-4, 1000.0 + 4e-4, 5e-4));  // row-major
+  EXPECT_EQ(command->damping.row(2), Eigen::RowVector3d(6e-5, 7e-5, 100.0 + 8e-5));
   EXPECT_EQ(filter_.taken(), 1u);
 }
 
-TEST_F(AServoForceFilter, TakesStiffnessThatIsIndefiniteOrNotSymmetric) {
+TEST_F(AServoForceFilter, DropsNumbersBeyondTheirBounds) {
   haptex::ServoForce message = messageAt(clocks_.ros);
-  message.stiffness = {-100.0, 5.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 0.0};
-  EXPECT_TRUE(takes(message));
+  message.force.y = 1e308;
+  expectDropped(message, ServoForceFlaw::kTooLarge, {"force = ", "1e+308", "up to 1000 N"});
+  message = messageAt(clocks_.ros);
+  message.stiffness[4] = -1e6;
+  expectDropped(message, ServoForceFlaw::kTooLarge, {"stiffness = ", "-1e+06", "up to 100000 N/m"});
+  message = messageAt(clocks_.ros);
+  message.damping[8] = 1e4;
+  expectDropped(message, ServoForceFlaw::kTooLarge, {"damping = ", "10000", "up to 1000 N s/m"});
+}
+
+TEST_F(AServoForceFilter, DropsStiffnessAndDampingThatGiveEnergy) {
+  haptex::ServoForce message = messageAt(clocks_.ros);
+  message.stiffness = {-100.0, 0.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 0.0};
+  expectDropped(message, ServoForceFlaw::kActive,
+                {"stiffness = ", "-100", "positive semidefinite"});
+  message.stiffness = {100.0, 5.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 0.0};
+  expectDropped(message, ServoForceFlaw::kActive, {"stiffness = ", "differs from its transpose"});
+  message = messageAt(clocks_.ros);
+  message.damping[0] = -1.0;
+  expectDropped(message, ServoForceFlaw::kActive, {"damping = ", "has the eigenvalue -1 N s/m"});
 }
 
 TEST_F(AServoForceFilter, DropsOtherFrames) {

@@ -87,8 +87,16 @@ class ExoskeletonLoop {
 
   void run(exoskeleton::Time duration, const Observer& observer = {});
 
+  /// The commander dies, and its connection to the driver with it: the driver knows in its next
+  /// tick. The driver dies, and the line with it.
   void killCommander() { commander_lives_ = false; }
   void killDriver() { driver_lives_ = false; }
+  /// The commander, or the driver, stands still from now on and then goes on. Connection and line
+  /// stay open: the other end sees nothing but silence.
+  void stallCommander(exoskeleton::Time duration) { commander_stalls_until_ = now_ + duration; }
+  void stallDriver(exoskeleton::Time duration) { driver_stalls_until_ = now_ + duration; }
+  /// No torque from now on.
+  void killMotors() { motors_live_ = false; }
   /// The line is unplugged, or plugged in again. The driver notices, latches a fault, and greets
   /// anew.
   void closePort();
@@ -109,6 +117,7 @@ class ExoskeletonLoop {
   void step();
   void stepDevice();
   void stepCommander();
+  void takeCommands();
   void stepDriver();
 
   exoskeleton::EmulatedDevice device_;
@@ -118,9 +127,18 @@ class ExoskeletonLoop {
   exoskeleton::DeviceController controller_;
   Commander commander_;
   exoskeleton::PerFinger<Eigen::Vector3d> commanded_;
+  struct Arrival {
+    exoskeleton::ForceCommand command;
+    exoskeleton::Time time{0};
+    bool is_new = false;
+  };
+  exoskeleton::PerFinger<Arrival> arrivals_;  // at the driver, the newest of each finger
+  exoskeleton::Time commander_stalls_until_{0}, driver_stalls_until_{0};
   exoskeleton::Time now_{0};
   std::uint64_t steps_ = 0;
   bool commander_lives_ = true, driver_lives_ = true, port_open_ = true;
+  bool motors_live_ = true;
+  bool death_is_known_ = false;  // of the commander, by the driver
 };
 
 }  // namespace haptex::evaluation

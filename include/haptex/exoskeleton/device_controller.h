@@ -6,6 +6,7 @@
 #include <string>
 
 #include "haptex/exoskeleton/clock.h"
+#include "haptex/exoskeleton/device_clock.h"
 #include "haptex/exoskeleton/device_link.h"
 #include "haptex/exoskeleton/device_messages.h"
 #include "haptex/exoskeleton/finger.h"
@@ -20,18 +21,16 @@ namespace haptex::exoskeleton {
 /// Commands that the device does not get are as dangerous as commands that nobody sends: its
 /// firmware takes the motors to zero, and the first command it gets again would make the force
 /// jump. So the desired force goes to zero while kRoundTrip has passed without a state that echoes
-/// a newer command, and returns at the slew limit.
+/// a newer command, and returns at the slew limit. Until then it goes on as if all were well.
 class DeviceController {
  public:
-  /// Without a state for this long the device is silent: forces go to zero and come back with it.
+  /// Without a state for this long there is no device; forces have gone to zero after kRoundTrip.
   static constexpr Time kStateTimeout = DeviceLink::kStateTimeout;
   /// Without a state for this long while the motors are on the device is lost, which is a fault. A
   /// serial adapter may hold back bytes for 16 ms, and a busy machine either process for longer.
   static constexpr Time kLostAfter = std::chrono::milliseconds(50);
   /// Just before the firmware starts to take the motors to zero, DeviceEnd::kRampStart.
-  static constexpr Time kRoundTrip = std::chrono::milliseconds(4);
-  /// The device's clock may be this much ahead of ours before it counts as another one.
-  static constexpr Time kClockTolerance = std::chrono::milliseconds(500);
+  static constexpr Time kRoundTrip = std::chrono::microseconds(13500);
 
   /// @param urdf text of the exoskeleton's URDF
   /// @throws std::invalid_argument as FingerKinematics
@@ -50,6 +49,10 @@ class DeviceController {
   /// for a device that is not ENABLED is ignored.
   void command(Finger finger, const ForceCommand& command, Time now);
 
+  /// The one who commanded this finger is dead, which is known and not guessed from silence: its
+  /// force goes to zero at once, until a command comes.
+  void commanderDied(Finger finger, Time now) { fingers_[finger].commanderDied(now); }
+
   /// Latches a fault from outside, for example of the port. Cut after 250 characters.
   void raiseFault(const std::string& why);
 
@@ -67,11 +70,12 @@ class DeviceController {
   const OperatingState& operatingState() const { return states_.state(); }
   /// What latched the fault, in plain words; empty without one.
   const std::string& fault() const { return states_.fault(); }
+  /// The latched fault is a silence of the device: it may work again without being homed.
+  bool faultIsAStall() const { return device_lost_; }
 
  private:
   void latch(const char* why);
   void accept(const DeviceState& state, Time now);
-  bool isAnotherLife(const DeviceState& state, Time now) const;
   void followEcho(const DeviceState& state, Time now);
   void watchDevice(Time now);
   void home(Time now);
@@ -81,6 +85,7 @@ class DeviceController {
   OperatingStateMachine states_;
   PerFinger<FingerController> fingers_;
   DeviceCommand command_;
+  DeviceClock clock_;
   Time now_{0};
   Time last_state_{0};             // when it came
   Time last_echo_{0};              // when a state last echoed a newer command

@@ -37,7 +37,9 @@ struct LinkStatistics {
 /// Never allocates.
 class DeviceLink {
  public:
-  static constexpr Time kStateTimeout = std::chrono::milliseconds(10);
+  static constexpr Time kStateTimeout = std::chrono::milliseconds(20);
+  /// The rest of a frame that was interrupted for so long is too old to be of use.
+  static constexpr Time kInterrupted = std::chrono::milliseconds(10);
   static constexpr Time kHelloPeriod = std::chrono::milliseconds(100);
 
   /// Takes bytes that have arrived. States that are not newer than the last one are dropped.

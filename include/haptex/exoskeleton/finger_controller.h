@@ -69,6 +69,9 @@ class FingerController {
   /// rendered; if not, the command is forgotten
   void command(const ForceCommand& command, bool obeyed, Time now);
 
+  /// See SafetyChain::commanderDied().
+  void commanderDied(Time now) { chain_.commanderDied(now); }
+
   void startHoming(Time now);
   /// @returns N m; the encoders are calibrated once homing().status() is kDone
   MotorVector home(Time now);

@@ -30,6 +30,9 @@ class PseudoTerminal {
   std::size_t read(std::uint8_t* buffer, std::size_t capacity);
   bool write(Bytes bytes);
 
+  /// Whether somebody has the other end open.
+  bool isConnected() const;
+
   int descriptor() const { return line_.get(); }
 
  private:

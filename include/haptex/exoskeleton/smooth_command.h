@@ -23,6 +23,11 @@ class SmoothCommand {
   /// @param p, v place (m) and velocity (m/s) now
   void take(const ForceCommand& command, const Eigen::Vector3d& p, const Eigen::Vector3d& v);
 
+  /// The same, where this force (N) is rendered now, less than the command before asked for: goes
+  /// on from there.
+  void takeFrom(const Eigen::Vector3d& rendered, const ForceCommand& command,
+                const Eigen::Vector3d& p, const Eigen::Vector3d& v);
+
   /// No force; the next tick() begins from there.
   void rest();
 

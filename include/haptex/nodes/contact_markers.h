@@ -28,21 +28,26 @@ constexpr double kLeastShownForce = 0.001;  // N
 /// to 0.1 N.
 double contactForceFraction(double force);
 
-/// One line per loop, and per finger the force that is rendered.
-std::string rateText(const LoopRates& rates, const exoskeleton::PerFinger<double>& forces);
+/// One line per loop, and per finger the force that is rendered and why it is not the whole of it.
+/// @param why of each finger; empty if nothing stands in the way
+std::string rateText(const LoopRates& rates, const exoskeleton::PerFinger<double>& forces,
+                     const exoskeleton::PerFinger<std::string>& why);
 
 /// Markers in the frame kFixedFrame, in namespaces that rviz can switch off singly:
 /// "contact_points": where the fingertips touch, coloured by contact force.
 /// "contact_force": per finger an arrow of the rendered force, from the skin of the fingertip.
 /// "patch": the small-scale cloth, coloured by contact force, a little off the cloth on both sides.
-/// "rates": text above the origin, where samples hang.
+/// "rates": text with the rates, forces and why there are none, above the origin, where samples
+/// hang.
 class ContactMarkers {
  public:
   ContactMarkers();
 
   /// What there is nothing of is deleted. Valid until the next call.
-  const visualization_msgs::MarkerArray& update(const ContactPicture& picture,
-                                                const LoopRates& rates, const ros::Time& stamp);
+  /// @param why as rateText()
+  const visualization_msgs::MarkerArray& update(
+      const ContactPicture& picture, const LoopRates& rates, const ros::Time& stamp,
+      const exoskeleton::PerFinger<std::string>& why = {});
 
  private:
   void updatePoints(const ContactPicture& picture);

@@ -41,7 +41,8 @@ struct DriverSnapshot {
   exoskeleton::Time state_time{0};  ///< when the newest state of the device was received
   exoskeleton::PerFinger<exoskeleton::FingerMeasurement> fingers;
   exoskeleton::OperatingState operating_state;
-  FixedText fault;  ///< what latched the fault; empty without one
+  FixedText fault;                ///< what latched the fault; empty without one
+  bool fault_is_a_stall = false;  ///< the device was silent for a moment
   exoskeleton::LinkStatus link = exoskeleton::LinkStatus::kConnecting;
   exoskeleton::LinkStatistics link_statistics;
   exoskeleton::Identity identity;
@@ -94,6 +95,10 @@ class DriverLoop {
   /// state that was answered, with kLine.
   const DurationHistogram& path() const { return path_; }
 
+  /// By any thread: the one who commanded this finger is dead, see DeviceController. A command that
+  /// came before is older.
+  void commanderDied(exoskeleton::Finger finger) { commands_[finger].died = true; }
+
   /// By any thread: asks between two ticks. See RequestBox::ask(). After it status() shows what it
   /// led to.
   exoskeleton::Refusal ask(DriverRequest request) { return requests_.ask(request); }
@@ -123,12 +128,13 @@ class DriverLoop {
   struct CommandBox {
     std::mutex writers;  // guards writing; never taken by the loop
     TripleBuffer<StampedCommand> newest;
+    std::atomic<bool> died{false};  // the commander has, after the newest
   };
 
   void takePort();
   void receiveBytes(Time now);
   void receive(Time now);
-  void takeCommands();
+  void takeCommands(Time now);
   unsigned answersDue() const;
   Time awaitAnswers(Time now);
   void measurePath();

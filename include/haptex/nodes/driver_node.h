@@ -13,7 +13,9 @@
 #include <thread>
 #include <vector>
 
+#include "haptex/exoskeleton/auto_recovery.h"
 #include "haptex/exoskeleton/finger_kinematics.h"
+#include "haptex/nodes/commander_watch.h"
 #include "haptex/nodes/driver_loop.h"
 #include "haptex/nodes/immediate_queue.h"
 #include "haptex/nodes/loop_diagnostics.h"
@@ -28,6 +30,7 @@ struct DriverNodeParameters {
   std::string port;  ///< ~port: path of the device's serial port; it need not be there yet
   std::string urdf;  ///< robot_description, of the nearest namespace that has one
   exoskeleton::PerFinger<exoskeleton::FingerKinematics> kinematics;  ///< of the urdf
+  bool auto_recover = false;  ///< ~auto_recover: see exoskeleton::AutoRecovery
 
   /// @throws std::invalid_argument naming the parameter, what is wrong with it and what is allowed
   static DriverNodeParameters read(const ros::NodeHandle& private_node);
@@ -38,8 +41,9 @@ struct DriverNodeParameters {
 /// message for every state of the device, <finger>/measured_cp and measured_cv at 250 Hz,
 /// joint_states at 100 Hz, exoskeleton/force_markers (visualization_msgs/MarkerArray, 25 Hz) and
 /// exoskeleton/operating_state (latched); nothing is measured before the device is homed. Services
-/// exoskeleton/enable, disable, pause, home, clear_fault (std_srvs/Trigger). Nothing is computed
-/// for topics without subscribers.
+/// exoskeleton/enable, disable, pause, home, clear_fault (std_srvs/Trigger). Every change of the
+/// operating state is said on the console, and the state with why there is no force is a text in
+/// the markers. Nothing is computed for topics without subscribers.
 ///
 /// The loop of 1 kHz has a thread of its own, which the device's states wake up. It publishes
 /// exoskeleton/fingertips, which the forces are computed from, and renders the forces that answer
@@ -76,7 +80,8 @@ class DriverNode {
              DriverNodeParameters parameters);
 
   void advertiseTopics();
-  void takeForce(Finger finger, const haptex::ServoForceConstPtr& message);
+  void takeForce(Finger finger, const ros::MessageEvent<haptex::ServoForce const>& event);
+  void subscriberGone(const ros::SingleSubscriberPublisher& subscriber);
 
   void publishFingertips(const DriverSnapshot& snapshot);  // on the loop's thread
 
@@ -85,6 +90,8 @@ class DriverNode {
   void publishMeasured(const DriverSnapshot& snapshot);
   void publishMotion(Finger finger, const DriverSnapshot& snapshot, const ros::Time& stamp);
   void publishOperatingState(const DriverSnapshot& snapshot);
+  void publishStateMarker(const DriverSnapshot& snapshot);
+  void recover(const DriverSnapshot& snapshot);
 
   void advertiseServices();
   bool enable(Trigger::Request& request, Trigger::Response& response);
@@ -103,6 +110,8 @@ class DriverNode {
   ros::NodeHandle node_;
   ros::NodeHandle force_node_;  // whose callbacks run where the messages arrive
   ImmediateQueue force_queue_;
+  std::mutex commanders_mutex_;  // guards the next
+  CommanderWatch commanders_;
 
   // Used by the loop's thread only.
   exoskeleton::PerFinger<exoskeleton::FingerKinematics> loop_kinematics_;
@@ -117,6 +126,10 @@ class DriverNode {
   Time operating_state_due_{0};
   exoskeleton::OperatingState published_state_;
   FixedText published_fault_;
+  const bool auto_recover_;
+  exoskeleton::AutoRecovery recovery_;
+  std::atomic<std::uint64_t> recoveries_{0};  // for diagnostics
+  std::atomic<std::uint64_t> commander_deaths_{0};
 
   DriverLoop loop_;
   PeriodicThread loop_thread_;

@@ -46,6 +46,8 @@ class EmulatedLine {
   void flush(exoskeleton::Time now);
 
   bool open() const { return terminal_ != nullptr; }
+  /// Whether a driver has the port open, as a device sees it by DTR.
+  bool isConnected() const { return open() && terminal_->isConnected(); }
   /// Why the port could not be opened again, empty if nothing went wrong.
   const std::string& trouble() const { return trouble_; }
   const LineStatistics& statistics() const { return statistics_; }

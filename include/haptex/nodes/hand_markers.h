@@ -28,6 +28,11 @@ constexpr double kLeastForce = 0.01;
 visualization_msgs::MarkerArray forceMarkers(
     const exoskeleton::PerFinger<exoskeleton::FingerMeasurement>& measured, const ros::Time& stamp);
 
+/// The operating state and why there is no force, as text above the hand: red for a fault, green if
+/// forces are rendered.
+visualization_msgs::MarkerArray stateMarker(const std::string& text, exoskeleton::Mode mode,
+                                            const ros::Time& stamp);
+
 /// Name of the interactive marker of the hand; that of a fingertip is the name of the finger.
 constexpr char kHandMarker[] = "hand_base";
 

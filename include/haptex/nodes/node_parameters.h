@@ -15,6 +15,10 @@ namespace haptex::nodes {
 ///   finite and > 0
 double readPositive(const ros::NodeHandle& private_node, const std::string& name, double fallback);
 
+/// @returns false if the parameter is not set
+/// @throws std::invalid_argument naming the parameter unless it is true or false
+bool readSwitch(const ros::NodeHandle& private_node, const std::string& name);
+
 /// @param allowed what the parameter may be, for the message
 /// @throws std::invalid_argument naming the parameter and what is allowed unless it is set to a
 ///   string that is not empty

@@ -54,31 +54,33 @@ bool isSilent(RendererSource source, exoskeleton::Finger finger, const RendererN
 /// Which sources of a finger are silent and for how long; empty if none is.
 std::string whySilent(exoskeleton::Finger finger, const RendererNews& news, exoskeleton::Time now);
 
-/// The share of each finger's forces that is rendered: it falls to zero within kFall when a source
-/// of the finger goes silent. When all live (again) it rises, within kRise; from zero it does so
-/// when they have lived for kSettle: a fingertip that appears within the cloth has then displaced
-/// it. Allocates nothing.
+/// The share of each finger's forces that is rendered. While a source is late the forces go on from
+/// what it said last, so that a message that comes 10 ms late is not felt; when it has been silent
+/// for its patience the share falls to zero within kFall. When all live (again) it rises: from zero
+/// within kRise, and when they have lived for kSettle, because a fingertip that appears within the
+/// cloth has then displaced it; where it had not fallen to zero, within kResume. Allocates nothing.
 ///
-/// A source that is killed is noticed 10 ms after its last sign at the latest, the hand base
-/// excepted; with kFall all forces are zero 20 ms after it.
+/// A source that is killed is noticed 15 ms after its last sign at the latest, the hand base
+/// excepted; with kFall and a period all forces are zero 20 ms after it.
 class RendererLiveness {
  public:
   using Time = exoskeleton::Time;
 
-  static constexpr Time kHeartbeatPatience = std::chrono::milliseconds(10);
+  static constexpr Time kHeartbeatPatience = std::chrono::milliseconds(15);
   /// In periods of the states, and not below that of the heartbeat.
   static constexpr int kStatePatience = 3;
   /// For an answer. A connection that breaks is noticed at once; this is for a server that hangs,
   /// which is asked something at least every 6 ms.
-  static constexpr Time kProximityPatience = std::chrono::milliseconds(6);
+  static constexpr Time kProximityPatience = std::chrono::milliseconds(9);
   /// Three periods of a tracker of 60 Hz.
   static constexpr Time kHandBasePatience = std::chrono::milliseconds(50);
-  static constexpr Time kFingertipPatience = std::chrono::milliseconds(10);
-  static constexpr Time kFall = std::chrono::milliseconds(8);
+  static constexpr Time kFingertipPatience = std::chrono::milliseconds(15);
+  static constexpr Time kFall = std::chrono::milliseconds(4);
   static constexpr Time kSettle = std::chrono::milliseconds(15);
   static constexpr Time kRise = std::chrono::milliseconds(35);
+  static constexpr Time kResume = std::chrono::milliseconds(8);
   /// A loop that stood still for longer has not heard what came meanwhile: it counts as this long.
-  static constexpr Time kLongestPeriod = std::chrono::milliseconds(2);
+  static constexpr Time kLongestPeriod = std::chrono::milliseconds(1);
 
   /// Once per period of the loop.
   void update(const RendererNews& news, Time now);
@@ -100,6 +102,7 @@ class RendererLiveness {
  private:
   std::optional<Time> last_update_;
   exoskeleton::PerFinger<double> gains_;
+  exoskeleton::PerFinger<bool> from_zero_{{{true, true}}};  ///< not risen to one since
   exoskeleton::PerFinger<std::optional<Time>> alive_since_;
   exoskeleton::PerFinger<std::array<bool, kRendererSourceCount>> silent_{};
   std::array<std::uint64_t, kRendererSourceCount> silences_{};

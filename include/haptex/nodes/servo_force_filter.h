@@ -20,14 +20,17 @@ namespace haptex::nodes {
 enum class ServoForceFlaw {
   kFrame,      ///< frame_id is not kHandFrame
   kNotFinite,  ///< a number is NaN or infinite
+  kTooLarge,   ///< a number is beyond the bounds of exoskeleton/command_check.h
+  kActive,     ///< stiffness or damping is not symmetric and positive semidefinite
   kTooOld,     ///< stamped more than kStampTolerance before the driver's clock
   kTooNew,     ///< stamped more than kStampTolerance after it
   kOrder,      ///< not stamped later than the last one taken
 };
 
-constexpr std::array<ServoForceFlaw, 5> kServoForceFlaws{
-    ServoForceFlaw::kFrame, ServoForceFlaw::kNotFinite, ServoForceFlaw::kTooOld,
-    ServoForceFlaw::kTooNew, ServoForceFlaw::kOrder};
+constexpr std::array<ServoForceFlaw, 7> kServoForceFlaws{
+    ServoForceFlaw::kFrame,  ServoForceFlaw::kNotFinite, ServoForceFlaw::kTooLarge,
+    ServoForceFlaw::kActive, ServoForceFlaw::kTooOld,    ServoForceFlaw::kTooNew,
+    ServoForceFlaw::kOrder};
 
 /// In two or three words, for diagnostics.
 const char* name(ServoForceFlaw flaw);
@@ -44,6 +47,13 @@ class ServoForceFilter {
   /// @returns the command, or nothing if the message has a flaw: see lastFlaw()
   std::optional<exoskeleton::ForceCommand> take(const haptex::ServoForce& message,
                                                 const ros::Time& now, exoskeleton::Time steady_now);
+
+  /// By the same thread: the commander has died. What it had stamped before and comes only now is
+  /// dropped.
+  void commanderDied(const ros::Time& now, exoskeleton::Time steady_now) {
+    last_stamp_ = now;
+    last_time_ = steady_now;
+  }
 
   /// By the same thread: what was wrong with the last message dropped, and what is allowed. Made
   /// of the arguments of that take().
