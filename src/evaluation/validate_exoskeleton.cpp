@@ -255,7 +255,7 @@ void validateStalls(const std::string& urdf, const exoskeleton::PerFinger<Vector
       const std::string prefix =
           "exoskeleton/stall/" + std::to_string(stalls[i]) + "ms/" + name(part) + "_";
       const bool bridged = stalls[i] <= 15;
-      sink({prefix + "least_felt_share", 1.0, hold.least, 1.0 - hold.least, bridged ? 0.2 : 1.0});
+      if (bridged) sink({prefix + "least_felt_share", 1.0, hold.least, 1.0 - hold.least, 0.2});
       sink({prefix + "below_80_percent_ms", 0.0, hold.below, hold.below, bridged ? 5.0 : 60.0});
       sink({prefix + "jump_N", 0.0, hold.jump, hold.jump, bridged ? 0.3 : 0.6});
       sink({prefix + "overshoot_N", 0.0, hold.overshoot, hold.overshoot, 0.3});

@@ -147,7 +147,7 @@ TEST(DeviceController, TheForceOfADeadCommanderEndsAtOnceAndThatOfTheOtherFinger
   device.run(0.003);
   EXPECT_EQ(desired(device), 0.0);
   EXPECT_NEAR(desired(device, Finger::kThumb), 3.0, 1e-6);
-  device.run(0.003);  // for the correction, and a command on its way
+  device.run(0.005);  // for the correction, and a command on its way
   EXPECT_TRUE(device.obeyed.torques[Finger::kIndex].isZero(0.0));
   EXPECT_EQ(reason(device), NoForceReason::kNoCommand);
   device.want(Finger::kIndex, 3.0 * kDown);  // another one commands

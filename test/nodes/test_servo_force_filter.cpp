@@ -84,8 +84,9 @@ TEST_F(AServoForceFilter, TakesAllOfACommand) {
   EXPECT_EQ(command->force, Eigen::Vector3d(1.0, 2.0, 3.0));
   EXPECT_EQ(command->position, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(command->velocity, Eigen::Vector3d(0.01, 0.02, 0.03));
-  EXPECT_EQ(command->stiffness.row(1), Eigen::RowVector3d(3e-4, 1000.0 + 4e-4, 5e-4));  // row-major
-  EXPECT_EQ(command->damping.row(2), Eigen::RowVector3d(6e-5, 7e-5, 100.0 + 8e-5));
+  const Eigen::RowVector3d stiffness(3e-4, 1000.0 + 4e-4, 5e-4), damping(6e-5, 7e-5, 100.0 + 8e-5);
+  EXPECT_LT((command->stiffness.row(1) - stiffness).norm(), 1e-9);  // row-major
+  EXPECT_LT((command->damping.row(2) - damping).norm(), 1e-9);
   EXPECT_EQ(filter_.taken(), 1u);
 }
 
