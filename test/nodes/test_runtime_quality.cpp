@@ -121,7 +121,7 @@ TEST_F(RuntimeQualityOfAScene, APresetMayBeReducedForABudgetOfAtMostFourFifthsOf
   const haptex::ClothQuality message = quality.message(simulation, ros::Time(1.0));
   EXPECT_EQ(message.quality.name, "fast");
   EXPECT_TRUE(message.quality.cells_as_measured);
-  EXPECT_EQ(message.budget_ms, 10.0);
+  EXPECT_DOUBLE_EQ(message.budget_ms, 10.0);
   EXPECT_EQ(simulation.controller()->size(),
             static_cast<std::size_t>(fast.step.newton_iterations) + 1);
 }

@@ -15,10 +15,11 @@ namespace haptex::nodes {
 struct Candidate {
   cloth::Quality quality;
   int substeps = 1;       ///< in a cycle
-  int cycles = 1;         ///< that are taken as one step, in real time
   double seconds = 0.0;   ///< s, computing time of a cycle when nothing else runs; infinity: this
                           ///< quality cannot compute the cloth
-  bool measured = false;  ///< here; false: seconds follow from what the study measured
+  bool measured = false;  ///< here; false: seconds follow from what the study measured, or from the
+                          ///< number of solves
+  int cycles = 1;         ///< that are taken as one step, in real time
 };
 
 /// As few equal substeps as make none longer than the time step (both s, > 0).
