@@ -17,6 +17,9 @@ constexpr double kTetherTime = 0.005;  // s, to 1/e
 constexpr double kFirstTether = 1e4;   // N/m
 constexpr double kLastTether = 1e-3;   // N/m, then none
 
+// Of respond(): an error of the felt stiffness, which is quadratic in it.
+constexpr double kRelativeResponse = 1e-3;
+
 std::vector<double> tributaryAreas(const cloth::Membrane& membrane, std::size_t particles) {
   std::vector<double> areas(particles, 0.0);
   for (const cloth::MembraneElement& element : membrane.elements()) {
@@ -44,7 +47,7 @@ Patch::Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fab
       membrane_(cut_.mesh, fabric, effects.viscosity, effects.contraction),
       bending_(cut_.mesh, *fabric.bending, effects.bending_settings),
       matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, bending_.pairs()),
-      cholesky_(leadingPattern(matrix_, cut_.free_count)),
+      solver_(leadingPattern(matrix_, cut_.free_count)),
       areas_(tributaryAreas(membrane_, cut_.supports.size())),
       contacts_{SphereContact(law, cut_.free_count), SphereContact(law, cut_.free_count)},
       rhs_(3, cut_.supports.size()),
@@ -158,10 +161,7 @@ bool Patch::advance(const LargeScaleMotion& motion,
                     const PerFingertip<const Fingertip*>& fingertips, double h) {
   assemble(motion, h);
   addContact(fingertips, h);
-  solution_ = rhs_.leftCols(cut_.free_count);
-  if (!cholesky_.factorise(matrix_)) return false;
-  cholesky_.solve(solution_);
-  if (!solution_.allFinite()) return false;
+  if (!solver_.solve(matrix_, rhs_, solution_)) return false;
   for (int i = 0; i < cut_.free_count; ++i) state_.velocities[i] += solution_.col(i);
   for (std::size_t i = 0; i < particleCount(); ++i) {
     state_.positions[i] += h * state_.velocities[i];
@@ -182,11 +182,11 @@ bool Patch::advance(const LargeScaleMotion& motion,
 }
 
 const cloth::BlockVector& Patch::respond(int fingertip, int direction) {
-  solution_.setZero();
+  rhs_.leftCols(cut_.free_count).setZero();
   for (const TouchedParticle& touched : linearised_[fingertip]) {
-    solution_.col(touched.particle) = touched.tangent.col(direction);
+    rhs_.col(touched.particle) = touched.tangent.col(direction);
   }
-  cholesky_.solve(solution_);
+  solver_.solveAgain(matrix_, rhs_, kRelativeResponse, solution_);
   return solution_;
 }
 

@@ -6,20 +6,21 @@
 #include <vector>
 
 #include "haptex/cloth/bending.h"
-#include "haptex/cloth/block_cholesky.h"
 #include "haptex/cloth/block_matrix.h"
 #include "haptex/cloth/cloth.h"
 #include "haptex/cloth/membrane.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
+#include "haptex/contact/patch_solver.h"
 #include "haptex/contact/refined_cut.h"
 #include "haptex/contact/sphere_contact.h"
 
 namespace haptex::contact {
 
 /// Membrane with the fabric's curves, bending, gravity and contact on the triangles of a refined
-/// cut. The rim follows the large-scale cloth; the rest is stepped by linearised backward Euler,
-/// factorised anew in every step, because contacts come and go.
+/// cut. The rim follows the large-scale cloth; the rest is stepped by linearised backward Euler. The
+/// matrix is that of the step; the factor that helps to solve with it is kept over several
+/// (PatchSolver).
 ///
 /// The constructor does all that needs memory; the other functions allocate nothing.
 class Patch {
@@ -81,7 +82,7 @@ class Patch {
   cloth::Membrane membrane_;
   cloth::Bending bending_;
   cloth::SymmetricBlockMatrix matrix_;
-  cloth::BlockCholesky cholesky_;
+  PatchSolver solver_;
   std::vector<double> areas_;   // m^2, per particle
   std::vector<double> masses_;  // kg
 
