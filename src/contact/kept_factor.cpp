@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "haptex/cloth/dense_kernels.h"
 #include "haptex/contact/panel_kernels.h"
@@ -232,37 +233,49 @@ void KeptFactor::solve(const cloth::BlockVector& r, cloth::BlockVector& z) {
   const int n = static_cast<int>(order_.size());
   const double largest = r.leftCols(n).cwiseAbs().maxCoeff();
   const double size = largest > 0.0 ? largest : 1.0;
+  const double by = 1.0 / size;
   for (int k = 0; k < n; ++k) {
-    for (int c = 0; c < 3; ++c) {
-      values_[3 * k + c] = static_cast<float>(r(c, order_[k]) / size);
-    }
+    const double* from = r.data() + std::ptrdiff_t{3} * order_[k];
+    for (int c = 0; c < 3; ++c) values_[3 * k + c] = static_cast<float>(by * from[c]);
   }
-  for (const Node& node : nodes_) {
-    const int width = 3 * node.width;
-    float* const own = values_.data() + 3 * node.first;
-    multiplyPanel(node.leading, width, inverses_.data() + node.offset, own, front_.data());
-    std::copy_n(front_.data(), width, own);
-    const float* change = front_.data() + width;
-    for (int i = 0; i < node.row_count; ++i, change += 3) {
-      float* const to = values_.data() + 3 * rows_[node.first_row + i];
-      for (int c = 0; c < 3; ++c) to[c] += change[c];
-    }
-  }
-  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
-    const int width = 3 * node->width;
-    float* const own = values_.data() + 3 * node->first;
-    std::copy_n(own, width, front_.data());
-    float* below = front_.data() + width;
-    for (int i = 0; i < node->row_count; ++i, below += 3) {
-      std::copy_n(values_.data() + 3 * rows_[node->first_row + i], 3, below);
-    }
-    std::fill(below, front_.data() + node->leading, 0.0f);
-    multiplyTransposed(node->leading, width, inverses_.data() + node->offset, front_.data(), own);
-  }
+  for (const Node& node : nodes_) forward(node);
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) backward(*node);
   const double back = size * scale_;
   for (int k = 0; k < n; ++k) {
-    for (int c = 0; c < 3; ++c) z(c, order_[k]) = back * values_[3 * k + c];
+    double* to = z.data() + std::ptrdiff_t{3} * order_[k];
+    for (int c = 0; c < 3; ++c) to[c] = back * values_[3 * k + c];
   }
+}
+
+void KeptFactor::forward(const Node& node) {
+  const int width = 3 * node.width;
+  float* const own = values_.data() + 3 * node.first;
+  multiplyPanel(node.leading, width, inverses_.data() + node.offset, own, front_.data());
+  const float* change = front_.data();
+  for (int i = 0; i < width; ++i) own[i] = *change++;
+  for (const int *row = rows_.data() + node.first_row, *end = row + node.row_count; row != end;
+       ++row, change += 3) {
+    float* const to = values_.data() + 3 * *row;
+    to[0] += change[0];
+    to[1] += change[1];
+    to[2] += change[2];
+  }
+}
+
+void KeptFactor::backward(const Node& node) {
+  const int width = 3 * node.width;
+  float* const own = values_.data() + 3 * node.first;
+  float* to = front_.data();
+  for (int i = 0; i < width; ++i) *to++ = own[i];
+  for (const int *row = rows_.data() + node.first_row, *end = row + node.row_count; row != end;
+       ++row, to += 3) {
+    const float* const from = values_.data() + 3 * *row;
+    to[0] = from[0];
+    to[1] = from[1];
+    to[2] = from[2];
+  }
+  for (float* const end = front_.data() + node.leading; to != end; ++to) *to = 0.0f;
+  multiplyTransposed(node.leading, width, inverses_.data() + node.offset, front_.data(), own);
 }
 
 }  // namespace haptex::contact

@@ -17,9 +17,6 @@ constexpr double kTetherTime = 0.005;  // s, to 1/e
 constexpr double kFirstTether = 1e4;   // N/m
 constexpr double kLastTether = 1e-3;   // N/m, then none
 
-// Of respond(): an error of the felt stiffness, which is quadratic in it.
-constexpr double kRelativeResponse = 1e-3;
-
 std::vector<double> tributaryAreas(const cloth::Membrane& membrane, std::size_t particles) {
   std::vector<double> areas(particles, 0.0);
   for (const cloth::MembraneElement& element : membrane.elements()) {
@@ -64,6 +61,9 @@ Patch::Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fab
   tethers_.assign(count, 0.0);
   contact_forces_.assign(count, 0.0);
   for (auto& touched : linearised_) touched.reserve(cut_.free_count);
+  for (auto& responses : responses_) {
+    for (cloth::BlockVector& response : responses) response.setZero(3, cut_.free_count);
+  }
 }
 
 Vector3d Patch::placeOnCloth(int particle, const LargeScaleMotion& motion) const {
@@ -84,6 +84,7 @@ void Patch::start(const LargeScaleMotion& motion) {
   for (int f = 0; f < kFingertips; ++f) {
     contacts_[f].clear();
     linearised_[f].clear();
+    for (cloth::BlockVector& response : responses_[f]) response.setZero();
   }
 }
 
@@ -186,8 +187,9 @@ const cloth::BlockVector& Patch::respond(int fingertip, int direction) {
   for (const TouchedParticle& touched : linearised_[fingertip]) {
     rhs_.col(touched.particle) = touched.tangent.col(direction);
   }
-  solver_.solveAgain(matrix_, rhs_, kRelativeResponse, solution_);
-  return solution_;
+  cloth::BlockVector& response = responses_[fingertip][direction];
+  solver_.improve(matrix_, rhs_, response);
+  return response;
 }
 
 }  // namespace haptex::contact

@@ -65,6 +65,8 @@ class KeptFactor {
   void subtractSource(const Source& source, const Node& node);
   bool factorisePanel(const Node& node);
   void invertPanel(const Node& node);
+  void forward(const Node& node);
+  void backward(const Node& node);
 
   std::vector<int> order_, position_;  // as in Elimination
   std::vector<Node> nodes_;

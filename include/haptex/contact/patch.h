@@ -69,7 +69,8 @@ class Patch {
 
   /// A^-1 k e with the matrix A = M - h D - h^2 K of the last step: k are the contact stiffnesses
   /// of the particles at a fingertip, e the unit vector of a direction (0 to 2).
-  /// @returns 3 x freeCount(), until the next call or step
+  /// One iteration better than the last time, if that was for a matrix and contact close to these.
+  /// @returns 3 x freeCount(), until the next call
   const cloth::BlockVector& respond(int fingertip, int direction);
 
  private:
@@ -95,6 +96,7 @@ class Patch {
   std::vector<double> contact_forces_;
   cloth::BlockVector rhs_;
   cloth::BlockVector solution_;
+  PerFingertip<std::array<cloth::BlockVector, 3>> responses_;  // by direction
 };
 
 }  // namespace haptex::contact

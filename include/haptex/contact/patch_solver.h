@@ -15,16 +15,6 @@ namespace haptex::contact {
 /// Nothing allocates after the constructor.
 class PatchSolver {
  public:
-  /// How far an iteration goes. The error e of a solution x has the energy e.A e; for an increment
-  /// of velocities (m/s) and A = M - h D - h^2 K it is in J.
-  struct Tolerance {
-    double relative;  ///< error by solution, roots of the energies
-    double energy;    ///< J; enough, however small the solution is
-  };
-  /// An error of 1e-15 J in the cloth behind a contact of 1000 N/m changes its force by 2e-6 N at
-  /// most.
-  static constexpr Tolerance kOfStep = {1e-4, 1e-15};
-
   /// @param pattern of the leading part of the matrices
   explicit PatchSolver(const cloth::SymmetricBlockMatrix& pattern);
 
@@ -34,16 +24,19 @@ class PatchSolver {
   bool solve(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
              cloth::BlockVector& solution);
 
-  /// Solves with the matrix of the last solve() and renews nothing.
-  void solveAgain(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
-                  double relative, cloth::BlockVector& solution);
+  /// One iteration towards the solution of another system with the matrix of the last solve(), from
+  /// where `solution` is. The error never grows.
+  void improve(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
+               cloth::BlockVector& solution);
 
   /// Of the last solve().
   int iterations() const { return iterations_; }
 
  private:
-  bool iterate(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
-               const Tolerance& tolerance, int most, cloth::BlockVector& solution);
+  bool iterate(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs, int most,
+               cloth::BlockVector& solution);
+  double addDirection(const cloth::SymmetricBlockMatrix& matrix, double slope,
+                      cloth::BlockVector& solution);
   bool solveDirectly(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
                      cloth::BlockVector& solution);
 
