@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 namespace haptex::contact {
 namespace {
@@ -21,7 +26,7 @@ constexpr int kMost = 10;       // after which a new factor is worth its time
 constexpr double kShare = 0.15;  // of the factor that is renewed in a step
 
 /// y = A x for the leading part.
-void multiplyLeading(const SymmetricBlockMatrix& matrix, const BlockVector& x, BlockVector& y) {
+void multiplyPlainly(const SymmetricBlockMatrix& matrix, const BlockVector& x, BlockVector& y) {
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     const int row = static_cast<int>(i);
     const Eigen::Vector3d x_i = x.col(i);
@@ -33,6 +38,49 @@ void multiplyLeading(const SymmetricBlockMatrix& matrix, const BlockVector& x, B
     }
     y.col(i) = sum;
   }
+}
+
+#if defined(__x86_64__)
+/// The same for processors with AVX2 and FMA.
+[[gnu::target("avx2,fma")]] void multiplyWide(const SymmetricBlockMatrix& matrix,
+                                              const BlockVector& x, BlockVector& y) {
+  const __m256i three = _mm256_set_epi64x(0, -1, -1, -1);
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const int row = static_cast<int>(i);
+    const double* const at = x.data() + 3 * i;
+    const __m256d x_i = _mm256_maskload_pd(at, three);
+    const double* const own = matrix.diagonal(row).data();
+    __m256d sum = _mm256_loadu_pd(own) * _mm256_set1_pd(at[0]) +
+                  _mm256_loadu_pd(own + 3) * _mm256_set1_pd(at[1]) +
+                  _mm256_maskload_pd(own + 6, three) * _mm256_set1_pd(at[2]);
+    for (int s = matrix.rowBegin(row); s < matrix.rowBegin(row + 1); ++s) {
+      const std::ptrdiff_t j = 3 * std::ptrdiff_t{matrix.column(s)};
+      const double* const block = matrix.lower(s).data();
+      const double* const other = x.data() + j;
+      const __m256d b0 = _mm256_loadu_pd(block), b1 = _mm256_loadu_pd(block + 3);
+      // Not beyond the block, which may be the last one.
+      const __m256d b2 = _mm256_permute4x64_pd(_mm256_loadu_pd(block + 5), 0xf9);
+      sum = _mm256_fmadd_pd(b0, _mm256_broadcast_sd(other), sum);
+      sum = _mm256_fmadd_pd(b1, _mm256_broadcast_sd(other + 1), sum);
+      sum = _mm256_fmadd_pd(b2, _mm256_broadcast_sd(other + 2), sum);
+      const __m256d pairs = _mm256_hadd_pd(b0 * x_i, b1 * x_i);
+      const __m256d last = _mm256_hadd_pd(b2 * x_i, _mm256_setzero_pd());
+      const __m256d low = _mm256_permute2f128_pd(pairs, last, 0x20);
+      const __m256d high = _mm256_permute2f128_pd(pairs, last, 0x31);
+      double* const to = y.data() + j;
+      _mm256_maskstore_pd(to, three, _mm256_maskload_pd(to, three) + (low + high));
+    }
+    _mm256_maskstore_pd(y.data() + 3 * i, three, sum);
+  }
+}
+#endif
+
+void multiplyLeading(const SymmetricBlockMatrix& matrix, const BlockVector& x, BlockVector& y) {
+#if defined(__x86_64__)
+  static const bool wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (wide) return multiplyWide(matrix, x, y);
+#endif
+  multiplyPlainly(matrix, x, y);
 }
 
 }  // namespace
