@@ -162,7 +162,9 @@ bool Patch::advance(const LargeScaleMotion& motion,
                     const PerFingertip<const Fingertip*>& fingertips, double h) {
   assemble(motion, h);
   addContact(fingertips, h);
-  if (!solver_.solve(matrix_, rhs_, solution_)) return false;
+  const bool held = cut_.free_count < static_cast<int>(particleCount());
+  const Vector3d guess = held ? Vector3d(Vector3d::Zero()) : effects_.gravity;
+  if (!solver_.solve(matrix_, rhs_, guess, solution_)) return false;
   for (int i = 0; i < cut_.free_count; ++i) state_.velocities[i] += solution_.col(i);
   for (std::size_t i = 0; i < particleCount(); ++i) {
     state_.positions[i] += h * state_.velocities[i];

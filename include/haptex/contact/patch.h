@@ -18,8 +18,8 @@
 namespace haptex::contact {
 
 /// Membrane with the fabric's curves, bending, gravity and contact on the triangles of a refined
-/// cut. The rim follows the large-scale cloth; the rest is stepped by linearised backward Euler. The
-/// matrix is that of the step; the factor that helps to solve with it is kept over several
+/// cut. The rim follows the large-scale cloth; the rest is stepped by linearised backward Euler.
+/// The matrix is that of the step; the factor that helps to solve with it is kept over several
 /// (PatchSolver).
 ///
 /// The constructor does all that needs memory; the other functions allocate nothing.

@@ -20,9 +20,11 @@ class PatchSolver {
 
   /// Solves A x = b, where A is the leading part of the matrix.
   /// @param rhs leading columns: b
+  /// @param guess a direction, in which the solution is sought first, the same for all particles:
+  ///   that in which a cloth falls freely, exactly; zero: none
   /// @returns false if A is not positive definite to rounding, or a number is not finite
   bool solve(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
-             cloth::BlockVector& solution);
+             const Eigen::Vector3d& guess, cloth::BlockVector& solution);
 
   /// One iteration towards the solution of another system with the matrix of the last solve(), from
   /// where `solution` is. The error never grows.
@@ -45,6 +47,7 @@ class PatchSolver {
   bool has_kept_ = false;
   bool has_direct_ = false;  // of the last system
   int iterations_ = 0;
+  Eigen::Vector3d guess_ = Eigen::Vector3d::Zero();
   cloth::BlockVector residual_, preconditioned_, direction_, product_;
 };
 
