@@ -44,7 +44,7 @@ Patch::Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fab
       membrane_(cut_.mesh, fabric, effects.viscosity, effects.contraction),
       bending_(cut_.mesh, *fabric.bending, effects.bending_settings),
       matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, bending_.pairs()),
-      cholesky_(leadingPattern(matrix_, cut_.free_count)),
+      solver_(leadingPattern(matrix_, cut_.free_count)),
       areas_(tributaryAreas(membrane_, cut_.supports.size())),
       contacts_{SphereContact(law, cut_.free_count), SphereContact(law, cut_.free_count)},
       rhs_(3, cut_.supports.size()),
@@ -61,6 +61,9 @@ Patch::Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fab
   tethers_.assign(count, 0.0);
   contact_forces_.assign(count, 0.0);
   for (auto& touched : linearised_) touched.reserve(cut_.free_count);
+  for (auto& responses : responses_) {
+    for (cloth::BlockVector& response : responses) response.setZero(3, cut_.free_count);
+  }
 }
 
 Vector3d Patch::placeOnCloth(int particle, const LargeScaleMotion& motion) const {
@@ -81,6 +84,7 @@ void Patch::start(const LargeScaleMotion& motion) {
   for (int f = 0; f < kFingertips; ++f) {
     contacts_[f].clear();
     linearised_[f].clear();
+    for (cloth::BlockVector& response : responses_[f]) response.setZero();
   }
 }
 
@@ -158,10 +162,9 @@ bool Patch::advance(const LargeScaleMotion& motion,
                     const PerFingertip<const Fingertip*>& fingertips, double h) {
   assemble(motion, h);
   addContact(fingertips, h);
-  solution_ = rhs_.leftCols(cut_.free_count);
-  if (!cholesky_.factorise(matrix_)) return false;
-  cholesky_.solve(solution_);
-  if (!solution_.allFinite()) return false;
+  const bool held = cut_.free_count < static_cast<int>(particleCount());
+  const Vector3d guess = held ? Vector3d(Vector3d::Zero()) : effects_.gravity;
+  if (!solver_.solve(matrix_, rhs_, guess, solution_)) return false;
   for (int i = 0; i < cut_.free_count; ++i) state_.velocities[i] += solution_.col(i);
   for (std::size_t i = 0; i < particleCount(); ++i) {
     state_.positions[i] += h * state_.velocities[i];
@@ -182,12 +185,13 @@ bool Patch::advance(const LargeScaleMotion& motion,
 }
 
 const cloth::BlockVector& Patch::respond(int fingertip, int direction) {
-  solution_.setZero();
+  rhs_.leftCols(cut_.free_count).setZero();
   for (const TouchedParticle& touched : linearised_[fingertip]) {
-    solution_.col(touched.particle) = touched.tangent.col(direction);
+    rhs_.col(touched.particle) = touched.tangent.col(direction);
   }
-  cholesky_.solve(solution_);
-  return solution_;
+  cloth::BlockVector& response = responses_[fingertip][direction];
+  solver_.improve(matrix_, rhs_, response);
+  return response;
 }
 
 }  // namespace haptex::contact

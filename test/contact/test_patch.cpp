@@ -156,6 +156,39 @@ TEST_F(PatchTest, AnExchangeUnderContactDoesNotLetTheForceJump) {
   }
 }
 
+// Contact comes, slips and goes while the large-scale cloth moves.
+TEST_F(PatchTest, AStepWithAnOldFactorIsThatOfANewOne) {
+  Patch patch = patchAround({0.02, 0.02}, 0.01);
+  patch.start(motion_);
+  std::vector<Vector3d> state = mesh_.initial_positions;
+  double most_force = 0.0;
+  bool slipped = false;
+  for (int i = 0; i < 600; ++i) {
+    if (i % 20 == 0) {
+      for (Vector3d& position : state) position.x() += 2e-4 * std::cos(0.01 * i);
+      motion_.receive(state, 0.02);
+    }
+    Fingertip fingertip = pressing(law_, kSmallSampleMiddle, 1.5e-3 * std::sin(0.02 * i));
+    fingertip.position.z() += 2e-3 * std::sin(0.03 * i);
+    const bool compared = i % 13 == 0;
+    Patch anew = compared ? patchAround({0.02, 0.02}, 0.01) : patch;
+    if (compared) anew.goOnFrom(patch, motion_);
+    advance(patch, &fingertip, 1);
+    most_force = std::max(most_force, forceOn(patch).norm());
+    for (const TouchedParticle& touched : patch.contact(0).touched()) {
+      slipped = slipped || touched.slips;
+    }
+    if (!compared) continue;
+    ASSERT_TRUE(anew.advance(motion_, {&fingertip, nullptr}, kStep));
+    EXPECT_NEAR((forceOn(patch) - forceOn(anew)).norm(), 0.0, 1e-5) << i;
+    for (std::size_t k = 0; k < patch.particleCount(); ++k) {
+      ASSERT_NEAR((patch.positions()[k] - anew.positions()[k]).norm(), 0.0, 1e-7) << i;
+    }
+  }
+  EXPECT_GT(most_force, 0.2);
+  EXPECT_TRUE(slipped);
+}
+
 TEST_F(PatchTest, SaysWhenAStepIsNotFiniteAndStartsAgain) {
   Patch patch = patchAround({0.02, 0.02}, 0.01);
   patch.start(motion_);

@@ -6,20 +6,21 @@
 #include <vector>
 
 #include "haptex/cloth/bending.h"
-#include "haptex/cloth/block_cholesky.h"
 #include "haptex/cloth/block_matrix.h"
 #include "haptex/cloth/cloth.h"
 #include "haptex/cloth/membrane.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
+#include "haptex/contact/patch_solver.h"
 #include "haptex/contact/refined_cut.h"
 #include "haptex/contact/sphere_contact.h"
 
 namespace haptex::contact {
 
 /// Membrane with the fabric's curves, bending, gravity and contact on the triangles of a refined
-/// cut. The rim follows the large-scale cloth; the rest is stepped by linearised backward Euler,
-/// factorised anew in every step, because contacts come and go.
+/// cut. The rim follows the large-scale cloth; the rest is stepped by linearised backward Euler.
+/// The matrix is that of the step; the factor that helps to solve with it is kept over several
+/// (PatchSolver).
 ///
 /// The constructor does all that needs memory; the other functions allocate nothing.
 class Patch {
@@ -68,7 +69,8 @@ class Patch {
 
   /// A^-1 k e with the matrix A = M - h D - h^2 K of the last step: k are the contact stiffnesses
   /// of the particles at a fingertip, e the unit vector of a direction (0 to 2).
-  /// @returns 3 x freeCount(), until the next call or step
+  /// One iteration better than the last time, if that was for a matrix and contact close to these.
+  /// @returns 3 x freeCount(), until the next call
   const cloth::BlockVector& respond(int fingertip, int direction);
 
  private:
@@ -81,7 +83,7 @@ class Patch {
   cloth::Membrane membrane_;
   cloth::Bending bending_;
   cloth::SymmetricBlockMatrix matrix_;
-  cloth::BlockCholesky cholesky_;
+  PatchSolver solver_;
   std::vector<double> areas_;   // m^2, per particle
   std::vector<double> masses_;  // kg
 
@@ -94,6 +96,7 @@ class Patch {
   std::vector<double> contact_forces_;
   cloth::BlockVector rhs_;
   cloth::BlockVector solution_;
+  PerFingertip<std::array<cloth::BlockVector, 3>> responses_;  // by direction
 };
 
 }  // namespace haptex::contact
