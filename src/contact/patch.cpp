@@ -17,6 +17,9 @@ constexpr double kTetherTime = 0.005;  // s, to 1/e
 constexpr double kFirstTether = 1e4;   // N/m
 constexpr double kLastTether = 1e-3;   // N/m, then none
 
+// s: the next matrix of longer steps has little in common with the last one.
+constexpr double kLongestKept = 4e-3;
+
 std::vector<double> tributaryAreas(const cloth::Membrane& membrane, std::size_t particles) {
   std::vector<double> areas(particles, 0.0);
   for (const cloth::MembraneElement& element : membrane.elements()) {
@@ -158,13 +161,18 @@ void Patch::addContact(const PerFingertip<const Fingertip*>& fingertips, double 
   }
 }
 
+bool Patch::solve(double h) {
+  if (h > kLongestKept) return solver_.solveDirectly(matrix_, rhs_, solution_);
+  const bool held = cut_.free_count < static_cast<int>(particleCount());
+  const Vector3d guess = held ? Vector3d(Vector3d::Zero()) : effects_.gravity;
+  return solver_.solve(matrix_, rhs_, guess, solution_);
+}
+
 bool Patch::advance(const LargeScaleMotion& motion,
                     const PerFingertip<const Fingertip*>& fingertips, double h) {
   assemble(motion, h);
   addContact(fingertips, h);
-  const bool held = cut_.free_count < static_cast<int>(particleCount());
-  const Vector3d guess = held ? Vector3d(Vector3d::Zero()) : effects_.gravity;
-  if (!solver_.solve(matrix_, rhs_, guess, solution_)) return false;
+  if (!solve(h)) return false;
   for (int i = 0; i < cut_.free_count; ++i) state_.velocities[i] += solution_.col(i);
   for (std::size_t i = 0; i < particleCount(); ++i) {
     state_.positions[i] += h * state_.velocities[i];

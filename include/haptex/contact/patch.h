@@ -75,6 +75,7 @@ class Patch {
 
  private:
   void assemble(const LargeScaleMotion& motion, double h);
+  bool solve(double h);
   void addContact(const PerFingertip<const Fingertip*>& fingertips, double h);
 
   RefinedCut cut_;

@@ -26,6 +26,10 @@ class PatchSolver {
   bool solve(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
              const Eigen::Vector3d& guess, cloth::BlockVector& solution);
 
+  /// The same by a factor in double precision, made for this system alone.
+  bool solveDirectly(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
+                     cloth::BlockVector& solution);
+
   /// One iteration towards the solution of another system with the matrix of the last solve(), from
   /// where `solution` is. The error never grows.
   void improve(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
@@ -39,8 +43,6 @@ class PatchSolver {
                cloth::BlockVector& solution);
   double addDirection(const cloth::SymmetricBlockMatrix& matrix, double slope,
                       cloth::BlockVector& solution);
-  bool solveDirectly(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
-                     cloth::BlockVector& solution);
 
   KeptFactor kept_;
   cloth::BlockCholesky direct_;
