@@ -34,14 +34,18 @@ PeriodicThread::~PeriodicThread() { stop(); }
 
 void PeriodicThread::stop() {
   stopping_ = true;
+  call();  // or it would wait for the next period
   if (thread_.joinable()) thread_.join();
 }
 
-/// Calls that came meanwhile are one.
+/// Calls that come before the thread has seen the first of them are one.
+void PeriodicThread::call() {
+  if (!is_called_.exchange(true)) called_.post();
+}
+
 bool PeriodicThread::awaitCall(Time until) {
   if (!called_.waitUntil(until)) return false;
-  while (called_.waitFor(Time{0})) {
-  }
+  is_called_ = false;
   return true;
 }
 
@@ -50,9 +54,10 @@ void PeriodicThread::run() {
   // it can.
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   NextPeriod next{steadyNow() + period_, 0};
-  Time last = next.start - period_;
+  Time last = next.start - 2 * period_;  // the first call need not wait
   while (!stopping_) {
     const bool called = wait_(next.start);
+    if (stopping_) break;
     if (called && steadyNow() < last + period_ / 2) sleepUntil(last + period_ / 2);
     const Time now = steadyNow();
     lateness_.add(called ? std::chrono::abs(now - last - period_) : now - next.start);

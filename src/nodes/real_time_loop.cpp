@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/nodes/scheduling.h"
+
 namespace haptex::nodes {
 namespace {
 
@@ -61,6 +63,7 @@ void RealTimeLoop::setPaused(bool paused) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (paused == status_.paused) return;
     status_.paused = paused;
+    prefer(!paused);  // steps that are asked for singly may take as long as they like
     startWindow();
     if (!paused) resume();
   });
@@ -90,6 +93,7 @@ LoopStatus RealTimeLoop::status() const {
 }
 
 void RealTimeLoop::run() {
+  prefer(true);
   std::unique_lock<std::mutex> lock(mutex_);
   resume();
   while (running_) {
@@ -163,6 +167,8 @@ void RealTimeLoop::takeDueStep(std::unique_lock<std::mutex>& lock) {
   } else if (excess > Clock::duration::zero()) {
     due_ += excess;
     status_.dropped_seconds += inSeconds(excess);
+    window_.kept_up = false;
+    prefer(false);
   }
   ++window_.attempts;
   window_.steps += status_.last_step_rejected ? 0 : 1;
@@ -201,6 +207,18 @@ void RealTimeLoop::resume() {
   if (steps_wanted_ > 0) endSteps(StepsTaken::End::kInterrupted);
 }
 
+/// Steps that keep up with real time come before what is ordinary. Those that do not would take a
+/// processor for themselves.
+void RealTimeLoop::prefer(bool preferred) {
+  if (preferred == preferred_) return;
+  preferred_ = preferred;
+  if (preferred) {
+    askForFifo(pthread_self(), kStepPriority);
+  } else {
+    beOrdinary();
+  }
+}
+
 void RealTimeLoop::endSteps(StepsTaken::End end) {
   if (steps_wanted_ == 0) return;
   steps_taken_.end = end;
@@ -220,6 +238,7 @@ void RealTimeLoop::startWindow() {
 
 void RealTimeLoop::closeWindow() {
   const Window window = window_;
+  if (window.kept_up) prefer(true);
   startWindow();
   const double elapsed = inSeconds(window_.begin - window.begin);
   status_.step_rate = window.steps / elapsed;

@@ -63,7 +63,7 @@ class DriverLoop {
   using Time = exoskeleton::Time;
   static constexpr Time kPeriod = std::chrono::milliseconds(1);
   /// After a state. A force that comes later is rendered in the next period.
-  static constexpr Time kAnswerPatience = std::chrono::microseconds(600);
+  static constexpr Time kAnswerPatience = std::chrono::microseconds(720);
   /// Forces that answered a state of this age or a younger one promise to answer the next.
   static constexpr Time kStillAnswering = std::chrono::milliseconds(5);
   /// Both ways on the line, for path(): a pseudo-terminal takes no time for them.

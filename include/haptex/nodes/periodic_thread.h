@@ -61,7 +61,7 @@ class PeriodicThread {
   void stop();
 
   /// By any thread: work now.
-  void call() { called_.post(); }
+  void call();
 
   /// Why SCHED_FIFO was not granted, in plain words; empty if it was.
   const std::string& refusedScheduler() const { return refused_scheduler_; }
@@ -80,6 +80,7 @@ class PeriodicThread {
   const Work work_;
   const PeriodicThreadOptions::Wait wait_;
   Semaphore called_;
+  std::atomic<bool> is_called_{false};
   std::string refused_scheduler_;          // written by the constructor only
   DurationHistogram lateness_;             // written by the thread
   std::atomic<std::uint64_t> periods_{0};  // likewise
