@@ -16,7 +16,8 @@
 
 namespace haptex::exoskeleton {
 
-/// Not thread-safe. tick(), observe(), drive(), command(), raiseFault() and the getters do not allocate.
+/// Not thread-safe. tick(), observe(), drive(), command(), raiseFault() and the getters do not
+/// allocate.
 ///
 /// Commands that the device does not get are as dangerous as commands that nobody sends: its
 /// firmware takes the motors to zero, and the first command it gets again would make the force
