@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "haptex/nodes/scheduling.h"
-
 namespace haptex::nodes {
 namespace {
 
@@ -63,7 +61,6 @@ void RealTimeLoop::setPaused(bool paused) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (paused == status_.paused) return;
     status_.paused = paused;
-    prefer(!paused);  // steps that are asked for singly may take as long as they like
     startWindow();
     if (!paused) resume();
   });
@@ -93,7 +90,6 @@ LoopStatus RealTimeLoop::status() const {
 }
 
 void RealTimeLoop::run() {
-  prefer(true);
   std::unique_lock<std::mutex> lock(mutex_);
   resume();
   while (running_) {
@@ -167,8 +163,6 @@ void RealTimeLoop::takeDueStep(std::unique_lock<std::mutex>& lock) {
   } else if (excess > Clock::duration::zero()) {
     due_ += excess;
     status_.dropped_seconds += inSeconds(excess);
-    window_.kept_up = false;
-    prefer(false);
   }
   ++window_.attempts;
   window_.steps += status_.last_step_rejected ? 0 : 1;
@@ -207,18 +201,6 @@ void RealTimeLoop::resume() {
   if (steps_wanted_ > 0) endSteps(StepsTaken::End::kInterrupted);
 }
 
-/// Steps that keep up with real time come before what is ordinary. Those that do not would take a
-/// processor for themselves.
-void RealTimeLoop::prefer(bool preferred) {
-  if (preferred == preferred_) return;
-  preferred_ = preferred;
-  if (preferred) {
-    askForFifo(pthread_self(), kStepPriority);
-  } else {
-    beOrdinary();
-  }
-}
-
 void RealTimeLoop::endSteps(StepsTaken::End end) {
   if (steps_wanted_ == 0) return;
   steps_taken_.end = end;
@@ -238,7 +220,6 @@ void RealTimeLoop::startWindow() {
 
 void RealTimeLoop::closeWindow() {
   const Window window = window_;
-  if (window.kept_up) prefer(true);
   startWindow();
   const double elapsed = inSeconds(window_.begin - window.begin);
   status_.step_rate = window.steps / elapsed;

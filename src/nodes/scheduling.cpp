@@ -88,11 +88,6 @@ void preferMessages(bool on_force_path) {
   ros::PollManager::instance()->addPollThreadListener([thread] { thread->look(); });
 }
 
-void beOrdinary() {
-  const sched_param ordinary{};
-  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);  // always allowed
-}
-
 void makeAllOrdinary() {
   const sched_param ordinary{};
   std::error_code error;  // a thread may end meanwhile

@@ -103,7 +103,6 @@ class RealTimeLoop {
   void resume();
   void endSteps(StepsTaken::End end);
   void startWindow();
-  void prefer(bool preferred);
   void closeWindow();
   void recordSimulation();
   void requireRunning() const;
@@ -133,9 +132,7 @@ class RealTimeLoop {
     double computing_seconds = 0.0;
     double largest_step_seconds = 0.0;
     double largest_residual = 0.0;
-    bool kept_up = true;  // with real time
   } window_;
-  bool preferred_ = false;  // the loop's thread, before what is ordinary
 
   std::thread thread_;
 };

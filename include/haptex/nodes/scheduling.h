@@ -15,7 +15,6 @@ constexpr int kLoopPriority = 80;
 constexpr int kSocketPriority = 75;
 constexpr int kForcePriority = 70;
 constexpr int kMessagePriority = 20;
-constexpr int kStepPriority = 10;  // the cloth's steps, as long as they keep up with real time
 
 /// Asks for SCHED_FIFO for a thread.
 /// @returns why it was refused; empty if it was granted
@@ -32,9 +31,6 @@ void keepOnForceProcessor(pthread_t thread);
 /// After ros::start(): roscpp's thread that reads and writes the sockets comes before what is
 /// ordinary. Its other threads (services of the graph, console) stay as they are.
 void preferMessages(bool on_force_path);
-
-/// Makes the calling thread an ordinary one.
-void beOrdinary();
 
 /// Takes SCHED_FIFO from all threads of this process. To be called before it ends: threads that
 /// wait for each other in a loop while the process is taken down would take the processors from
