@@ -5,6 +5,7 @@ import os
 import signal
 import socket
 import subprocess
+import tempfile
 import time
 import xmlrpc.client
 
@@ -144,7 +145,7 @@ class Stopping(NodeTest):
             port = free.getsockname()[1]
         paths = roslib.packages.get_pkg_dir('haptex') + '/test/nodes'
         environment = dict(os.environ, ROS_MASTER_URI=f'http://127.0.0.1:{port}')
-        link = f'/tmp/haptex_stopping_{os.getpid()}'
+        link = os.path.join(tempfile.mkdtemp(), 'exoskeleton')
         launch = subprocess.Popen(
             ['roslaunch', '-p', str(port), 'haptex', 'haptex.launch', f'port:={link}',
              'emulator:=true', f'path:={paths}/hold_edge.yaml'], env=environment,
