@@ -56,10 +56,18 @@ SolveResult ConjugateGradient::iterate(const SymmetricBlockMatrix& matrix,
     result.converged = result.residual <= tolerance;
   };
 
-  restart();
-  if (!(result.residual <= 1.0)) {  // a guess worse than none, or not a number
+  const auto startFromZero = [&] {
     x.setZero();
+    residual_ = rhs;
+    result.residual = 1.0;
+    result.converged = result.residual <= tolerance;
+  };
+
+  if (x.isZero(0.0)) {
+    startFromZero();
+  } else {
     restart();
+    if (!(result.residual <= 1.0)) startFromZero();  // worse than none, or not a number
   }
   while (!result.converged && result.iterations < max_iterations) {
     const double before = result.residual;

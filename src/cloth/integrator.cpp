@@ -109,12 +109,19 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
 
 void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double h,
                             StepReport& report) {
-  constexpr double kMostTaken = 0.1;  // of the kinetic energy
+  // Of the kinetic energy. It doubles with every solve of a step taken anew but the first, up to
+  // all that can be taken: what the next solve would still save is worth less and less.
+  double most_taken = 0.1;
   balance_->begin(cloth, begin);
   double gained = 0.0;
   const auto isSmall = [&] {
     gained = balance_->excess(cloth, begin, end_, contactReactions());
-    return gained <= 0.0 || gained <= kMostTaken * balance_->kineticAtEnd();
+    return gained <= 0.0 || gained <= most_taken * balance_->kineticAtEnd();
+  };
+  const auto isSmallEnough = [&] {
+    const bool small = isSmall();
+    most_taken = std::min(1.0, 2.0 * most_taken);
+    return small;
   };
   if (!isSmall()) {
     report.taken_anew = true;
@@ -123,7 +130,7 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
       stages_->forget();
       stages_->solveLinearised(cloth, stage, {begin.positions, begin.velocities, h}, end_, report);
     }
-    const bool judged = stages_->descend(cloth, stage, std::ref(isSmall), end_, report);
+    const bool judged = stages_->descend(cloth, stage, std::ref(isSmallEnough), end_, report);
     stages_->forget();
     settle(end_.velocities);
     if (!judged || touches()) isSmall();
