@@ -53,6 +53,7 @@ PatchSupplierStatus PatchSupplier::status() const {
 
 void PatchSupplier::run() {
   askForFifoOnce(kMessagePriority);
+  keepOffForceProcessor(pthread_self());
   while (!stopping_) {
     const bool state_came = loop_.waitForState(kPatience);
     takeMesh();
@@ -97,7 +98,10 @@ void PatchSupplier::takeMesh() {
 void PatchSupplier::buildLayer(const haptex::ClothMesh& message) {
   const Time begin = steadyNow();
   auto update = std::make_unique<LayerUpdate>();
-  update->layer = builder_.build(message);
+  {
+    const OrdinaryScope ordinary;
+    update->layer = builder_.build(message);
+  }
   update->replaces_layer = true;
   update->particles = message.rest_weft_coordinates.size();
   layer_ = update->layer.get();
@@ -191,7 +195,10 @@ void PatchSupplier::supplyPatch() {
   if (patch_attached_.size() != mesh_.rest_coordinates.size()) return;  // of another mesh
   patch_outdated_ = false;
   auto update = std::make_unique<LayerUpdate>();
-  update->patch = layer_->preparePatch(selection_->elements(), patch_attached_);
+  {
+    const OrdinaryScope ordinary;
+    update->patch = layer_->preparePatch(selection_->elements(), patch_attached_);
+  }
   update->replaces_patch = true;
   loop_.offer(std::move(update));
   const std::lock_guard<std::mutex> lock(mutex_);

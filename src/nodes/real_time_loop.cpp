@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/nodes/scheduling.h"
+
 namespace haptex::nodes {
 namespace {
 
@@ -34,6 +36,7 @@ RealTimeLoop::~RealTimeLoop() { stop(); }
 void RealTimeLoop::start() {
   running_ = true;
   thread_ = std::thread([this] { run(); });
+  keepOffForceProcessor(thread_.native_handle());
 }
 
 void RealTimeLoop::stop() {

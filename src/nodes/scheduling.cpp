@@ -50,6 +50,12 @@ class SocketThread {
   int quick_looks_ = 0;
 };
 
+int lastOf(const cpu_set_t& processors) {
+  int last = CPU_SETSIZE - 1;
+  while (last > 0 && !CPU_ISSET(last, &processors)) --last;
+  return last;
+}
+
 }  // namespace
 
 std::string askForFifo(pthread_t thread, int priority) {
@@ -65,6 +71,14 @@ std::string askForFifo(pthread_t thread, int priority) {
   return why;
 }
 
+OrdinaryScope::OrdinaryScope() {
+  pthread_getschedparam(pthread_self(), &policy_, &parameters_);
+  const sched_param ordinary{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
+}
+
+OrdinaryScope::~OrdinaryScope() { pthread_setschedparam(pthread_self(), policy_, &parameters_); }
+
 void askForFifoOnce(int priority) {
   thread_local bool asked = false;
   if (asked) return;
@@ -75,12 +89,18 @@ void askForFifoOnce(int priority) {
 void keepOnForceProcessor(pthread_t thread) {
   cpu_set_t allowed;
   if (sched_getaffinity(getpid(), sizeof allowed, &allowed) != 0) return;
-  int last = CPU_SETSIZE - 1;
-  while (last > 0 && !CPU_ISSET(last, &allowed)) --last;
   cpu_set_t one;
   CPU_ZERO(&one);
-  CPU_SET(last, &one);
+  CPU_SET(lastOf(allowed), &one);
   pthread_setaffinity_np(thread, sizeof one, &one);  // refused: it runs elsewhere
+}
+
+void keepOffForceProcessor(pthread_t thread) {
+  cpu_set_t allowed;
+  if (sched_getaffinity(getpid(), sizeof allowed, &allowed) != 0) return;
+  if (CPU_COUNT(&allowed) == 1) return;
+  CPU_CLR(lastOf(allowed), &allowed);
+  pthread_setaffinity_np(thread, sizeof allowed, &allowed);
 }
 
 void preferMessages(bool on_force_path) {

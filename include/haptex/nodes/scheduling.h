@@ -28,6 +28,23 @@ void askForFifoOnce(int priority);
 /// thread up on another processor takes an interrupt there (docs/real_time.md).
 void keepOnForceProcessor(pthread_t thread);
 
+/// Keeps a thread that computes for milliseconds off the processor of keepOnForceProcessor(), where
+/// there is another one: beside the force path it would get what that leaves.
+void keepOffForceProcessor(pthread_t thread);
+
+/// While it lives, the thread that made it is ordinary.
+class OrdinaryScope {
+ public:
+  OrdinaryScope();
+  ~OrdinaryScope();
+  OrdinaryScope(const OrdinaryScope&) = delete;
+  OrdinaryScope& operator=(const OrdinaryScope&) = delete;
+
+ private:
+  int policy_ = SCHED_OTHER;
+  sched_param parameters_{};
+};
+
 /// After ros::start(): roscpp's thread that reads and writes the sockets comes before what is
 /// ordinary. Its other threads (services of the graph, console) stay as they are.
 void preferMessages(bool on_force_path);
