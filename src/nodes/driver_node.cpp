@@ -147,11 +147,12 @@ void DriverNode::subscriberGone(const ros::SingleSubscriberPublisher& subscriber
   const std::string node = subscriber.getSubscriberName();
   for (const Finger finger : kFingers) {
     {
+      // The renderer within this process commands on its own thread.
       const std::lock_guard<std::mutex> lock(commanders_mutex_);
       if (!commanders_.hasDied(finger, node)) continue;
+      loop_.commanderDied(finger);
+      fingers_[finger].filter.commanderDied(ros::Time::now(), steadyNow());
     }
-    loop_.commanderDied(finger);
-    fingers_[finger].filter.commanderDied(ros::Time::now(), steadyNow());
     ++commander_deaths_;
     ROS_WARN("%s, which commanded the %s, has gone: its force goes to zero", node.c_str(),
              name(finger));
@@ -164,13 +165,16 @@ void DriverNode::takeForce(Finger finger,
   const Time arrival = steadyNow();
   const ros::Time now = ros::Time::now();
   FingerTopics& topics = fingers_[finger];
-  if (const auto command = topics.filter.take(*message, now, arrival)) {
-    loop_.command(finger, *command, arrival, timeOf(message->measured, now, arrival));
+  std::string why;
+  {
     const std::lock_guard<std::mutex> lock(commanders_mutex_);
-    commanders_.commanded(finger, event.getPublisherName());
-    return;
+    if (const auto command = topics.filter.take(*message, now, arrival)) {
+      loop_.command(finger, *command, arrival, timeOf(message->measured, now, arrival));
+      commanders_.commanded(finger, event.getPublisherName());
+      return;
+    }
+    why = topics.filter.explain(*message, now);
   }
-  const std::string why = topics.filter.explain(*message, now);
   ROS_WARN_THROTTLE(1.0, "%s/servo_cf dropped: %s", name(finger), why.c_str());
   const std::lock_guard<std::mutex> lock(topics.mutex);
   topics.last_drop = why;
