@@ -7,7 +7,6 @@
 #include <sensor_msgs/JointState.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -31,7 +30,7 @@ constexpr Time kJointPeriod = std::chrono::milliseconds(10);
 constexpr Time kMarkerPeriod = std::chrono::milliseconds(40);
 constexpr Time kOperatingStatePeriod = std::chrono::milliseconds(100);
 constexpr Time kPublishPeriod = std::chrono::milliseconds(4);
-constexpr Time kEndPatience = std::chrono::milliseconds(50);  // for forces to be zero
+constexpr Time kEndPatience = std::chrono::milliseconds(50);  // for the motors to be off
 constexpr Time kEndLook = std::chrono::milliseconds(1);
 constexpr Time kNewestStamp = std::chrono::milliseconds(20);  // of what a force answers
 constexpr std::uint32_t kMeasuredQueue = 20;  // messages, for a subscriber that is slow for 20 ms
@@ -102,14 +101,8 @@ DriverNode::~DriverNode() { stop(); }
 void DriverNode::stop() {
   if (stopping_.exchange(true)) return;
   loop_.ask(DriverRequest::kDisable);
-  const auto at_rest = [this] {
-    const DriverSnapshot now = loop_.status();
-    return std::all_of(kFingers.begin(), kFingers.end(), [&](Finger finger) {
-      return now.fingers[finger].desired_force.isZero(0.0);
-    });
-  };
   const Time end = steadyNow() + kEndPatience;
-  while (!at_rest() && steadyNow() < end) std::this_thread::sleep_for(kEndLook);
+  while (loop_.status().motors_on && steadyNow() < end) std::this_thread::sleep_for(kEndLook);
   for (FingerTopics& topics : fingers_.values) topics.forces.shutdown();
   loop_thread_.stop();
   publishing_thread_.join();
