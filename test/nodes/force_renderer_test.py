@@ -20,7 +20,7 @@ from ros_fixtures import WAIT, Diagnostics, DeviceTest, process_of
 
 NAN = float('nan')
 FELT = 0.05  # N
-REPEATS = 3  # of a death
+REPEATS = 3  # of a death; 1 with the shared process, whose neighbours are the same programs
 DEADLINE = 20.0  # ms, from a death to zero force
 LOOP, SOURCES = 'force loop', 'force sources'  # names in the diagnostics
 FINGERS = ('index', 'thumb')
@@ -70,6 +70,8 @@ class ForceRenderer(DeviceTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
+        cls.shared = cls.driver == cls.renderer
+        cls.repeats = 1 if cls.shared else REPEATS
         cls.nodes = tuple(dict.fromkeys(('cloth_simulation', 'proximity', cls.driver,
                                          'exoskeleton_emulator', cls.renderer)))
         cls.diagnostics = Diagnostics()
@@ -196,11 +198,11 @@ class ForceRenderer(DeviceTest):
     def no_force_after_the_death_of(self, node, listeners=None, zero=0.0):
         listeners = listeners or list(self.commanded.values())
         lasted = []
-        for _ in range(2 * REPEATS):
+        for _ in range(2 * self.repeats):
             took = self.die(node, listeners, zero)
             if took > 0.0:  # else the force had fallen a moment before, which tells nothing
                 lasted.append(took)
-            if len(lasted) == REPEATS:
+            if len(lasted) == self.repeats:
                 break
         self.assertTrue(lasted)
         print(f'{node}: median {statistics.median(lasted):.1f} ms, largest {max(lasted):.1f} ms')
@@ -213,9 +215,13 @@ class ForceRenderer(DeviceTest):
         self.no_force_after_the_death_of('proximity')
 
     def test_no_force_after_the_driver_was_killed(self):
+        if self.shared:
+            self.skipTest('it is the renderer, whose death is looked at below')
         self.no_force_after_the_death_of(self.driver)
 
     def test_no_force_after_the_device_was_killed(self):
+        if self.shared:
+            self.skipTest('the driver alone ends that force, by the same code in both ways')
         self.no_force_after_the_death_of('exoskeleton_emulator')
 
     def test_no_force_after_the_renderer_was_killed(self):
