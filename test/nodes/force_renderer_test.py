@@ -156,6 +156,8 @@ class ForceRenderer(DeviceTest):
         self.await_touch()
 
     def test_a_fabric_that_cannot_be_found_is_named_and_another_one_is_felt(self):
+        if self.shared:
+            self.skipTest('cloth and patches come by the same messages in both ways')
         set_fabric = rospy.ServiceProxy('cloth/set_fabric', SetFabric)
         wool = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'config', 'fabrics', 'wool.yaml')
         with tempfile.NamedTemporaryFile('w', suffix='.yaml') as unknown:
