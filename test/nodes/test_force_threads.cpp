@@ -19,7 +19,8 @@ using exoskeleton::Time;
 TEST(ForceThreads, PosesAreWholeWhoeverBringsThem) {
   constexpr int kEach = 20000;
   constexpr int kWriters = 2;
-  ForceLoop loop({{{0.0075, 0.009}}});
+  constexpr exoskeleton::PerFinger<double> kRadii{{0.0075, 0.009}};
+  ForceLoop loop(kRadii);
   std::atomic<int> writing{kWriters};
   std::vector<std::thread> writers;
   for (int writer = 0; writer < kWriters; ++writer) {
