@@ -1,6 +1,6 @@
 // What the loop from fingertip to force takes and how it feels: the time of a millisecond with two
 // patches, and a person who pinches and moves wool through the simulated exoskeleton, with and
-// without prediction and linearised commands. bench/haptic_loop_nodes.cpp measures the real nodes.
+// without prediction and linearised commands. scripts/bench loop measures the real nodes.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "haptex/evaluation/exoskeleton_loop.h"
+#include "haptex/evaluation/workload.h"
 #include "haptex/exoskeleton/minimum_jerk.h"
 
 namespace haptex::evaluation {
@@ -23,7 +24,7 @@ constexpr double kDip = 0.8;                                                  //
 constexpr std::size_t kJumpSteps = 5 * ExoskeletonLoop::kStepsPerTick;        // 5 ms
 constexpr double kStep = 1e3 * exoskeleton::seconds(ExoskeletonLoop::kStep);  // ms
 constexpr Time kDeadline = milliseconds(20);
-constexpr int kMoments = 4;  // of a period, for a death
+constexpr int kMoments = unlessSanitized(4, 1);  // of a period, for a death
 
 /// From the other fingertip to this one.
 Vector3d directionOf(Finger finger, const PerFinger<Vector3d>& open) {

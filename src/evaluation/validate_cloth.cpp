@@ -81,6 +81,7 @@ void validateHangingStrip(const Sink& sink) {
     for (int cells : {20, 40, 80}) {
       if (kSanitized && cells > 20) break;
       for (double time_step : {0.001, 0.005, 0.0125, 0.04}) {
+        if (kSanitized && time_step < 0.005) continue;
         sink(relativeTo(exact,
                         "cloth/hanging_strip/k" + numbered(modulus) + "/cells" +
                             std::to_string(cells) + "/h" + numbered(time_step),

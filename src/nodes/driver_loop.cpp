@@ -176,6 +176,7 @@ void DriverLoop::dropClosedPort() {
 void DriverLoop::show() {
   for (const Finger finger : kFingers) snapshot_.fingers[finger] = controller_.measured(finger);
   snapshot_.operating_state = controller_.operatingState();
+  snapshot_.motors_on = controller_.motorsOn();
   snapshot_.fault = FixedText(controller_.fault());
   snapshot_.fault_is_a_stall = controller_.faultIsAStall();
   snapshot_.link = link_.status();

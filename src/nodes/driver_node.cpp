@@ -7,7 +7,6 @@
 #include <sensor_msgs/JointState.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -31,7 +30,7 @@ constexpr Time kJointPeriod = std::chrono::milliseconds(10);
 constexpr Time kMarkerPeriod = std::chrono::milliseconds(40);
 constexpr Time kOperatingStatePeriod = std::chrono::milliseconds(100);
 constexpr Time kPublishPeriod = std::chrono::milliseconds(4);
-constexpr Time kEndPatience = std::chrono::milliseconds(50);  // for forces to be zero
+constexpr Time kEndPatience = std::chrono::milliseconds(50);  // for the motors to be off
 constexpr Time kEndLook = std::chrono::milliseconds(1);
 constexpr Time kNewestStamp = std::chrono::milliseconds(20);  // of what a force answers
 constexpr std::uint32_t kMeasuredQueue = 20;  // messages, for a subscriber that is slow for 20 ms
@@ -102,14 +101,8 @@ DriverNode::~DriverNode() { stop(); }
 void DriverNode::stop() {
   if (stopping_.exchange(true)) return;
   loop_.ask(DriverRequest::kDisable);
-  const auto at_rest = [this] {
-    const DriverSnapshot now = loop_.status();
-    return std::all_of(kFingers.begin(), kFingers.end(), [&](Finger finger) {
-      return now.fingers[finger].desired_force.isZero(0.0);
-    });
-  };
   const Time end = steadyNow() + kEndPatience;
-  while (!at_rest() && steadyNow() < end) std::this_thread::sleep_for(kEndLook);
+  while (loop_.status().motors_on && steadyNow() < end) std::this_thread::sleep_for(kEndLook);
   for (FingerTopics& topics : fingers_.values) topics.forces.shutdown();
   loop_thread_.stop();
   publishing_thread_.join();
@@ -147,11 +140,12 @@ void DriverNode::subscriberGone(const ros::SingleSubscriberPublisher& subscriber
   const std::string node = subscriber.getSubscriberName();
   for (const Finger finger : kFingers) {
     {
+      // The renderer within this process commands on its own thread.
       const std::lock_guard<std::mutex> lock(commanders_mutex_);
       if (!commanders_.hasDied(finger, node)) continue;
+      loop_.commanderDied(finger);
+      fingers_[finger].filter.commanderDied(ros::Time::now(), steadyNow());
     }
-    loop_.commanderDied(finger);
-    fingers_[finger].filter.commanderDied(ros::Time::now(), steadyNow());
     ++commander_deaths_;
     ROS_WARN("%s, which commanded the %s, has gone: its force goes to zero", node.c_str(),
              name(finger));
@@ -164,13 +158,16 @@ void DriverNode::takeForce(Finger finger,
   const Time arrival = steadyNow();
   const ros::Time now = ros::Time::now();
   FingerTopics& topics = fingers_[finger];
-  if (const auto command = topics.filter.take(*message, now, arrival)) {
-    loop_.command(finger, *command, arrival, timeOf(message->measured, now, arrival));
+  std::string why;
+  {
     const std::lock_guard<std::mutex> lock(commanders_mutex_);
-    commanders_.commanded(finger, event.getPublisherName());
-    return;
+    if (const auto command = topics.filter.take(*message, now, arrival)) {
+      loop_.command(finger, *command, arrival, timeOf(message->measured, now, arrival));
+      commanders_.commanded(finger, event.getPublisherName());
+      return;
+    }
+    why = topics.filter.explain(*message, now);
   }
-  const std::string why = topics.filter.explain(*message, now);
   ROS_WARN_THROTTLE(1.0, "%s/servo_cf dropped: %s", name(finger), why.c_str());
   const std::lock_guard<std::mutex> lock(topics.mutex);
   topics.last_drop = why;

@@ -41,11 +41,15 @@ ForceLoop::ForceLoop(const exoskeleton::PerFinger<double>& radii)
 
 void ForceLoop::takePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival,
                          Time measured) {
-  inputs_[finger].pose.write({in_hand_base, arrival, measured, true});
+  FingerInput& input = inputs_[finger];
+  const std::lock_guard<std::mutex> lock(input.writers);
+  input.pose.write({in_hand_base, arrival, measured, true});
 }
 
 void ForceLoop::takeTwist(Finger finger, const FingertipTwist& in_hand_base, Time arrival) {
-  inputs_[finger].twist.write({in_hand_base, arrival, true});
+  FingerInput& input = inputs_[finger];
+  const std::lock_guard<std::mutex> lock(input.writers);
+  input.twist.write({in_hand_base, arrival, true});
 }
 
 void ForceLoop::takeHandBase(const Eigen::Isometry3d& in_world, Time time, Time arrival,

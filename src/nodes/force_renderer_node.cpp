@@ -188,7 +188,7 @@ void ForceRendererNode::takeFingertips(const haptex::Fingertips& message) {
 
 /// Whether the device tells of its fingers one by one only.
 bool ForceRendererNode::takesSingly(Time arrival) const {
-  return arrival - last_fingertips_ > FingertipFilter::kForgetAfter;
+  return arrival - last_fingertips_.load() > FingertipFilter::kForgetAfter;
 }
 
 void ForceRendererNode::takeState(const haptex::ClothState& message) {

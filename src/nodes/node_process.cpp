@@ -29,12 +29,20 @@ void askToEnd() {
 
 void takeSignal(int /*number*/) { askToEnd(); }
 
-/// What the master calls for `rosnode kill` and when another node takes the name.
+/// The second parameter of shutdown(caller, reason), if the caller has sent a text: it may be
+/// anybody.
+std::string reasonOf(XmlRpc::XmlRpcValue& parameters) {
+  using Value = XmlRpc::XmlRpcValue;
+  if (parameters.getType() != Value::TypeArray || parameters.size() < 2) return "no reason given";
+  Value& reason = parameters[1];
+  if (reason.getType() != Value::TypeString) return "the reason given is not a text";
+  return reason;
+}
+
+/// What the master calls for `rosnode kill` and when another node takes the name. Whatever is wrong
+/// with the request, the node ends: that is the safe answer.
 void takeShutdown(XmlRpc::XmlRpcValue& parameters, XmlRpc::XmlRpcValue& result) {
-  if (parameters.getType() == XmlRpc::XmlRpcValue::TypeArray && parameters.size() > 1) {
-    const std::string reason = parameters[1];
-    ROS_WARN("Asked to end: %s", reason.c_str());
-  }
+  ROS_WARN("Asked to end: %s", reasonOf(parameters).c_str());
   askToEnd();
   result = ros::xmlrpc::responseInt(1, "", 0);
 }

@@ -7,16 +7,14 @@ import subprocess
 import sys
 import threading
 import time
-import xmlrpc.client
 
-import rosgraph
 import rospy
 import rostest
 import tf2_ros
 from geometry_msgs.msg import PoseStamped, TwistStamped, Vector3, WrenchStamped
 from haptex.msg import OperatingState, ServoForce
 from haptex.srv import InjectFault
-from ros_fixtures import WAIT, Diagnostics, NodeTest
+from ros_fixtures import WAIT, Diagnostics, NodeTest, process_of
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
@@ -164,15 +162,6 @@ class Exoskeleton(NodeTest):
             took = 1e3 * (listener.last_felt - killed).to_sec()
             print(f'{what} below {listener.close_to_none} N {took:.1f} ms after the {who} was killed')
 
-    @staticmethod
-    def process(node):
-        """Its number, or None while it does not answer."""
-        uri = rosgraph.Master('/test').lookupNode(rospy.resolve_name(node))
-        try:
-            return xmlrpc.client.ServerProxy(uri).getPid('/test')[2]
-        except OSError:
-            return None
-
     def test_commanded_force_reaches_the_finger(self):
         self.hold()
         self.await_held()
@@ -225,7 +214,7 @@ class Exoskeleton(NodeTest):
     def test_a_driver_that_stood_still_does_not_say_that_the_device_was_switched_off(self):
         self.hold()
         self.await_held()
-        driver = self.process('exoskeleton_driver')
+        driver = process_of('exoskeleton_driver')
         os.kill(driver, signal.SIGSTOP)
         self.addCleanup(os.kill, driver, signal.SIGCONT)
         self.eventually(lambda: norm(self.driven.force) < NO_FORCE, 'motors that are off', 1.0)
@@ -241,12 +230,12 @@ class Exoskeleton(NodeTest):
     def test_no_force_after_the_driver_was_killed_and_works_when_it_is_back(self):
         self.hold()
         self.await_held()
-        driver = self.process('exoskeleton_driver')
+        driver = process_of('exoskeleton_driver')
         self.assertGreater(norm(self.felt.force), CLOSE)
         killed = rospy.Time.now()
         os.kill(driver, signal.SIGKILL)
         self.await_no_force(killed, 'driver')
-        self.eventually(lambda: self.process('exoskeleton_driver') not in (None, driver),
+        self.eventually(lambda: process_of('exoskeleton_driver') not in (None, driver),
                         'another driver')
         self.state.last = self.measured.last = None  # of the dead one
         self.recover()
@@ -336,14 +325,14 @@ class Exoskeleton(NodeTest):
         time.sleep(duration + 0.1)
         self.assertLessEqual(self.felt.largest, 5.0, faults)
         self.assertLessEqual(self.driven.largest, 5.0, faults)
-        self.assertEqual([self.process(node) for node in self.nodes], self.processes, faults)
+        self.assertEqual([process_of(node) for node in self.nodes], self.processes, faults)
         self.recover()
         self.await_held()
 
     nodes = ('exoskeleton_driver', 'exoskeleton_emulator')
 
     def test_force_stays_safe_under_every_fault(self):
-        self.processes = [self.process(node) for node in self.nodes]
+        self.processes = [process_of(node) for node in self.nodes]
         self.hold()
         for fault in FRAME_FAULTS:
             self.suffer([(fault, 'both', 0.3)])

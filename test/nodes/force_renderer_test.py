@@ -9,26 +9,21 @@ import signal
 import statistics
 import tempfile
 import time
-import xmlrpc.client
 
-import rosgraph
 import roslib.packages
 import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
-from haptex.msg import ClothState, Contact, ContactForces, OperatingState, ServoForce
+from haptex.msg import ClothState, Contact, ContactForces, ServoForce
 from haptex.srv import SetFabric
-from ros_fixtures import WAIT, Diagnostics, NodeTest
-from std_srvs.srv import Trigger
+from ros_fixtures import WAIT, Diagnostics, DeviceTest, process_of
 
 NAN = float('nan')
 FELT = 0.05  # N
-REPEATS = 3  # of a death
+REPEATS = 3  # of a death; 1 with the shared process, whose neighbours are the same programs
 DEADLINE = 20.0  # ms, from a death to zero force
 LOOP, SOURCES = 'force loop', 'force sources'  # names in the diagnostics
 FINGERS = ('index', 'thumb')
-NODES = ('cloth_simulation', 'proximity', 'exoskeleton_driver', 'exoskeleton_emulator',
-         'force_renderer')
 
 
 def norm(vector):
@@ -71,66 +66,26 @@ class Forces:
         return 1e3 * (felt[-1] - time_of_death), 1e3 * still
 
 
-class ForceRenderer(NodeTest):
+class ForceRenderer(DeviceTest):
     @classmethod
     def setUpClass(cls):
-        cls.ask = {}
-        for name in ('enable', 'home', 'clear_fault'):
-            rospy.wait_for_service(f'exoskeleton/{name}', WAIT)
-            cls.ask[name] = rospy.ServiceProxy(f'exoskeleton/{name}', Trigger)
-        cls.state = None
-        rospy.Subscriber('exoskeleton/operating_state', OperatingState, cls.take_state)
+        super().setUpClass()
+        cls.shared = cls.driver == cls.renderer
+        cls.repeats = 1 if cls.shared else REPEATS
+        cls.nodes = tuple(dict.fromkeys(('cloth_simulation', 'proximity', cls.driver,
+                                         'exoskeleton_emulator', cls.renderer)))
         cls.diagnostics = Diagnostics()
         cls.commanded = {finger: Forces(f'{finger}/servo_cf', ServoForce) for finger in FINGERS}
 
-    @classmethod
-    def take_state(cls, state):
-        cls.state = state
-
     def setUp(self):
         self.recover()
-        self.await_contact()
+        self.await_touch()
 
-    def recover(self):
-        """Homed and enabled, whatever was before."""
-        def is_ready():
-            type(self).state = None
-            time.sleep(0.15)  # the next operating state
-            state = self.state
-            if not state:
-                return False
-            if state.state == 'ENABLED' and state.is_homed:
-                return True
-            request = ('clear_fault' if state.state == 'FAULT' else
-                       None if state.is_busy else 'enable' if state.is_homed else 'home')
-            if request:
-                try:
-                    self.ask[request]()
-                except rospy.ServiceException:
-                    pass  # the driver is not there yet
-            return False
-
-        self.eventually(is_ready, lambda: f'homed and enabled: {self.state}', 2 * WAIT)
-
-    def await_contact(self):
+    def await_touch(self):
         """Both fingertips feel the cloth between them."""
-        def felt():
-            if not self.state or self.state.state != 'ENABLED':
-                self.recover()
-            return all(forces.size > FELT and forces.age() < 0.1
-                       for forces in self.commanded.values())
-
-        self.eventually(felt, lambda: 'contact: ' + self.diagnostics.last[SOURCES].message,
-                        2 * WAIT)
-
-    @staticmethod
-    def process(node):
-        """Its number, or None while it does not answer."""
-        try:
-            uri = rosgraph.Master('/test').lookupNode(rospy.resolve_name(node))
-            return xmlrpc.client.ServerProxy(uri).getPid('/test')[2]
-        except (OSError, rosgraph.MasterException):
-            return None
+        self.await_contact(lambda: all(forces.size > FELT and forces.age() < 0.1
+                                       for forces in self.commanded.values()),
+                           lambda: 'contact: ' + self.diagnostics.last[SOURCES].message)
 
     def one(self, topic, kind):
         return rospy.wait_for_message(topic, kind, WAIT)
@@ -168,7 +123,7 @@ class ForceRenderer(NodeTest):
         self.assertGreater(rate, 500.0)  # a busy machine; it prints what it was
 
     def test_bad_messages_do_not_matter(self):
-        processes = [self.process(node) for node in NODES]
+        processes = [process_of(node) for node in self.nodes]
         poses = rospy.Publisher('index/measured_cp', PoseStamped, queue_size=10)
         states = rospy.Publisher('cloth/state', ClothState, queue_size=10)
         self.eventually(lambda: poses.get_num_connections() and states.get_num_connections(),
@@ -197,10 +152,12 @@ class ForceRenderer(NodeTest):
                            int(before['poses and velocities dropped']) + 100)
         self.assertTrue(after['why the last one was dropped'])
         self.assertGreater(int(self.diagnostics.values(SOURCES)['states dropped']), 100)
-        self.assertEqual([self.process(node) for node in NODES], processes)
-        self.await_contact()
+        self.assertEqual([process_of(node) for node in self.nodes], processes)
+        self.await_touch()
 
     def test_a_fabric_that_cannot_be_found_is_named_and_another_one_is_felt(self):
+        if self.shared:
+            self.skipTest('cloth and patches come by the same messages in both ways')
         set_fabric = rospy.ServiceProxy('cloth/set_fabric', SetFabric)
         wool = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'config', 'fabrics', 'wool.yaml')
         with tempfile.NamedTemporaryFile('w', suffix='.yaml') as unknown:
@@ -214,15 +171,15 @@ class ForceRenderer(NodeTest):
         self.eventually(lambda: "'felt'" in self.diagnostics.values(SOURCES)[why],
                         'diagnostics that name the fabric')
         self.assertTrue(set_fabric('cotton_knit').success)
-        self.await_contact()
+        self.await_touch()
         self.assertTrue(set_fabric('wool').success)
-        self.await_contact()
+        self.await_touch()
 
     def die(self, node, listeners, zero):
         """Kills a node under contact. @returns how long forces lasted (ms), the machine's standing
         still subtracted"""
-        victim = self.process(node)
-        others = {other: self.process(other) for other in NODES if other != node}
+        victim = process_of(node)
+        others = {other: process_of(other) for other in self.nodes if other != node}
         self.eventually(lambda: all(listener.size > zero for listener in listeners), 'a force')
         death = rospy.get_time()
         os.kill(victim, signal.SIGKILL)
@@ -234,20 +191,20 @@ class ForceRenderer(NodeTest):
         total, still = max(lasted)
         print(f'forces lasted {total:.1f} ms after {node} was killed, of which the machine stood '
               f'still for {still:.1f} ms')
-        self.eventually(lambda: self.process(node) not in (None, victim), f'another {node}')
+        self.eventually(lambda: process_of(node) not in (None, victim), f'another {node}')
         self.recover()
-        self.await_contact()
-        self.assertEqual({other: self.process(other) for other in others}, others)
+        self.await_touch()
+        self.assertEqual({other: process_of(other) for other in others}, others)
         return total - still
 
     def no_force_after_the_death_of(self, node, listeners=None, zero=0.0):
         listeners = listeners or list(self.commanded.values())
         lasted = []
-        for _ in range(2 * REPEATS):
+        for _ in range(2 * self.repeats):
             took = self.die(node, listeners, zero)
             if took > 0.0:  # else the force had fallen a moment before, which tells nothing
                 lasted.append(took)
-            if len(lasted) == REPEATS:
+            if len(lasted) == self.repeats:
                 break
         self.assertTrue(lasted)
         print(f'{node}: median {statistics.median(lasted):.1f} ms, largest {max(lasted):.1f} ms')
@@ -260,15 +217,19 @@ class ForceRenderer(NodeTest):
         self.no_force_after_the_death_of('proximity')
 
     def test_no_force_after_the_driver_was_killed(self):
-        self.no_force_after_the_death_of('exoskeleton_driver')
+        if self.shared:
+            self.skipTest('it is the renderer, whose death is looked at below')
+        self.no_force_after_the_death_of(self.driver)
 
     def test_no_force_after_the_device_was_killed(self):
+        if self.shared:
+            self.skipTest('the driver alone ends that force, by the same code in both ways')
         self.no_force_after_the_death_of('exoskeleton_emulator')
 
     def test_no_force_after_the_renderer_was_killed(self):
         motors = [Forces(f'emulator/{finger}/motor_force', WrenchStamped) for finger in FINGERS]
         self.eventually(lambda: all(motor.size > FELT for motor in motors), 'motors that push')
-        self.no_force_after_the_death_of('force_renderer', motors, FELT)
+        self.no_force_after_the_death_of(self.renderer, motors, FELT)
 
 
 if __name__ == '__main__':

@@ -3,17 +3,15 @@
 import math
 import os
 import signal
-import xmlrpc.client
 
 import dynamic_reconfigure.client
-import rosgraph
 import rospy
 import rostest
 from geometry_msgs.msg import Point, Quaternion, Transform, TransformStamped, Vector3
 from haptex.msg import ClothState
 from haptex.srv import QueryProximity
 from haptex.srv import QueryProximityRequest as Request
-from ros_fixtures import WAIT, Diagnostics, NodeTest
+from ros_fixtures import WAIT, Diagnostics, NodeTest, process_of
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
@@ -207,8 +205,7 @@ class Proximity(NodeTest):
 
     def test_stopped_cloth_is_stale_until_it_goes_on(self):
         self.accepted(sphere())
-        uri = rosgraph.Master('/test').lookupNode(rospy.resolve_name('cloth_simulation'))
-        _, _, process = xmlrpc.client.ServerProxy(uri).getPid('/test')
+        process = process_of('cloth_simulation')
         os.kill(process, signal.SIGSTOP)
         try:
             self.eventually(lambda: not self.query(sphere()).success, 'a refusal')

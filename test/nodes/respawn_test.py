@@ -3,25 +3,14 @@
 import os
 import signal
 import time
-import xmlrpc.client
 
-import rosgraph
 import rospy
 import rostest
 from haptex.msg import Contact, Tactile
-from ros_fixtures import NodeTest
+from ros_fixtures import NodeTest, process_of
 
 FELT = 0.2  # N, of the hand that holds the cloth
 NODES = ['proximity', 'force_renderer', 'tactile_renderer', 'cloth_simulation']
-
-
-def process_of(node):
-    """Its number; None while the node is away."""
-    try:
-        uri = rosgraph.Master('/respawn_test').lookupNode('/haptex/' + node)
-        return xmlrpc.client.ServerProxy(uri).getPid('/respawn_test')[2]
-    except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
-        return None
 
 
 class Respawn(NodeTest):

@@ -1,9 +1,13 @@
 """What the tests of nodes in Python have in common."""
 import time
 import unittest
+import xmlrpc.client
 
+import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
+from haptex.msg import OperatingState
+from std_srvs.srv import Trigger
 
 WAIT = 30.0  # s
 
@@ -21,6 +25,15 @@ def eventually(happens, what, wait=WAIT, meanwhile=lambda: None):
 def await_connections(*publishers):
     for publisher in publishers:
         eventually(publisher.get_num_connections, f'a subscriber of {publisher.name}')
+
+
+def process_of(node):
+    """Its number, or None while it does not answer."""
+    try:
+        uri = rosgraph.Master('/test').lookupNode(rospy.resolve_name(node))
+        return xmlrpc.client.ServerProxy(uri).getPid('/test')[2]
+    except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
+        return None
 
 
 class Diagnostics:
@@ -47,3 +60,67 @@ class Diagnostics:
 
 class NodeTest(unittest.TestCase):
     eventually = staticmethod(eventually)
+
+
+class DeviceTest(NodeTest):
+    """With an exoskeleton or its emulator and what is around it. With the parameter ~shared driver
+    and force renderer are one process."""
+
+    @classmethod
+    def setUpClass(cls):
+        shared = rospy.get_param('~shared', False)
+        cls.driver = 'haptics' if shared else 'exoskeleton_driver'
+        cls.renderer = 'haptics' if shared else 'force_renderer'
+        cls.ask = {}
+        for name in ('enable', 'disable', 'home', 'clear_fault'):
+            rospy.wait_for_service(f'exoskeleton/{name}', WAIT)
+            cls.ask[name] = rospy.ServiceProxy(f'exoskeleton/{name}', Trigger)
+        cls.state = None
+        rospy.Subscriber('exoskeleton/operating_state', OperatingState, cls.take_state)
+
+    @classmethod
+    def take_state(cls, state):
+        cls.state = state
+
+    def await_state(self, is_reached, request_for, what):
+        """Asks again and again for what `request_for` the state tells; None: for nothing."""
+        def reached():
+            type(self).state = None
+            time.sleep(0.15)  # the next operating state
+            state = self.state
+            if not state:
+                return False
+            if is_reached(state):
+                return True
+            request = request_for(state)
+            if request:
+                try:
+                    self.ask[request]()
+                except rospy.ServiceException:
+                    pass  # the driver is not there yet
+            return False
+
+        self.eventually(reached, lambda: f'{what}: {self.state}', 2 * WAIT)
+
+    def recover(self):
+        """Homed and enabled, whatever was before."""
+        self.await_state(lambda state: state.state == 'ENABLED' and state.is_homed,
+                         lambda state: ('clear_fault' if state.state == 'FAULT' else
+                                        None if state.is_busy else
+                                        'enable' if state.is_homed else 'home'),
+                         'homed and enabled')
+
+    def disable(self):
+        """The motors off, whatever was before."""
+        self.await_state(lambda state: state.state == 'DISABLED' and not state.is_busy,
+                         lambda state: 'clear_fault' if state.state == 'FAULT' else 'disable',
+                         'disabled')
+
+    def await_contact(self, is_felt, what='contact'):
+        """@param is_felt whether forces are @param what as for eventually()"""
+        def felt():
+            if not self.state or self.state.state != 'ENABLED':
+                self.recover()
+            return is_felt()
+
+        self.eventually(felt, what, 2 * WAIT)

@@ -1,29 +1,33 @@
 #!/usr/bin/python3
-"""Nodes end at once, forces first: by SIGINT, SIGTERM and `rosnode kill`, at rest and under contact,
+"""Nodes end at once, forces first: by SIGINT, SIGTERM and shutdown calls, at rest and under contact,
 and so does a whole launch."""
+import collections
 import os
+import pathlib
 import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import time
 import xmlrpc.client
 
 import rosgraph
-import roslib.packages
 import rospy
 import rostest
-from haptex.msg import OperatingState, ServoForce
-from ros_fixtures import WAIT, NodeTest
-from std_srvs.srv import Trigger
+from geometry_msgs.msg import WrenchStamped
+from haptex.msg import ServoForce
+from ros_fixtures import WAIT, DeviceTest, Diagnostics, process_of
 
 FELT = 0.05  # N
+NO_FORCE = 0.01  # N, of motors
 GONE = 1.0  # s, from the signal to the end of the process
+UNFELT = 0.02  # s, from the end of a node that commands no force itself to zero force
 MOST_WORK = 0.05 * GONE  # s, of a thread meanwhile: 5 % of a core
 TICK = 1.0 / os.sysconf('SC_CLK_TCK')  # s, what the system counts a thread's work in
-NODES = ('force_renderer', 'exoskeleton_driver', 'cloth_simulation', 'proximity',
-         'exoskeleton_emulator')
-WAYS = ('SIGINT', 'SIGTERM')
+DEVICE = 'exoskeleton emulator'  # name in the diagnostics
+# What a shutdown call may bring: who asks and why, or anything.
+CALLS = (('/test', 'a test'), ('/test', 17), ('/test', {'why': ['a', 1.5]}), ('/test',), ())
 
 
 def thread_work(process):
@@ -47,118 +51,137 @@ def is_alive(process):
         return False
 
 
-class Stopping(NodeTest):
+class Forces:
+    """Stamps (s) and sizes (N) of the last forces on a topic."""
+
+    def __init__(self, topic, kind, force_of):
+        self.series = collections.deque(maxlen=5000)
+        self.force_of = force_of
+        rospy.Subscriber(topic, kind, self.take, tcp_nodelay=True)
+
+    def take(self, message):
+        force = self.force_of(message)
+        self.series.append((message.header.stamp.to_sec(),
+                            (force.x ** 2 + force.y ** 2 + force.z ** 2) ** 0.5))
+
+    @property
+    def size(self):
+        stamp, size = self.series[-1] if self.series else (0.0, 0.0)
+        return size if rospy.get_time() - stamp < 0.1 else 0.0
+
+    def until(self, end):
+        return [(stamp, size) for stamp, size in list(self.series) if stamp <= end]
+
+
+class Stopping(DeviceTest):
     @classmethod
     def setUpClass(cls):
-        cls.ask = {}
-        for name in ('enable', 'home', 'clear_fault'):
-            rospy.wait_for_service(f'exoskeleton/{name}', WAIT)
-            cls.ask[name] = rospy.ServiceProxy(f'exoskeleton/{name}', Trigger)
-        cls.state = None
-        cls.force = 0.0
-        rospy.Subscriber('exoskeleton/operating_state', OperatingState, cls.take_state)
-        rospy.Subscriber('index/servo_cf', ServoForce, cls.take_force, tcp_nodelay=True)
+        super().setUpClass()
+        cls.shared = cls.driver == cls.renderer
+        # The others are the same programs in both ways.
+        cls.nodes = (cls.driver,) if cls.shared else (cls.renderer, cls.driver, 'cloth_simulation',
+                                                      'proximity', 'exoskeleton_emulator')
+        cls.diagnostics = Diagnostics()
+        cls.commanded = Forces('index/servo_cf', ServoForce, lambda message: message.force)
+        cls.driven = Forces('emulator/index/motor_force', WrenchStamped,
+                            lambda message: message.wrench.force)
 
-    @classmethod
-    def take_state(cls, state):
-        cls.state = state
+    def await_touch(self):
+        """Commanded and driven."""
+        self.await_contact(lambda: self.commanded.size > FELT and self.driven.size > FELT)
 
-    @classmethod
-    def take_force(cls, message):
-        cls.force = (message.force.x ** 2 + message.force.y ** 2 + message.force.z ** 2) ** 0.5
-
-    @staticmethod
-    def process(node):
-        """Its number, or None while it does not answer."""
-        try:
-            uri = rosgraph.Master('/test').lookupNode(rospy.resolve_name(node))
-            return xmlrpc.client.ServerProxy(uri).getPid('/test')[2]
-        except (OSError, rosgraph.MasterException):
-            return None
-
-    def recover(self):
-        """Homed and enabled, whatever was before."""
-        def is_ready():
-            type(self).state = None
-            time.sleep(0.15)  # the next operating state
-            state = self.state
-            if not state:
-                return False
-            if state.state == 'ENABLED' and state.is_homed:
-                return True
-            request = ('clear_fault' if state.state == 'FAULT' else
-                       None if state.is_busy else 'enable' if state.is_homed else 'home')
-            if request:
-                try:
-                    self.ask[request]()
-                except rospy.ServiceException:
-                    pass  # the driver is not there yet
-            return False
-
-        self.eventually(is_ready, lambda: f'homed and enabled: {self.state}', 2 * WAIT)
-
-    def await_contact(self):
-        def felt():
-            if not self.state or self.state.state != 'ENABLED':
-                self.recover()
-            return self.force > FELT
-
-        self.eventually(felt, 'contact', 2 * WAIT)
-
-    def stop(self, node, way):
-        """Ends it and waits until another one of its name is there."""
-        self.eventually(lambda: self.process(node), f'the node {node}')
-        victim = self.process(node)
+    def end(self, node, way):
+        """Ends it and waits until another one of its name is there. @returns when it was asked and
+        when it had gone, s"""
+        self.eventually(lambda: process_of(node), f'the node {node}')
+        victim = process_of(node)
+        uri = rosgraph.Master('/test').lookupNode(rospy.resolve_name(node))
         before = thread_work(victim)
-        begin = time.monotonic()
-        if way == 'rosnode kill':
-            uri = rosgraph.Master('/test').lookupNode(rospy.resolve_name(node))
-            xmlrpc.client.ServerProxy(uri).shutdown('/test', 'a test')
+        asked = rospy.get_time()
+        if isinstance(way, tuple):
+            self.assertEqual(xmlrpc.client.ServerProxy(uri).shutdown(*way), [1, '', 0])
         else:
             os.kill(victim, getattr(signal, way))
         after = before
-        while is_alive(victim) and time.monotonic() < begin + 5.0 * GONE:
+        while is_alive(victim) and rospy.get_time() < asked + 5.0 * GONE:
             after = thread_work(victim) or after
             time.sleep(0.01)
-        took = time.monotonic() - begin
+        gone = rospy.get_time()
         work = max((after[thread] - before.get(thread, 0.0) for thread in after), default=0.0)
-        print(f'{node}: gone {1e3 * took:.0f} ms after {way}, busiest thread {1e3 * work:.0f} ms')
-        self.assertLess(took, GONE, f'{node} by {way}')
+        print(f'{node}: gone {1e3 * (gone - asked):.0f} ms after {way}, busiest thread '
+              f'{1e3 * work:.0f} ms')
+        self.assertLess(gone - asked, GONE, f'{node} by {way}')
         self.assertLessEqual(work, MOST_WORK + TICK, f'a thread of {node} by {way}')
-        self.eventually(lambda: self.process(node) not in (None, victim), f'another {node}')
+        self.eventually(lambda: process_of(node) not in (None, victim), f'another {node}')
+        return asked, gone
+
+    def watchdog_trips(self):
+        return int(self.diagnostics.values(DEVICE)['watchdog trips of the firmware'])
+
+    def check_forces_first(self, node, way, asked, gone):
+        """Who commands and who drives takes the force to zero before it goes; where the others are
+        missing the force falls by itself."""
+        if node == 'exoskeleton_emulator':
+            return  # there is no device any more
+        own = node in (self.renderer, self.driver)
+        end = gone if own else gone + UNFELT
+        self.assertTrue(any(size > FELT for stamp, size in self.driven.until(asked)
+                            if stamp > asked - 0.1), f'a force before {node} was ended')
+        listeners = [(self.driven, NO_FORCE)] if node == self.driver else []
+        if node != self.driver or self.shared:
+            listeners.append((self.commanded, 0.0))
+        for listener, zero in listeners:
+            stamp, size = listener.until(end)[-1]
+            self.assertGreater(stamp, asked, f'a force after {node} was ended by {way}')
+            self.assertLessEqual(size, zero, f'the last force before {node} had gone by {way}')
 
     def test_nodes_end_under_contact(self):
-        for node in NODES:
-            for way in WAYS:
+        for node in self.nodes:
+            for way in ('SIGTERM',) if self.shared else ('SIGINT', 'SIGTERM'):
                 self.recover()
-                self.await_contact()
-                self.stop(node, way)
+                self.await_touch()
+                trips = self.watchdog_trips() if node == self.driver else None
+                asked, gone = self.end(node, way)
+                self.check_forces_first(node, way, asked, gone)
+                if trips is not None:  # else the device ends the force of a dead driver
+                    self.assertEqual(self.watchdog_trips(), trips, f'{node} by {way}')
 
     def test_nodes_end_at_rest(self):
-        for node in NODES:
-            self.stop(node, 'rosnode kill')
-            self.stop(node, 'SIGINT')
+        calls = list(CALLS)
+        for node in self.nodes:
+            for way in (calls.pop(0), 'SIGINT'):
+                self.disable()
+                self.eventually(lambda: self.driven.size <= NO_FORCE, 'motors that are off')
+                self.end(node, way)
 
     def test_a_launch_ends_without_escalation(self):
         with socket.socket() as free:
             free.bind(('', 0))
             port = free.getsockname()[1]
-        paths = roslib.packages.get_pkg_dir('haptex') + '/test/nodes'
+        here = pathlib.Path(__file__).resolve().parent
         environment = dict(os.environ, ROS_MASTER_URI=f'http://127.0.0.1:{port}')
+        environment.pop('ROS_NAMESPACE', None)  # of this test
         link = os.path.join(tempfile.mkdtemp(), 'exoskeleton')
         launch = subprocess.Popen(
             ['roslaunch', '-p', str(port), 'haptex', 'haptex.launch', f'port:={link}',
-             'emulator:=true', f'path:={paths}/hold_edge.yaml'], env=environment,
+             'emulator:=true', f'path:={here}/hold_edge.yaml',
+             f'shared:={str(self.shared).lower()}'], env=environment,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        self.addCleanup(launch.kill)
-        time.sleep(8.0)
+        self.addCleanup(launch.wait)
+        self.addCleanup(launch.terminate)  # with its nodes, if it is still there
+        watcher = subprocess.Popen([sys.executable, f'{here}/watch_force.py', 'index', str(FELT)],
+                                   env=environment, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(watcher.kill)
+        self.assertIn('felt\n', iter(watcher.stdout.readline, ''))  # after what rospy says
         begin = time.monotonic()
         launch.send_signal(signal.SIGINT)
         output, _ = launch.communicate(timeout=30.0)
         took = time.monotonic() - begin
-        print(f'a launch is gone {took:.1f} s after SIGINT')
+        last, _ = watcher.communicate(timeout=WAIT)
+        print(f'a launch is gone {took:.1f} s after SIGINT; {last.strip()}')
         self.assertNotIn('escalating', output)
         self.assertLess(took, 5.0)  # roslaunch itself waits for one node after the other
+        self.assertIn('the last force: 0 N\n', last)
 
 
 if __name__ == '__main__':

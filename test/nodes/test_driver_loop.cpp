@@ -205,7 +205,7 @@ TEST_F(ADriverLoop, EndsForcesWhenAskedTo) {
     EXPECT_EQ(loop_.status().operating_state.mode, mode);
     EXPECT_TRUE(eventually([&](const DriverSnapshot& now) {
       loop_.command(Finger::kIndex, threeNewtons(), steadyNow());  // in vain
-      return now.fingers[Finger::kIndex].desired_force.norm() == 0.0 &&
+      return now.fingers[Finger::kIndex].desired_force.norm() == 0.0 && !now.motors_on &&
              now.fingers[Finger::kIndex].force.norm() < 0.3;
     }));
   }

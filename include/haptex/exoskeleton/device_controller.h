@@ -69,6 +69,9 @@ class DeviceController {
 
   const FingerMeasurement& measured(Finger finger) const { return fingers_[finger].measurement(); }
   const OperatingState& operatingState() const { return states_.state(); }
+  /// Whether the last command drove the motors: after disable() they are on until no torque is
+  /// left.
+  bool motorsOn() const { return command_.mode != DriveMode::kOff; }
   /// What latched the fault, in plain words; empty without one.
   const std::string& fault() const { return states_.fault(); }
   /// The latched fault is a silence of the device: it may work again without being homed.

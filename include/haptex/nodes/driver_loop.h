@@ -41,6 +41,7 @@ struct DriverSnapshot {
   exoskeleton::Time state_time{0};  ///< when the newest state of the device was received
   exoskeleton::PerFinger<exoskeleton::FingerMeasurement> fingers;
   exoskeleton::OperatingState operating_state;
+  bool motors_on = false;         ///< by the last command
   FixedText fault;                ///< what latched the fault; empty without one
   bool fault_is_a_stall = false;  ///< the device was silent for a moment
   exoskeleton::LinkStatus link = exoskeleton::LinkStatus::kConnecting;

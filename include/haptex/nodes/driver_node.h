@@ -69,10 +69,10 @@ class DriverNode {
     ros::Publisher twist;
     ros::Publisher wrench;
     ros::Subscriber forces;
-    ServoForceFilter filter;
-    std::mutex mutex;        // guards the next
-    std::string last_drop;   // why the last command was dropped
-    Time last_drop_time{0};  // when
+    ServoForceFilter filter;  // guarded by commanders_mutex_, but for its counts
+    std::mutex mutex;         // guards the next
+    std::string last_drop;    // why the last command was dropped
+    Time last_drop_time{0};   // when
     bool has_dropped = false;
   };
 
@@ -110,7 +110,7 @@ class DriverNode {
   ros::NodeHandle node_;
   ros::NodeHandle force_node_;  // whose callbacks run where the messages arrive
   ImmediateQueue force_queue_;
-  std::mutex commanders_mutex_;  // guards the next
+  std::mutex commanders_mutex_;  // guards the next, and the filters of the fingers
   CommanderWatch commanders_;
 
   // Used by the loop's thread only.

@@ -81,8 +81,9 @@ struct ForceLoopStatus {
   std::uint64_t rejected_steps = 0;  ///< that were not finite
 };
 
-/// One thread ticks; it does not wait, allocate or free. One other thread brings what comes in, one
-/// gives layers and patches, any may look.
+/// One thread ticks; it does not wait, allocate or free. Any bring poses, velocities and
+/// heartbeats, one other thread brings what else comes in, one gives layers and patches, any may
+/// look.
 class ForceLoop {
  public:
   using Time = exoskeleton::Time;
@@ -101,14 +102,18 @@ class ForceLoop {
   /// Times are those of steadyNow(). @param radii of the fingertips, m, > 0
   explicit ForceLoop(const exoskeleton::PerFinger<double>& radii);
 
-  // By the thread of what comes in; only what is believed. Arrivals are when the messages came.
-  /// @param measured its stamp, by any clock, to be told with the force that comes of it
+  // Only what is believed. Arrivals are when the messages came.
+  /// By any thread. @param measured its stamp, by any clock, to be told with the force that comes
+  /// of it
   void takePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival,
                 Time measured = Time{0});
+  /// By any thread.
   void takeTwist(Finger finger, const FingertipTwist& in_hand_base, Time arrival);
+  void takeHeartbeat(Time arrival);
+
+  // By the thread of what else comes in.
   /// @param time when the hand was there @param fixed a static transform
   void takeHandBase(const Eigen::Isometry3d& in_world, Time time, Time arrival, bool fixed);
-  void takeHeartbeat(Time arrival);
   void takeState(const LargeScaleState& state, Time arrival);
   /// Pose of the contactor array in the fingertip's frame; without it what is of the array
   /// is zero.
@@ -167,6 +172,7 @@ class ForceLoop {
     bool known = false;
   };
   struct FingerInput {
+    std::mutex writers;  // guards writing the next two; never taken by the loop
     TripleBuffer<Pose> pose;
     TripleBuffer<Twist> twist;
     TripleBuffer<Array> array;

@@ -130,7 +130,8 @@ class ForceRendererNode {
   DurationHistogram tick_durations_;
   int ticks_to_contact_ = 0;  // of the loop's thread
   ros::Subscriber fingertip_subscriber_;
-  Time last_fingertips_{0};  // where they arrive
+  // Where they arrive; read where single poses do, which within one process is another thread.
+  std::atomic<Time> last_fingertips_{Time{0}};
 
   // Of the thread of what comes in.
   LargeScaleState state_;
