@@ -1,5 +1,7 @@
 #include "haptex/nodes/loop_diagnostics.h"
 
+#include "haptex/nodes/scheduling.h"
+
 namespace haptex::nodes {
 namespace {
 
@@ -31,6 +33,8 @@ void LoopDiagnostics::diagnose(const PeriodicThread& loop,
     status.summary(DiagnosticStatus::OK, "in time");
   }
   status.add("SCHED_FIFO", refused.empty() ? "granted" : "not granted: " + refused);
+  const std::string& unlocked = lockMemory();
+  status.add("memory", unlocked.empty() ? "locked" : "not locked: " + unlocked);
   status.add("periods", loop.periods());
   status.add("periods missed", missed);
   addQuantiles(status, "wake-up jitter", "of the last second", lateness.since(lateness_));

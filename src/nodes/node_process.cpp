@@ -64,6 +64,7 @@ int runNode(int argc, char** argv, const ProcessTraits& traits,
   const ros::NodeHandle started;  // without a node ROS_FATAL prints nothing
   takeOverEnding();
   preferMessages(traits.on_force_path);
+  if (traits.on_force_path) lockMemory();
   int status = 0;
   try {
     RunningNode running = make();

@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <sys/prctl.h>
 
+#include <cstddef>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +12,18 @@
 namespace haptex::nodes {
 
 using exoskeleton::Time;
+
+namespace {
+
+/// So that the first calls of the work find their pages.
+void touchStack() {
+  constexpr std::size_t kBytes = 64 << 10;
+  constexpr std::size_t kPage = 4 << 10;
+  volatile char pages[kBytes];
+  for (std::size_t i = 0; i < kBytes; i += kPage) pages[i] = 0;
+}
+
+}  // namespace
 
 NextPeriod nextPeriod(Time start, Time period, Time now) {
   const std::int64_t passed = now < start ? 0 : (now - start) / period;
@@ -53,6 +66,8 @@ void PeriodicThread::run() {
   // Without SCHED_FIFO the kernel may wake a thread 50 us late to save energy. 1 ns: as exact as
   // it can.
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  touchStack();
+  touchStack();
   NextPeriod next{steadyNow() + period_, 0};
   Time last = next.start - 2 * period_;  // the first call need not wait
   while (!stopping_) {

@@ -2,6 +2,8 @@
 
 #include <ros/poll_manager.h>
 #include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -49,6 +51,23 @@ class SocketThread {
   Time last_look_{0};
   int quick_looks_ = 0;
 };
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
+std::string tryToLockMemory() {
+  if (kSanitized) return "built with a sanitizer";
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  if (limit.rlim_cur != RLIM_INFINITY && geteuid() != 0) {
+    return "give the user memlock unlimited in /etc/security/limits.conf";
+  }
+  if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0) return "";
+  return std::generic_category().message(errno);
+}
 
 int lastOf(const cpu_set_t& processors) {
   int last = CPU_SETSIZE - 1;
@@ -101,6 +120,11 @@ void keepOffForceProcessor(pthread_t thread) {
   if (CPU_COUNT(&allowed) == 1) return;
   CPU_CLR(lastOf(allowed), &allowed);
   pthread_setaffinity_np(thread, sizeof allowed, &allowed);
+}
+
+const std::string& lockMemory() {
+  static const std::string why = tryToLockMemory();
+  return why;
 }
 
 void preferMessages(bool on_force_path) {

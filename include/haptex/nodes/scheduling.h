@@ -45,6 +45,12 @@ class OrdinaryScope {
   sched_param parameters_{};
 };
 
+/// Once per process: what it has touched, or will touch, stays in memory. Not under a limit
+/// (RLIMIT_MEMLOCK), at which later allocations would fail, nor under sanitizers, whose shadow of
+/// the memory is larger than the machine's.
+/// @returns why not; empty: it stays
+const std::string& lockMemory();
+
 /// After ros::start(): roscpp's thread that reads and writes the sockets comes before what is
 /// ordinary. Its other threads (services of the graph, console) stay as they are.
 void preferMessages(bool on_force_path);
