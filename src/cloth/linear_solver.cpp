@@ -18,7 +18,6 @@ constexpr double kNumberOverBlock = 0.2;
 constexpr double kExpectedSolves = 8.0;
 constexpr double kExpectedIterations = 3.0;
 constexpr int kMostFreshIterations = 60;
-constexpr int kTrialIterations = 2;  // with an old factor, that show how fast it converges
 constexpr int kFirstFreshSolves = 4;
 constexpr int kMostFreshSolves = 64;
 constexpr int kFirstDirectSolves = 8;
@@ -107,8 +106,7 @@ bool LinearSolver::makeFactor(const SymmetricBlockMatrix& matrix) {
 }
 
 /// With an old factor the iterations are given up when they have cost what a new one and its
-/// iterations cost, or soon if they converge too slowly for that, and go on with that from where
-/// they are.
+/// iterations cost, and go on with that from where they are.
 SolveResult LinearSolver::solveByKeptFactor(const SymmetricBlockMatrix& matrix,
                                             const BlockVector& rhs, double tolerance,
                                             BlockVector& x) {
@@ -123,11 +121,7 @@ SolveResult LinearSolver::solveByKeptFactor(const SymmetricBlockMatrix& matrix,
   if (fresh_solves_left_ > 0) {
     --fresh_solves_left_;
   } else if (factor_kept_) {
-    const int most =
-        1 + fresh_iterations_ + static_cast<int>(factorisation_cost_ / factor_iteration_cost_);
-    iterate(kTrialIterations);
-    const double on_the_way = std::pow(tolerance, static_cast<double>(kTrialIterations) / most);
-    if (!result.converged && result.residual <= on_the_way) iterate(most - kTrialIterations);
+    iterate(1 + fresh_iterations_ + static_cast<int>(factorisation_cost_ / factor_iteration_cost_));
     if (result.converged) {
       fresh_solves_next_ = kFirstFreshSolves;
     } else {

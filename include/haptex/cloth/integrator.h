@@ -28,8 +28,8 @@ namespace haptex::cloth {
 /// the last steps (EnergyBalance). What a linearised stage, a buckling element or a solver's
 /// tolerance adds beyond is taken out of the velocities. Where that would be more than a tenth of
 /// the kinetic energy, or a number is not finite, the step is taken anew by backward Euler: Newton
-/// iterations from the linearised stage, cut short where rest would be better, until it is less
-/// (StageSolver::descend()).
+/// iterations from the linearised stage, cut short where rest would be better, until it is less;
+/// with every further solve twice as much may be taken, up to all (StageSolver::descend()).
 ///
 /// A step allocates nothing: all buffers are made by the constructor, and only those that the
 /// method needs.
