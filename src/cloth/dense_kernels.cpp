@@ -5,6 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "haptex/cloth/dense_kernels_avx512.h"
+
 namespace haptex::cloth {
 namespace {
 
@@ -30,7 +32,7 @@ template <typename R>
 enum class Store { kSubtract, kAssign };
 
 /// kVectors registers of rows by kColumns columns of A B^T. The accumulators, the loads and one
-/// broadcast have to stay in the registers: three by three in sixteen, three by six in thirty-two.
+/// broadcast have to stay in the sixteen registers: three by three.
 template <typename R, int kVectors, int kColumns, typename T>
 [[gnu::always_inline]] inline void sumTile(int depth, const T* a, int lda, const T* b, int ldb,
                                            typename R::Lanes (&sum)[kColumns][kVectors]) {
@@ -124,7 +126,6 @@ template <Store kStore, typename R, int kColumns, typename T>
 template <typename R, typename T>
 [[gnu::always_inline]] inline void subtractProductOf(int rows, int columns, int depth, const T* a,
                                                      int lda, const T* b, int ldb, T* c, int ldc) {
-  constexpr int kWide = sizeof(typename R::Lanes) >= 64 ? 6 : 3;
   constexpr int kRows = 3 * R::kLanes;
   constexpr int kDepth = 192;
   if (columns == 3) {  // A passes once
@@ -138,15 +139,9 @@ template <typename R, typename T>
       // The last part takes up what is too short for a register.
       const int height = rows - i < kRows + R::kLanes ? rows - i : kRows;
       int j = 0;
-      for (; j + kWide <= columns; j += kWide) {
-        someColumns<Store::kSubtract, R, kWide>(height, part, a_part + i, lda, b_part + j, ldb,
-                                                c + i + static_cast<std::ptrdiff_t>(ldc) * j, ldc);
-      }
-      if constexpr (kWide > 3) {
-        for (; j + 3 <= columns; j += 3) {
-          someColumns<Store::kSubtract, R, 3>(height, part, a_part + i, lda, b_part + j, ldb,
-                                              c + i + static_cast<std::ptrdiff_t>(ldc) * j, ldc);
-        }
+      for (; j + 3 <= columns; j += 3) {
+        someColumns<Store::kSubtract, R, 3>(height, part, a_part + i, lda, b_part + j, ldb,
+                                            c + i + static_cast<std::ptrdiff_t>(ldc) * j, ldc);
       }
       for (; j < columns; ++j) {
         for (int r = i; r < i + height; ++r) {
@@ -163,16 +158,10 @@ template <typename R, typename T>
 template <typename R, typename T>
 [[gnu::always_inline]] inline void multiplyOf(int rows, int columns, int depth, const T* a, int lda,
                                               const T* b, int ldb, T* c, int ldc) {
-  constexpr int kWide = sizeof(typename R::Lanes) >= 64 ? 6 : 3;
   constexpr int kRows = 3 * R::kLanes;
   for (int i = 0; i < rows;) {
     const int height = rows - i < kRows + R::kLanes ? rows - i : kRows;
-    int j = 0;
-    for (; j + kWide <= columns; j += kWide) {
-      someColumns<Store::kAssign, R, kWide>(height, depth, a + i, lda, b + j, ldb, c + i + j * ldc,
-                                            ldc);
-    }
-    for (; j < columns; j += 3) {
+    for (int j = 0; j < columns; j += 3) {
       someColumns<Store::kAssign, R, 3>(height, depth, a + i, lda, b + j, ldb, c + i + j * ldc,
                                         ldc);
     }
@@ -366,17 +355,25 @@ struct Kernels {
 HAPTEX_DENSE_KERNELS(Baseline, 32, )
 #if defined(__x86_64__)
 HAPTEX_DENSE_KERNELS(Avx2, 32, [[gnu::target("avx2,fma")]])
-HAPTEX_DENSE_KERNELS(Avx512, 64, [[gnu::target("avx512f,avx2,fma")]])
 #endif
 #undef HAPTEX_DENSE_KERNELS
+
+#if defined(__x86_64__)
+// The panels of small systems, which are those in double precision, are too short for it.
+constexpr Kernels<float> kAvx512Kernels{avx512::subtractProduct,       avx512::multiply,
+                                        avx512::subtractRuns,          avx512::divideThreeColumns,
+                                        avx512::factoriseThreeColumns, avx512::substituteForward,
+                                        avx512::substituteBackward};
+#endif
 
 template <typename T>
 const Kernels<T>& kernels() {
 #if defined(__x86_64__)
   static const bool wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  static const bool widest = wide && __builtin_cpu_supports("avx512f");
-  // The panels of small systems, which are those in double precision, are too short for it.
-  if (widest && std::is_same_v<T, float>) return Avx512<T>::kKernels;
+  if constexpr (std::is_same_v<T, float>) {
+    static const bool widest = wide && __builtin_cpu_supports("avx512f");
+    if (widest) return kAvx512Kernels;
+  }
   if (wide) return Avx2<T>::kKernels;
 #endif
   return Baseline<T>::kKernels;
