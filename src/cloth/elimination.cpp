@@ -99,8 +99,8 @@ std::vector<std::vector<int>> factorColumns(const std::vector<std::vector<int>>&
 // factorisation and the smallest factor (scripts/bench linear_solver).
 constexpr double kMostZeros = 0.05;
 // Panels up to this many block columns are merged whatever zeros that brings: the dense kernels
-// need a few columns to be worth their call. Of 1 to 4, 3 was best with and without bending.
-constexpr int kNarrow = 3;
+// need a few columns to be worth their call. Of 1 to 8, 5 was best with and without bending.
+constexpr int kNarrow = 5;
 
 std::vector<Supernode> supernodesOf(const std::vector<std::vector<int>>& columns,
                                     const std::vector<int>& parent) {
