@@ -19,7 +19,8 @@ namespace {
 void touchStack() {
   constexpr std::size_t kBytes = 64 << 10;
   constexpr std::size_t kPage = 4 << 10;
-  volatile char pages[kBytes];
+  char stack[kBytes];
+  volatile char* const pages = stack;
   for (std::size_t i = 0; i < kBytes; i += kPage) pages[i] = 0;
 }
 
