@@ -33,7 +33,7 @@ struct RecordedTopics {
 class BagRecorder {
  public:
   static constexpr std::chrono::milliseconds kWritePeriod{20};
-  static constexpr std::chrono::seconds kSearchPeriod{1};  ///< for new topics
+  static constexpr std::chrono::seconds kSearchPeriod{1};                 ///< for new topics
   static constexpr std::uintmax_t kLeastSpace = std::uintmax_t{1} << 30;  ///< bytes
 
   /// @throws rosbag::BagException if the bag cannot be made
