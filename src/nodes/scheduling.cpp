@@ -12,6 +12,7 @@
 #include <memory>
 #include <system_error>
 
+#include "haptex/evaluation/workload.h"
 #include "haptex/nodes/steady_clock.h"
 
 namespace haptex::nodes {
@@ -52,14 +53,8 @@ class SocketThread {
   int quick_looks_ = 0;
 };
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-
 std::string tryToLockMemory() {
-  if (kSanitized) return "built with a sanitizer";
+  if (evaluation::kSanitized) return "built with a sanitizer";
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
   if (limit.rlim_cur != RLIM_INFINITY && geteuid() != 0) {

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """A bag is recorded if the scene lists recording, or if somebody asks for one."""
+import base64
 import os
 import pathlib
 import signal
@@ -64,7 +65,8 @@ class RecordScene(NodeTest):
         """A recorder whose bag grows, and the process that writes it."""
         run = self.start('wool_sample', f'--bag={self.folder}/mine.bag')
         self.eventually(self.publisher.get_num_connections, 'nobody records')
-        stream = rospy.Timer(rospy.Duration(0.1), lambda _: self.publisher.publish('x' * (1 << 20)))
+        incompressible = base64.b64encode(os.urandom(3 << 18)).decode()  # 1 MiB
+        stream = rospy.Timer(rospy.Duration(0.1), lambda _: self.publisher.publish(incompressible))
         self.addCleanup(stream.shutdown)
         self.eventually(lambda: sum(path.stat().st_size for path in self.folder.glob('mine.bag*'))
                         > (8 << 20), 'the bag grows')
