@@ -139,7 +139,8 @@ std::vector<Candidate> ladder(const std::vector<Candidate>& candidates, double c
   return ladder(borrowed);
 }
 
-std::vector<Candidate> reductions(const cloth::Quality& quality, double cycle, double seconds) {
+std::vector<Candidate> reductions(const cloth::Quality& quality, double cycle, double seconds,
+                                  int most_cycles) {
   Candidate next;
   next.quality = quality;
   next.substeps = substepsOf(cycle, quality.time_step);
@@ -152,14 +153,16 @@ std::vector<Candidate> reductions(const cloth::Quality& quality, double cycle, d
   };
   next.quality.measured.clear();
   next.measured = false;
-  while (cloth::isImplicit(quality.step.method) && next.cycles == 1) {
+  while (cloth::isImplicit(quality.step.method)) {
     int& iterations = next.quality.step.newton_iterations;
     if (iterations > 1) {
       --iterations;
     } else if (next.substeps > 1) {
       next.substeps /= 2;
+    } else if (next.cycles < most_cycles) {
+      ++next.cycles;
     } else {
-      next.cycles = 2;
+      break;
     }
     next.quality.time_step = next.cycles * cycle / next.substeps;
     next.quality.name = quality.name + ", " + std::to_string(iterations) +

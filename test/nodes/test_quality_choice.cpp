@@ -187,7 +187,7 @@ cloth::Quality implicitQuality(double time_step, int solves) {
 }
 
 TEST(Reductions, AreFewerSolvesThenFewerSubstepsThenLongerSteps) {
-  const std::vector<Candidate> rungs = reductions(implicitQuality(0.005, 2), 0.01, 8e-3);
+  const std::vector<Candidate> rungs = reductions(implicitQuality(0.005, 2), 0.01, 8e-3, 2);
   ASSERT_EQ(rungs.size(), 4u);
   const std::vector<int> solves = {1, 1, 1, 2}, substeps = {1, 1, 2, 2}, cycles = {2, 1, 1, 1};
   const std::vector<double> seconds = {1e-3, 2e-3, 4e-3, 8e-3};
@@ -204,10 +204,17 @@ TEST(Reductions, AreFewerSolvesThenFewerSubstepsThenLongerSteps) {
   EXPECT_EQ(rungs[0].quality.name, "fine, 1 solve in 20 ms");
 }
 
+TEST(Reductions, KeepTheRateOfTheStatesWhereItIsAskedFor) {
+  const std::vector<Candidate> rungs = reductions(implicitQuality(0.005, 2), 0.01, 8e-3, 1);
+  ASSERT_EQ(rungs.size(), 3u);
+  for (const Candidate& rung : rungs) EXPECT_EQ(rung.cycles, 1);
+  EXPECT_EQ(rungs[0].quality.name, "fine, 1 solve in 10 ms");
+}
+
 TEST(Reductions, KeepTheStepsOfExplicitMethods) {
   cloth::Quality quality = implicitQuality(0.001, 1);
   quality.step.method = cloth::IntegrationMethod::kExplicitEuler;
-  EXPECT_EQ(reductions(quality, 0.01, 1e-3).size(), 1u);
+  EXPECT_EQ(reductions(quality, 0.01, 1e-3, 2).size(), 1u);
 }
 
 }  // namespace

@@ -77,11 +77,13 @@ std::vector<Candidate> ladder(const std::vector<Candidate>& candidates, double c
                               std::vector<Candidate> borrowed);
 
 /// A quality and the ways down from it on the same cells, in ascending order of cost: fewer solves
-/// in every substep, then fewer substeps, at last two cycles in one step. An explicit method, whose
+/// in every substep, then fewer substeps, then more cycles in one step. An explicit method, whose
 /// steps must be short, has none. Times follow from the number of solves.
 /// @param cycle   s
 /// @param seconds of a cycle by the quality
-std::vector<Candidate> reductions(const cloth::Quality& quality, double cycle, double seconds);
+/// @param most_cycles in one step: 1 or more
+std::vector<Candidate> reductions(const cloth::Quality& quality, double cycle, double seconds,
+                                  int most_cycles);
 
 /// For settings on one mesh, where what takes longer counts as more accurate.
 void sortByTime(std::vector<Candidate>& candidates);
