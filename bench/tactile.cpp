@@ -1,8 +1,8 @@
 // Do two fingers' steps of 25 ms fit beside everything else (below 0.5 ms on one core), and what
 // does a surface cost to build? The step is timed beside a Fourier transform of the same relief,
 // which a renderer that keeps heights instead of waves would need in every step, and beside a copy
-// of the waves, which is the least that reading them costs. Then the table of docs/results.md: how the
-// shipped fabrics feel in the standard stroke, and weaves that differ in nothing else.
+// of the waves, which is the least that reading them costs. Then the table of docs/results.md: how
+// the shipped fabrics feel in the standard stroke, and weaves that differ in nothing else.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
