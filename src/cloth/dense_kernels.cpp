@@ -1,11 +1,10 @@
 #include "haptex/cloth/dense_kernels.h"
 
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <type_traits>
 
 #include "haptex/cloth/dense_kernels_avx512.h"
+#include "haptex/cloth/top_triangle.h"
 
 namespace haptex::cloth {
 namespace {
@@ -223,27 +222,14 @@ template <typename R, typename T>
 template <typename R, typename T>
 [[gnu::always_inline]] inline void divideThreeColumnsOf(int rows, const T* top, int ldtop, T* a,
                                                         int lda) {
-  T l[3][3];
-  for (int c = 0; c < 3; ++c) {
-    for (int r = c; r < 3; ++r) l[r][c] = top[r + c * ldtop];
-  }
-  divideRowsOf<R>(l, rows, a, lda);
+  divideRowsOf<R>(TopTriangle<T>::read(top, ldtop).l, rows, a, lda);
 }
 
 template <typename R, typename T>
 [[gnu::always_inline]] inline bool factoriseThreeColumnsOf(int rows, T* a, int lda) {
-  T l[3][3];  // the top, with its diagonal inverted
-  for (int c = 0; c < 3; ++c) {
-    for (int r = c; r < 3; ++r) {
-      l[r][c] = a[r + c * lda];
-      for (int k = 0; k < c; ++k) l[r][c] -= l[r][k] * l[c][k];
-    }
-    if (!(l[c][c] > 0 && l[c][c] <= std::numeric_limits<T>::max())) return false;
-    l[c][c] = 1 / std::sqrt(l[c][c]);
-    for (int r = c + 1; r < 3; ++r) l[r][c] *= l[c][c];
-    for (int r = c; r < 3; ++r) a[r + c * lda] = l[r][c];
-  }
-  divideRowsOf<R>(l, rows - 3, a + 3, lda);
+  TopTriangle<T> top;
+  if (!top.factorise(a, lda)) return false;
+  divideRowsOf<R>(top.l, rows - 3, a + 3, lda);
   return true;
 }
 

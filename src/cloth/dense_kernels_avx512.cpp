@@ -4,9 +4,9 @@
 #include <immintrin.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
+
+#include "haptex/cloth/top_triangle.h"
 
 // Every function that touches a wide register carries the attribute and is inlined, so that no
 // wide value crosses a call: the rest of the library keeps the ABI of the baseline.
@@ -178,26 +178,13 @@ HAPTEX_AVX512 void subtractRuns(const RowRun* runs, int run_count, const float* 
 }
 
 HAPTEX_AVX512 void divideThreeColumns(int rows, const float* top, int ldtop, float* a, int lda) {
-  float l[3][3];
-  for (int c = 0; c < 3; ++c) {
-    for (int r = c; r < 3; ++r) l[r][c] = top[r + c * ldtop];
-  }
-  divideRows(l, rows, a, lda);
+  divideRows(TopTriangle<float>::read(top, ldtop).l, rows, a, lda);
 }
 
 HAPTEX_AVX512 bool factoriseThreeColumns(int rows, float* a, int lda) {
-  float l[3][3];  // the top, with its diagonal inverted
-  for (int c = 0; c < 3; ++c) {
-    for (int r = c; r < 3; ++r) {
-      l[r][c] = a[r + c * lda];
-      for (int k = 0; k < c; ++k) l[r][c] -= l[r][k] * l[c][k];
-    }
-    if (!(l[c][c] > 0 && l[c][c] <= std::numeric_limits<float>::max())) return false;
-    l[c][c] = 1 / std::sqrt(l[c][c]);
-    for (int r = c + 1; r < 3; ++r) l[r][c] *= l[c][c];
-    for (int r = c; r < 3; ++r) a[r + c * lda] = l[r][c];
-  }
-  divideRows(l, rows - 3, a + 3, lda);
+  TopTriangle<float> top;
+  if (!top.factorise(a, lda)) return false;
+  divideRows(top.l, rows - 3, a + 3, lda);
   return true;
 }
 
