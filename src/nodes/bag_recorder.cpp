@@ -59,7 +59,7 @@ void BagRecorder::search() {
   while (ros::ok()) {
     if (std::chrono::steady_clock::now() >= next) {
       next += kSearchPeriod;
-      has_space_ = hasSpace();
+      lookForSpace();
       ros::master::V_TopicInfo published;
       ros::master::getTopics(published);
       for (const ros::master::TopicInfo& topic : published) {
@@ -86,11 +86,15 @@ void BagRecorder::write(const std::string& topic, const Message& message) {
              message.getConnectionHeaderPtr());
 }
 
-bool BagRecorder::hasSpace() const {
+void BagRecorder::lookForSpace() {
   std::error_code error;
   const auto directory = std::filesystem::absolute(path_).parent_path();
   const std::filesystem::space_info space = std::filesystem::space(directory, error);
-  return !error && space.available >= kLeastSpace;
+  const bool has_space = !error && space.available >= kLeastSpace;
+  if (has_space_.exchange(has_space) && !has_space) {
+    ROS_ERROR("%s is not written any more: less than 1 GiB is free in %s", path_.c_str(),
+              directory.c_str());
+  }
 }
 
 }  // namespace haptex::nodes

@@ -33,7 +33,7 @@ void LoopDiagnostics::diagnose(const PeriodicThread& loop,
     status.summary(DiagnosticStatus::OK, "in time");
   }
   status.add("SCHED_FIFO", refused.empty() ? "granted" : "not granted: " + refused);
-  const std::string& unlocked = lockMemory();
+  const std::string& unlocked = whyMemoryIsNotLocked();
   status.add("memory", unlocked.empty() ? "locked" : "not locked: " + unlocked);
   status.add("periods", loop.periods());
   status.add("periods missed", missed);

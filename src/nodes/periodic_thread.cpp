@@ -68,7 +68,6 @@ void PeriodicThread::run() {
   // it can.
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   touchStack();
-  touchStack();
   NextPeriod next{steadyNow() + period_, 0};
   Time last = next.start - 2 * period_;  // the first call need not wait
   while (!stopping_) {

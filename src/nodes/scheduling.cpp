@@ -53,6 +53,8 @@ class SocketThread {
   int quick_looks_ = 0;
 };
 
+std::string memory_trouble = "nobody has asked for it";
+
 std::string tryToLockMemory() {
   if (evaluation::kSanitized) return "built with a sanitizer";
   rlimit limit{};
@@ -117,10 +119,9 @@ void keepOffForceProcessor(pthread_t thread) {
   pthread_setaffinity_np(thread, sizeof allowed, &allowed);
 }
 
-const std::string& lockMemory() {
-  static const std::string why = tryToLockMemory();
-  return why;
-}
+void lockMemory() { memory_trouble = tryToLockMemory(); }
+
+const std::string& whyMemoryIsNotLocked() { return memory_trouble; }
 
 void preferMessages(bool on_force_path) {
   const auto thread = std::make_shared<SocketThread>(on_force_path);

@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <regex>
 #include <string>
@@ -29,7 +30,7 @@ struct RecordedTopics {
 /// so that one thread is woken up fifty times a second: rosbag's record wakes one of ten up for
 /// every message. They carry the time at which they arrived. Chunks are compressed by LZ4. Until it
 /// is closed the bag has the suffix .active. Where less than kLeastSpace is left on the disk,
-/// nothing is written.
+/// nothing is written, which is said on the console.
 class BagRecorder {
  public:
   static constexpr std::chrono::milliseconds kWritePeriod{20};
@@ -38,7 +39,8 @@ class BagRecorder {
 
   /// @throws rosbag::BagException if the bag cannot be made
   BagRecorder(std::string path, RecordedTopics topics);
-  /// Writes what has come and closes the bag.
+  /// Closes the bag. What came since the last time of writing may be missing: roscpp drops what
+  /// waits for its subscribers when it is shut down.
   ~BagRecorder();
   BagRecorder(const BagRecorder&) = delete;
   BagRecorder& operator=(const BagRecorder&) = delete;
@@ -53,7 +55,7 @@ class BagRecorder {
   void search();
   void subscribe(const std::string& topic);
   void write(const std::string& topic, const Message& message);
-  bool hasSpace() const;
+  void lookForSpace();
 
   const std::string path_;
   const RecordedTopics topics_;

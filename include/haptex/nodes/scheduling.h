@@ -45,11 +45,13 @@ class OrdinaryScope {
   sched_param parameters_{};
 };
 
-/// Once per process: what it has touched, or will touch, stays in memory. Not under a limit
-/// (RLIMIT_MEMLOCK), at which later allocations would fail, nor under sanitizers, whose shadow of
-/// the memory is larger than the machine's.
-/// @returns why not; empty: it stays
-const std::string& lockMemory();
+/// Before other threads are there: what the process has touched, or will touch, stays in memory.
+/// Not under a limit (RLIMIT_MEMLOCK), at which later allocations would fail, nor under sanitizers,
+/// whose shadow of the memory is larger than the machine's.
+void lockMemory();
+
+/// Empty if lockMemory() has locked it.
+const std::string& whyMemoryIsNotLocked();
 
 /// After ros::start(): roscpp's thread that reads and writes the sockets comes before what is
 /// ordinary. Its other threads (services of the graph, console) stay as they are.
