@@ -6,7 +6,7 @@ import yaml
 
 FINGERTIPS = 0.0075 + 0.009  # m, radii of index and thumb
 # N, how hard the path pinches in each phase: comments of config/paths/demo.yaml.
-PINCHES = {'pinch': 1.0, 'lift': 1.0, 'stretch': 2.2, 'slide': 0.3, 'rub': 0.5}
+PINCHES = {'pinch': 1.0, 'lift': 2.2, 'stretch': 2.2, 'slide': 0.3, 'rub': 0.5}
 
 
 class Hold(NamedTuple):

@@ -121,8 +121,8 @@ TEST(ShippedPaths, DemoPinchesLiftsStretchesSlidesAndRubsWithTheForcesThatItSays
   const struct {
     const char* before_phase;
     double force, y, z;  // N, m
-  } holds[] = {{"lift", 1.0, 0.0, -0.19},    {"stretch", 1.0, 0.0, -0.16},
-               {"slide", 2.2, 0.0, -0.1918}, {"release", 0.3, 0.025, -0.19},
+  } holds[] = {{"lift", 1.0, 0.0, -0.19},    {"stretch", 2.2, 0.0, -0.16},
+               {"slide", 2.2, 0.0, -0.1912}, {"release", 0.3, 0.025, -0.19},
                {"rub", 0.5, 0.0, -0.1},      {"retreat", 0.5, 0.0, -0.16}};
   for (const auto& hold : holds) {
     const HandPlace place = path.at(beginOf(path, hold.before_phase) - 1e-3);

@@ -188,7 +188,7 @@ class Holds(unittest.TestCase):
         self.assertEqual([hold.phase for hold in holds], WITH_CONTACT)
         # Read in config/paths/demo.yaml: from when the fingers are closed to when they open.
         spans = {hold.phase: (round(hold.begin, 6), round(hold.end, 6)) for hold in holds}
-        self.assertEqual(spans, {'pinch': (1.5, 3.0), 'lift': (0.0, 3.0), 'stretch': (2.0, 4.5),
+        self.assertEqual(spans, {'pinch': (1.5, 3.0), 'lift': (0.5, 3.5), 'stretch': (0.0, 4.5),
                                  'slide': (4.3, 6.3), 'rub': (0.0, 3.0)})
 
     def test_fingers_that_are_open_or_close_do_not_hold(self):
