@@ -17,20 +17,20 @@
 #include <utility>
 #include <vector>
 
-#include "haptex/cloth/quality_file.h"
-#include "haptex/evaluation/equilibrium.h"
-#include "haptex/evaluation/trade_off_study.h"
+#include "haptex/kes/equilibrium.h"
 #include "haptex/material/fabric_file.h"
-#include "haptex/nodes/quality_choice.h"
-#include "haptex/nodes/real_time_loop.h"
-#include "haptex/nodes/studied_fabrics.h"
+#include "haptex/scene/quality_file.h"
+#include "haptex/simulation/quality_choice.h"
+#include "haptex/simulation/real_time_loop.h"
+#include "haptex/simulation/studied_fabrics.h"
+#include "haptex/studies/trade_off_study.h"
 #include "tab_lines.h"
 
 namespace {
 
 using namespace haptex;
 using Clock = std::chrono::steady_clock;
-using evaluation::kCycle;
+using studies::kCycle;
 
 constexpr double kBudget = 4e-3;   // s of a cycle of 12.5 ms
 constexpr double kPhase = 3.0;     // s, between two changes of the load
@@ -68,44 +68,44 @@ class CompetingLoad {
 };
 
 /// The sample of the study, hanging at rest.
-cloth::Scene swingScene(const material::Fabric& fabric, double cell_size) {
-  cloth::Scene scene;
-  const int cells = static_cast<int>(std::lround(evaluation::kSampleSize / cell_size));
-  scene.mesh = cloth::makeRectangle(evaluation::kSampleSize, evaluation::kSampleSize, cells, cells,
-                                    cloth::Triangulation::kAlternating);
+scene::Scene swingScene(const material::Fabric& fabric, double cell_size) {
+  scene::Scene scene;
+  const int cells = static_cast<int>(std::lround(studies::kSampleSize / cell_size));
+  scene.mesh = mesh::makeRectangle(studies::kSampleSize, studies::kSampleSize, cells, cells,
+                                   mesh::Triangulation::kAlternating);
   scene.effects.viscosity = true;
   scene.effects.gravity = {0.0, 0.0, -9.80665};
   scene.effects.bending = fabric.bending.has_value();
-  scene.attached_particles = sideParticles(scene.mesh, cloth::Side::kTop);
+  scene.attached_particles = sideParticles(scene.mesh, mesh::Side::kTop);
   scene.time_step = kCycle;
   cloth::Cloth cloth(scene.mesh, fabric, scene.effects);
   for (const int particle : scene.attached_particles) {
     cloth.attach(particle, {scene.mesh.initial_positions[particle], Eigen::Vector3d::Zero(), 0, 0});
   }
   cloth::ClothState state = cloth.initialState();
-  evaluation::Equilibrium(cloth).settle(cloth, state, 0.1);
+  kes::Equilibrium(cloth).settle(cloth, state, 0.1);
   scene.mesh.initial_positions = state.positions;
   return scene;
 }
 
 /// Moves the bar as in the study, and starts anew when the swing is over.
-void direct(nodes::SimulatedCloth& simulation, const std::vector<std::uint32_t>& bar) {
+void direct(simulation::SimulatedCloth& simulation, const std::vector<std::uint32_t>& bar) {
   if (simulation.steps() == kSwingCycles) simulation.reset();
   if (simulation.steps() == 0) simulation.move(bar, {0.08, 0.0, 0.0}, 32 * kCycle);
   if (simulation.steps() == 40) simulation.move(bar, {-0.16, 0.0, 0.0}, 40 * kCycle);
 }
 
-std::vector<std::uint32_t> barOf(const cloth::Scene& scene) {
+std::vector<std::uint32_t> barOf(const scene::Scene& scene) {
   return {scene.attached_particles.begin(), scene.attached_particles.end()};
 }
 
 /// The median cycle of a swing.
-nodes::MeasuredCycle measureSwing(const material::Fabric& fabric, const cloth::Quality& quality,
-                                  int substeps) {
+simulation::MeasuredCycle measureSwing(const material::Fabric& fabric,
+                                       const scene::Quality& quality, int substeps) {
   const Clock::time_point begin = Clock::now();
-  cloth::Scene scene = swingScene(fabric, quality.cell_size);
+  scene::Scene scene = swingScene(fabric, quality.cell_size);
   const std::vector<std::uint32_t> bar = barOf(scene);
-  nodes::SimulatedCloth simulation(std::move(scene), fabric, {{quality.step, substeps}});
+  simulation::SimulatedCloth simulation(std::move(scene), fabric, {{quality.step, substeps}});
   std::vector<double> cycles;
   while (simulation.steps() < kSwingCycles) {
     direct(simulation, bar);
@@ -119,9 +119,9 @@ nodes::MeasuredCycle measureSwing(const material::Fabric& fabric, const cloth::Q
 
 /// Mean squared distance (m^2) of the particles from where they are to be, of those that lie where
 /// the study compares.
-double squaredError(const nodes::SimulatedCloth& simulation, int cells,
-                    const evaluation::Snapshot& reference) {
-  constexpr int kCompared = evaluation::kComparedIntervals;
+double squaredError(const simulation::SimulatedCloth& simulation, int cells,
+                    const studies::Snapshot& reference) {
+  constexpr int kCompared = studies::kComparedIntervals;
   double sum = 0.0;
   int count = 0;
   for (int j = 0; j <= kCompared; ++j) {
@@ -136,7 +136,7 @@ double squaredError(const nodes::SimulatedCloth& simulation, int cells,
   return sum / count;
 }
 
-Eigen::Vector3d momentumOf(const nodes::SimulatedCloth& simulation) {
+Eigen::Vector3d momentumOf(const simulation::SimulatedCloth& simulation) {
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
   const std::vector<double>& masses = simulation.cloth().masses();
   for (std::size_t i = 0; i < masses.size(); ++i) {
@@ -151,7 +151,7 @@ Eigen::Vector3d weightOf(const cloth::Cloth& cloth) {
   return weight;
 }
 
-double energyOf(const nodes::SimulatedCloth& simulation) {
+double energyOf(const simulation::SimulatedCloth& simulation) {
   const cloth::Cloth& cloth = simulation.cloth();
   return cloth.potentialEnergy(simulation.state()) + cloth.kineticEnergy(simulation.state());
 }
@@ -176,25 +176,25 @@ struct Record {
 
 class BudgetRun {
  public:
-  BudgetRun(const std::string& fabric, std::vector<nodes::Candidate> rungs, std::size_t first)
+  BudgetRun(const std::string& fabric, std::vector<simulation::Candidate> rungs, std::size_t first)
       : fabric_(material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + fabric + ".yaml")),
         rungs_(std::move(rungs)),
         first_(first),
         scene_(swingScene(fabric_, rungs_[first].quality.cell_size)),
         bar_(barOf(scene_)),
-        cells_(static_cast<int>(
-            std::lround(evaluation::kSampleSize / rungs_[first].quality.cell_size))) {
-    for (const nodes::Candidate& rung : rungs_) {
-      expected_.push_back(nodes::measurementsOf(rung.quality, fabric));
+        cells_(
+            static_cast<int>(std::lround(studies::kSampleSize / rungs_[first].quality.cell_size))) {
+    for (const simulation::Candidate& rung : rungs_) {
+      expected_.push_back(simulation::measurementsOf(rung.quality, fabric));
     }
   }
 
-  Record run(const evaluation::Trajectory& reference) {
+  Record run(const studies::Trajectory& reference) {
     CompetingLoad load;
-    nodes::RealTimeLoop loop(
+    simulation::RealTimeLoop loop(
         simulation(),
-        [&](const nodes::SimulatedCloth& simulation, bool) { note(simulation, reference); },
-        [&](nodes::SimulatedCloth& simulation) {
+        [&](const simulation::SimulatedCloth& simulation, bool) { note(simulation, reference); },
+        [&](simulation::SimulatedCloth& simulation) {
           direct(simulation, bar_);
           if (simulation.steps() == 0) first_energy_ = energyOf(simulation);
           momentum_ = momentumOf(simulation);
@@ -212,7 +212,7 @@ class BudgetRun {
                    kPhases * kPhase);
     }
     load.set(false);
-    loop.execute([&](nodes::SimulatedCloth& simulation) {
+    loop.execute([&](simulation::SimulatedCloth& simulation) {
       record_.changes = simulation.controller()->changes();
     });
     loop.stop();
@@ -220,29 +220,30 @@ class BudgetRun {
   }
 
  private:
-  nodes::SimulatedCloth simulation() const {
-    std::vector<nodes::StepPlan> plans;
+  simulation::SimulatedCloth simulation() const {
+    std::vector<simulation::StepPlan> plans;
     std::vector<double> costs;
-    for (const nodes::Candidate& rung : rungs_) {
+    for (const simulation::Candidate& rung : rungs_) {
       plans.push_back(planOf(rung, 1));
       costs.push_back(rung.seconds);
     }
-    nodes::SimulatedCloth simulation(scene_, fabric_, std::move(plans));
-    simulation.setController(nodes::QualityController(std::move(costs), kBudget, kCycle, first_));
+    simulation::SimulatedCloth simulation(scene_, fabric_, std::move(plans));
+    simulation.setController(
+        simulation::QualityController(std::move(costs), kBudget, kCycle, first_));
     return simulation;
   }
 
-  void note(const nodes::SimulatedCloth& simulation, const evaluation::Trajectory& reference) {
+  void note(const simulation::SimulatedCloth& simulation, const studies::Trajectory& reference) {
     const double took = since(step_begin_);
     const double time = std::chrono::duration<double>(step_begin_ - begin_).count();
     ++record_.cycles;
-    const evaluation::Snapshot& exact = reference.snapshots.at(simulation.steps() - 1);
+    const studies::Snapshot& exact = reference.snapshots.at(simulation.steps() - 1);
     const Eigen::Vector3d force =
         (momentumOf(simulation) - momentum_) / kCycle - weightOf(simulation.cloth());
     record_.error.position += squaredError(simulation, cells_, exact);
     record_.error.force += (force - exact.force).squaredNorm();
     record_.error.energy += std::pow(energyOf(simulation) - first_energy_ - exact.energy, 2);
-    for (const cloth::MeasuredQuality& measured : expected_[plan_]) {
+    for (const scene::MeasuredQuality& measured : expected_[plan_]) {
       if (measured.motion != "swing") continue;
       record_.expected.position += std::pow(measured.position_error, 2);
       record_.expected.force += std::pow(measured.force_error, 2);
@@ -256,12 +257,12 @@ class BudgetRun {
   }
 
   material::Fabric fabric_;
-  std::vector<nodes::Candidate> rungs_;
+  std::vector<simulation::Candidate> rungs_;
   std::size_t first_;
-  cloth::Scene scene_;
+  scene::Scene scene_;
   std::vector<std::uint32_t> bar_;
   int cells_;
-  std::vector<std::vector<cloth::MeasuredQuality>> expected_;
+  std::vector<std::vector<scene::MeasuredQuality>> expected_;
   // Touched by the loop's thread.
   Record record_;
   std::size_t plan_ = 0;
@@ -299,23 +300,24 @@ void print(const std::string& fabric, const Record& record) {
 void runBench(const std::string& name) {
   const material::Fabric fabric =
       material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + name + ".yaml");
-  const auto front = cloth::loadQualities(HAPTEX_CONFIG_DIRECTORY "/presets/front.yaml");
+  const auto front = scene::loadQualities(HAPTEX_CONFIG_DIRECTORY "/presets/front.yaml");
   std::fprintf(stderr, "%s: calibrating\n", name.c_str());
-  const auto measure = [&](const cloth::Quality& quality, int substeps) {
+  const auto measure = [&](const scene::Quality& quality, int substeps) {
     return measureSwing(fabric, quality, substeps);
   };
-  const std::vector<nodes::Candidate> candidates =
-      nodes::calibrate(front, kCycle, measure, {5.0, 4.0 * kBudget});
+  const std::vector<simulation::Candidate> candidates =
+      simulation::calibrate(front, kCycle, measure, {5.0, 4.0 * kBudget});
   const std::size_t chosen =
       mostAccurateWithin(candidates, kBudget, 1.0).value_or(cheapest(candidates));
   const double cell_size = candidates[chosen].quality.cell_size;
-  std::vector<nodes::Candidate> borrowed;
-  for (const cloth::Quality& quality : nodes::borrowedSettings(front, chosen)) {
-    cloth::Quality on_cells = quality;
+  std::vector<simulation::Candidate> borrowed;
+  for (const scene::Quality& quality : simulation::borrowedSettings(front, chosen)) {
+    scene::Quality on_cells = quality;
     on_cells.cell_size = cell_size;
-    borrowed.push_back(nodes::calibrate({on_cells}, kCycle, measure, {}).front());
+    borrowed.push_back(simulation::calibrate({on_cells}, kCycle, measure, {}).front());
   }
-  const std::vector<nodes::Candidate> rungs = nodes::ladder(candidates, cell_size, borrowed);
+  const std::vector<simulation::Candidate> rungs =
+      simulation::ladder(candidates, cell_size, borrowed);
   std::size_t first = 0;
   for (std::size_t i = 0; i < rungs.size(); ++i) {
     if (rungs[i].quality.name == candidates[chosen].quality.name) first = i;
@@ -323,8 +325,8 @@ void runBench(const std::string& name) {
                      "ms");
   }
   std::fprintf(stderr, "%s: reference\n", name.c_str());
-  const evaluation::Reference reference =
-      evaluation::computeReference({evaluation::Motion::kSwing, fabric}, {32, 16});
+  const studies::Reference reference =
+      studies::computeReference({studies::Motion::kSwing, fabric}, {32, 16});
   print(name, BudgetRun(name, rungs, first).run(reference.trajectory));
 }
 

@@ -43,15 +43,15 @@
 #include <memory>
 #include <string>
 
-#include "haptex/cloth/integrator.h"
-#include "haptex/evaluation/hanging_strip.h"
+#include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/oracles/experiments/hanging_strip.h"
 #include "tab_lines.h"
 
 namespace {
 
 using namespace haptex;
 
-constexpr evaluation::HangingStrip kSheet = {0.5, 100.0, 0.1, 9.81};
+constexpr oracles::HangingStrip kSheet = {0.5, 100.0, 0.1, 9.81};
 constexpr double kFall = 1.0;  // s, simulated
 
 double cpuSeconds() {
@@ -175,8 +175,8 @@ material::Fabric fabric() {
 }
 
 cloth::Cloth clothOf(int cells, Start start) {
-  cloth::ClothMesh mesh = cloth::makeRectangle(kSheet.length, kSheet.length, cells, cells,
-                                               cloth::Triangulation::kAlternating);
+  mesh::ClothMesh mesh = mesh::makeRectangle(kSheet.length, kSheet.length, cells, cells,
+                                             mesh::Triangulation::kAlternating);
   if (start == Start::kHorizontal) {
     for (Eigen::Vector3d& position : mesh.initial_positions) {
       position = {-position.z(), position.y(), 0.0};
@@ -195,7 +195,7 @@ class OurSheet : public Sheet {
         state_(cloth_.initialState()),
         integrator_(cloth_, settingsOf(method)),
         time_step_(time_step) {
-    for (int particle : sideParticles(cloth_.mesh(), cloth::Side::kTop)) {
+    for (int particle : sideParticles(cloth_.mesh(), mesh::Side::kTop)) {
       cloth::AttachmentPath place;
       place.start = state_.positions[particle];
       cloth_.attach(particle, place);
@@ -203,7 +203,7 @@ class OurSheet : public Sheet {
   }
   void step() override { integrator_.step(cloth_, state_, time_step_); }
   double elongation() const override {
-    const std::vector<int> bottom = sideParticles(cloth_.mesh(), cloth::Side::kBottom);
+    const std::vector<int> bottom = sideParticles(cloth_.mesh(), mesh::Side::kBottom);
     double drop = 0.0;
     for (int particle : bottom) drop -= state_.positions[particle].z() / bottom.size();
     return drop / kSheet.length - 1.0;
@@ -270,7 +270,7 @@ void compareBullet(BulletSolver solver, int iterations, double milliseconds, int
   const double linear =
       0.5 * kSheet.areal_density * kSheet.gravity * kSheet.length / kSheet.modulus;
   const double exact =
-      solver == BulletSolver::kDeformable ? linear : evaluation::exactElongation(kSheet);
+      solver == BulletSolver::kDeformable ? linear : oracles::exactElongation(kSheet);
   compare(name, milliseconds, cells, kSettling, exact, [&](int count, double h, Start start) {
     return std::make_unique<BulletSheet>(solver, count, h, iterations, start);
   });
@@ -279,7 +279,7 @@ void compareBullet(BulletSolver solver, int iterations, double milliseconds, int
 void compareOurs(const char* name, cloth::IntegrationMethod method, double milliseconds,
                  int cells) {
   constexpr double kSettling = 0.5;
-  const double exact = evaluation::exactElongation(kSheet);
+  const double exact = oracles::exactElongation(kSheet);
   compare(name, milliseconds, cells, kSettling, exact, [&](int count, double h, Start start) {
     return std::make_unique<OurSheet>(method, count, h, start);
   });

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <string>
 
-#include "haptex/evaluation/strip_statics.h"
+#include "haptex/oracles/experiments/strip_statics.h"
 #include "tab_lines.h"
 
 int main() {
   using namespace haptex;
-  using evaluation::StripMesh;
+  using oracles::StripMesh;
   for (const auto& [model, model_name] :
        {std::pair(cloth::BendingModel::kLinear, "linear"),
         std::pair(cloth::BendingModel::kQuadratic, "quadratic")}) {
@@ -19,12 +19,12 @@ int main() {
                                           std::pair(StripMesh::kIrregular, "irregular")}) {
       for (const auto& [gamma, gamma_name] : {std::pair(0.1, "0.1"), std::pair(1.0, "1"),
                                               std::pair(10.0, "10"), std::pair(100.0, "100")}) {
-        const double exact = evaluation::exactDropOverReach(gamma);
+        const double exact = oracles::exactDropOverReach(gamma);
         for (int cells : {8, 12, 16, 24, 32, 48, 64, 96, 128}) {
-          evaluation::Cantilever cantilever{gamma, mesh};
+          oracles::Cantilever cantilever{gamma, mesh};
           cantilever.cells = cells;
           cantilever.model = model;
-          const double error = evaluation::simulatedDropOverReach(cantilever) / exact - 1.0;
+          const double error = oracles::simulatedDropOverReach(cantilever) / exact - 1.0;
           bench::printLine(std::string("cantilever/") + model_name + "/" + mesh_name + "/gamma" +
                                gamma_name + "/" + std::to_string(12 * cells),
                            100.0 * std::abs(error), "%");

@@ -21,8 +21,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/cloth/cloth.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric_file.h"
 #include "tab_lines.h"
 
@@ -40,9 +40,9 @@ std::size_t allocatedBytes() {
   return info.uordblks + info.hblkhd;
 }
 
-cloth::ClothMesh horizontalSheet(int cells) {
-  cloth::ClothMesh mesh =
-      cloth::makeRectangle(0.5, 0.5, cells, cells, cloth::Triangulation::kAlternating);
+mesh::ClothMesh horizontalSheet(int cells) {
+  mesh::ClothMesh mesh =
+      mesh::makeRectangle(0.5, 0.5, cells, cells, mesh::Triangulation::kAlternating);
   for (Eigen::Vector3d& position : mesh.initial_positions) {
     position = {position.z(), position.y(), 0.0};
   }
@@ -57,7 +57,7 @@ class HeldSheet {
         start_(cloth_.initialState()),
         state_(start_),
         integrator_(cloth_, settings) {
-    for (int particle : sideParticles(cloth_.mesh(), cloth::Side::kTop)) {
+    for (int particle : sideParticles(cloth_.mesh(), mesh::Side::kTop)) {
       cloth::AttachmentPath place;
       place.start = state_.positions[particle];
       cloth_.attach(particle, place);
@@ -112,7 +112,7 @@ void clothStep(benchmark::State& run, const std::string& name_of_case,
     solve += report.solve_seconds;
     total += report.total_seconds;
     linear_solves += report.newton_iterations;
-    direct += report.solver == cloth::LinearSolverMethod::kCholesky;
+    direct += report.solver == linear::LinearSolverMethod::kCholesky;
   }
   const std::string triangles = std::to_string(sheet.triangleCount());
   const auto name = [&](const char* what) {

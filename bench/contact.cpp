@@ -7,13 +7,13 @@
 #include <fstream>
 #include <iostream>
 
-#include "haptex/evaluation/contact_scenes.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 #include "tab_lines.h"
 
 namespace {
 
-using namespace haptex::evaluation;
+using namespace haptex::oracles;
 using Eigen::Vector3d;
 using haptex::bench::printLine;
 using haptex::material::Fabric;
@@ -90,7 +90,7 @@ void stretch(double h, const Step& step) {
 }
 
 void compareWithReference(const Fabric& fabric, int refinement) {
-  HapticLoopSettings sample = hangingSample(fabric, Direction::kWarp, kRate);
+  HapticLoopSettings sample = hangingSample(fabric, haptex::kes::Direction::kWarp, kRate);
   sample.haptics.refinement = refinement;
   RefinedCloth reference(sample);
   stretch(0.05, [&](const Fingertips& fingertips) { reference.step(fingertips, 0.05); });

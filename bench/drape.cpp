@@ -5,7 +5,7 @@
 // Measured: Matsudaira, Masuda, Wada, Yokura 2015, J. Textile Eng. 61(6):69-73, as transcribed in
 // the public repository antonbj3/3fold-motion-engine. The diameters of fabric and support are not
 // in the transcription: 254 mm on 127 mm is the usual pair for this apparatus.
-#include "haptex/evaluation/drape.h"
+#include "haptex/studies/drape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ struct Measured {
 constexpr Measured kMeasured[] = {{"cotton_poplin", 82.9, 2}, {"wool_tropical", 49.8, 5}};
 constexpr int kSeeds = 6;
 
-void writeShape(const char* fabric, const cloth::ClothMesh& shape, std::ostream& csv) {
+void writeShape(const char* fabric, const mesh::ClothMesh& shape, std::ostream& csv) {
   for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
     for (const int particle : shape.triangles[i]) {
       const Eigen::Vector3d& place = shape.initial_positions[particle];
@@ -54,7 +54,7 @@ void run(const Measured& measured, std::ostream* csv) {
   std::vector<double> coefficients, nodes;
   std::string triangles;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const evaluation::DrapeOutcome outcome = evaluation::drape(fabric, {}, seed);
+    const studies::DrapeOutcome outcome = studies::drape(fabric, {}, seed);
     triangles = "/" + std::to_string(outcome.shape.triangles.size());
     std::cerr << measured.file << " start " << seed << " of " << kSeeds << ": drape coefficient "
               << 100.0 * outcome.coefficient << " %, " << outcome.nodes << " nodes, after "

@@ -11,9 +11,9 @@
 #include <fstream>
 #include <string>
 
-#include "haptex/cloth/step.h"
-#include "haptex/evaluation/cloth_swing.h"
+#include "haptex/cloth/dynamics/step.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/oracles/experiments/cloth_swing.h"
 #include "tab_lines.h"
 
 namespace {
@@ -44,14 +44,14 @@ int periodsOf(cloth::IntegrationMethod method) {
 }
 
 /// Energies at the beginning and after each sample, relative to the first, as far as they go.
-std::vector<double> curveOf(const evaluation::ClothSwing& swing, cloth::IntegrationMethod method) {
+std::vector<double> curveOf(const oracles::ClothSwing& swing, cloth::IntegrationMethod method) {
   cloth::StepSettings settings;
   settings.method = method;
-  settings.solver = cloth::LinearSolverMethod::kCholesky;
+  settings.solver = linear::LinearSolverMethod::kCholesky;
   settings.newton_iterations = 2;
   const int per_sample = stepsPerSample(method);
   const int samples = static_cast<int>(std::lround(periodsOf(method) * kPeriod / kSample));
-  const evaluation::ClothSwing::Motion motion =
+  const oracles::ClothSwing::Motion motion =
       swing.swing(settings, periodsOf(method) * kPeriod, samples * per_sample);
   std::vector<double> curve;
   for (int i = 0; i <= samples; ++i) {
@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     csv << "method,step,time,energy\n";
     csv.precision(9);
   }
-  const evaluation::ClothSwing swing(
+  const oracles::ClothSwing swing(
       material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/linear.yaml"), 32, 0.05);
   const std::string triangles = std::to_string(swing.cloth().mesh().triangles.size());
   for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {

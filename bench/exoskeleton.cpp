@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "haptex/evaluation/exoskeleton_loop.h"
-#include "haptex/exoskeleton/hand_path.h"
+#include "haptex/exoskeleton/emulator/hand_path.h"
+#include "haptex/oracles/experiments/exoskeleton_loop.h"
 #include "real_exoskeleton.h"
 #include "tab_lines.h"
 #include "wall_stiffness.h"
@@ -34,7 +34,7 @@ namespace {
 using namespace haptex;
 using namespace haptex::exoskeleton;
 using Eigen::Vector3d;
-using evaluation::ExoskeletonLoop;
+using oracles::ExoskeletonLoop;
 using std::chrono::milliseconds;
 
 constexpr double kPi = 3.14159265358979323846;
@@ -271,11 +271,11 @@ void wallStiffness() {
   for (const Person& person : persons()) {
     for (const bool linearised : {true, false}) {
       for (const int delay : {0, 1, 2, 3}) {
-        const evaluation::VirtualWall wall{0.0, 0.0, linearised, delay};
+        const oracles::VirtualWall wall{0.0, 0.0, linearised, delay};
         bench::printWallStiffness(urdf(), person.name, person.mechanics, open, wall);
       }
       for (const double damping : {1.0, 2.0, 4.0}) {
-        const evaluation::VirtualWall wall{0.0, damping, linearised, 0};
+        const oracles::VirtualWall wall{0.0, damping, linearised, 0};
         bench::printWallStiffness(urdf(), person.name, person.mechanics, open, wall);
       }
     }

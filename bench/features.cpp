@@ -12,21 +12,21 @@
 #include <string>
 #include <vector>
 
-#include "haptex/evaluation/feature_scenes.h"
-#include "haptex/evaluation/touch_cost.h"
 #include "haptex/material/fabric_file.h"
-#include "haptex/nodes/cloth_markers.h"
-#include "haptex/nodes/cloth_messages.h"
-#include "haptex/nodes/simulated_cloth.h"
+#include "haptex/nodes/cloth_simulation/cloth_markers.h"
+#include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/simulation/simulated_cloth.h"
+#include "haptex/simulation/touch_cost.h"
+#include "haptex/studies/feature_scenes.h"
 #include "tab_lines.h"
 
 namespace {
 
 using namespace haptex;
-using evaluation::Feature;
-using evaluation::FeatureScene;
-using evaluation::StepCost;
-using evaluation::SteppedScene;
+using simulation::StepCost;
+using simulation::SteppedScene;
+using studies::Feature;
+using studies::FeatureScene;
 
 constexpr int kCells = 32;
 constexpr int kRounds = 9;
@@ -39,9 +39,9 @@ void print(const std::string& name, double value, const char* unit) {
 
 template <typename Make>
 double heldBytes(const Make& make) {
-  const std::size_t before = evaluation::allocatedBytes();
+  const std::size_t before = simulation::allocatedBytes();
   const auto made = make();
-  return static_cast<double>(evaluation::allocatedBytes() - before);
+  return static_cast<double>(simulation::allocatedBytes() - before);
 }
 
 /// Of the scene without what its fabric says.
@@ -51,7 +51,7 @@ double memoryOf(const FeatureScene& scene) {
 
 StepCost costOf(const FeatureScene& scene, const FeatureScene& base) {
   SteppedScene stepped = scene.stepped(), base_stepped = base.stepped();
-  return evaluation::compareSteps(stepped, base_stepped, kRounds, kSteps);
+  return simulation::compareSteps(stepped, base_stepped, kRounds, kSteps);
 }
 
 void printFeature(const Feature& feature, const FeatureScene& bare, double bare_memory) {
@@ -72,9 +72,9 @@ void printFeature(const Feature& feature, const FeatureScene& bare, double bare_
 template <typename Work>
 double microseconds(const Work& work) {
   work();
-  const double begin = evaluation::threadSeconds();
+  const double begin = simulation::threadSeconds();
   for (int i = 0; i < kRepetitions; ++i) work();
-  return 1e6 * (evaluation::threadSeconds() - begin) / kRepetitions;
+  return 1e6 * (simulation::threadSeconds() - begin) / kRepetitions;
 }
 
 void printIntegrators(const FeatureScene& bare) {
@@ -91,20 +91,20 @@ void printIntegrators(const FeatureScene& bare) {
 /// The shipped sample, which is touched.
 void printBesideTheSteps() {
   const std::string path = HAPTEX_CONFIG_DIRECTORY "/scenes/wool_sample.yaml";
-  const cloth::Scene scene = cloth::loadScene(path);
+  const scene::Scene scene = scene::loadScene(path);
   const material::Fabric wool = material::loadFabric(scene.fabric_path);
-  nodes::SimulatedCloth simulation(scene, wool);
+  simulation::SimulatedCloth simulation(scene, wool);
   while (!simulation.asleep()) simulation.step();
   print("sleep/simulated_time_until", simulation.state().time, "s");
   print("sleep/step", microseconds([&] { simulation.step(); }), "us");
 
-  const evaluation::TouchCost touch = evaluation::measureTouch(
+  const simulation::TouchCost touch = simulation::measureTouch(
       scene.mesh, wool, scene.effects, contact::loadHapticSettings(path), kRepetitions);
   print("patch/far_particles", static_cast<double>(touch.far_particles), "1");
   print("patch/far_millisecond", 1e6 * touch.far_seconds, "us");
   print("patch/near_particles", static_cast<double>(touch.near_particles), "1");
   print("patch/near_millisecond", 1e6 * touch.near_seconds, "us");
-  print("tactile/25_milliseconds", 1e6 * evaluation::measureTactile(wool, kRepetitions), "us");
+  print("tactile/25_milliseconds", 1e6 * simulation::measureTactile(wool, kRepetitions), "us");
 
   const ros::Time stamp(1.0);
   std::vector<Eigen::Vector3d> forces;
@@ -120,7 +120,7 @@ void printBesideTheSteps() {
 }  // namespace
 
 int main() {
-  const FeatureScene bare = evaluation::bareScene(
+  const FeatureScene bare = studies::bareScene(
       material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), kCells);
   memoryOf(bare);  // the heap gets used to it
   const double bare_memory = memoryOf(bare);
@@ -129,7 +129,7 @@ int main() {
   print("bare/ratio", base.ratio, "1");
   print("bare/noise", base.noise, "1");
   print("bare/memory", 1e-3 * bare_memory, "kB");
-  for (const Feature& feature : evaluation::features()) {
+  for (const Feature& feature : studies::features()) {
     std::fprintf(stderr, "features: %s\n", feature.name.c_str());
     printFeature(feature, bare, bare_memory);
   }

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "haptex/cloth/scene.h"
 #include "haptex/material/fabric_file.h"
-#include "haptex/nodes/simulated_cloth.h"
+#include "haptex/scene/scene.h"
+#include "haptex/simulation/simulated_cloth.h"
 #include "tab_lines.h"
 
 namespace {
@@ -111,7 +111,7 @@ void append(std::vector<Sample>& all, const std::vector<Sample>& more) {
 }
 
 /// Takes a step and keeps the shorter time of this and earlier runs.
-void step(nodes::SimulatedCloth& sheet, Sample& sample) {
+void step(simulation::SimulatedCloth& sheet, Sample& sample) {
   const Clock::time_point begin = Clock::now();
   if (!sheet.step()) throw std::runtime_error("a step was rejected");
   const std::chrono::duration<double> took = Clock::now() - begin;
@@ -128,8 +128,8 @@ class Comparison {
       : fabric_(fabric), grip_(grip), gripped_(phases().size()), hanging_(phases().size()) {}
 
   void run() {
-    const cloth::Scene scene = cloth::loadScene(kScene);
-    nodes::SimulatedCloth gripped(scene, fabric_), hanging(scene, fabric_);
+    const scene::Scene scene = scene::loadScene(kScene);
+    simulation::SimulatedCloth gripped(scene, fabric_), hanging(scene, fabric_);
     Sample start;
     for (int i = 0; i < 80; ++i) {
       step(gripped, start);
@@ -181,7 +181,7 @@ class Comparison {
 
  private:
   /// A sheet that has come to rest would only let the time pass.
-  static void stepAwake(nodes::SimulatedCloth& sheet, Sample& sample) {
+  static void stepAwake(simulation::SimulatedCloth& sheet, Sample& sample) {
     if (sheet.asleep()) sheet.attach({kColumns * kColumns - 1});  // held there already
     step(sheet, sample);
   }

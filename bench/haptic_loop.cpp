@@ -11,29 +11,29 @@
 #include <vector>
 
 #include "haptex/contact/haptic_layer.h"
-#include "haptex/evaluation/touch_loop.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/oracles/experiments/touch_loop.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "tab_lines.h"
 
 namespace {
 
 using namespace haptex;
+using base::Finger;
+using base::kFingers;
 using bench::printLine;
 using Eigen::Vector3d;
-using exoskeleton::Finger;
-using exoskeleton::kFingers;
 
 const std::string kConfig = HAPTEX_CONFIG_DIRECTORY;
 
-evaluation::HapticLoopSettings woolSample(double large_scale_step) {
-  evaluation::HapticLoopSettings settings;
-  settings.mesh = cloth::makeRectangle(0.2, 0.2, 32, 32, cloth::Triangulation::kAlternating);
+oracles::HapticLoopSettings woolSample(double large_scale_step) {
+  oracles::HapticLoopSettings settings;
+  settings.mesh = mesh::makeRectangle(0.2, 0.2, 32, 32, mesh::Triangulation::kAlternating);
   settings.fabric = material::loadFabric(kConfig + "/fabrics/wool.yaml");
   settings.effects.viscosity = true;
   settings.effects.bending = true;
   settings.effects.gravity = Vector3d(0.0, 0.0, -9.80665);
-  settings.attached_particles = cloth::sideParticles(settings.mesh, cloth::Side::kTop);
+  settings.attached_particles = mesh::sideParticles(settings.mesh, mesh::Side::kTop);
   settings.large_scale_step = large_scale_step;
   settings.step.newton_iterations = 2;
   return settings;
@@ -88,7 +88,7 @@ class Computation {
  private:
   const contact::PerFingertip<Vector3d> kPlaces = {Vector3d(0.0, -0.045, -0.1),
                                                    Vector3d(0.0, 0.045, -0.1)};
-  evaluation::HapticLoopSettings settings_;
+  oracles::HapticLoopSettings settings_;
   contact::HapticLayer layer_;
   std::vector<proximity::NearElement> near_;
 };
@@ -129,7 +129,7 @@ struct Variant {
 class Feel {
  public:
   explicit Feel(const Variant& variant) : loop_(robotDescription(), {}, settings(variant)) {
-    loop_.observe([this](const evaluation::TouchLoop&) { watch(); });
+    loop_.observe([this](const oracles::TouchLoop&) { watch(); });
   }
 
   void print(const std::string& prefix) {
@@ -156,8 +156,8 @@ class Feel {
   }
 
  private:
-  static evaluation::TouchLoopSettings settings(const Variant& variant) {
-    evaluation::TouchLoopSettings settings;
+  static oracles::TouchLoopSettings settings(const Variant& variant) {
+    oracles::TouchLoopSettings settings;
     settings.cloth = woolSample(variant.large_scale_step);
     settings.cloth.haptics.predict = variant.predict;
     settings.linearised = variant.linearised;
@@ -198,10 +198,10 @@ class Feel {
     return std::sqrt(most);
   }
 
-  evaluation::TouchLoop loop_;
+  oracles::TouchLoop loop_;
   int count_ = 0;
-  exoskeleton::PerFinger<Vector3d> sums_, last_{{Vector3d::Zero(), Vector3d::Zero()}};
-  exoskeleton::PerFinger<double> squares_{};
+  base::PerFinger<Vector3d> sums_, last_{{Vector3d::Zero(), Vector3d::Zero()}};
+  base::PerFinger<double> squares_{};
   double most_carried_ = 0.0;  // N, sum of both fingers' forces: what the cloth weighs on the hand
   double largest_step_ = 0.0;  // N, of a finger from one millisecond to the next
   double least_work_ = 0.0;    // J, below 0: the device gave energy

@@ -6,11 +6,11 @@
 // those of a swinging sheet of the linear reference at 12.5 ms. The patch cases are the parts of a
 // 1 ms step of a sheet as small as the one that follows a fingertip, of wool with viscosity, with
 // and without the matrix blocks that bending needs.
-#include "haptex/cloth/linear_solver.h"
+#include "haptex/linear/linear_solver.h"
 
 #include <Eigen/LU>
 
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/material/fabric_file.h"
 #include "tab_lines.h"
 
@@ -26,22 +26,22 @@ constexpr int kPatchCells = 16;
 constexpr double kPatchStep = 0.001;  // s
 
 struct System {
-  cloth::SymmetricBlockMatrix matrix;
-  cloth::BlockVector rhs;
+  linear::SymmetricBlockMatrix matrix;
+  linear::BlockVector rhs;
 };
 
 /// The step of a sheet that is stretched by 2 % and pulled sideways by gravity.
 System makeSystem(int cells) {
-  const cloth::ClothMesh mesh =
-      cloth::makeRectangle(0.5, 0.5, cells, cells, cloth::Triangulation::kAlternating);
+  const mesh::ClothMesh mesh =
+      mesh::makeRectangle(0.5, 0.5, cells, cells, mesh::Triangulation::kAlternating);
   const material::Fabric fabric =
       material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/linear.yaml");
   cloth::ModelledEffects effects;
   effects.gravity = {-9.80665, 0.0, 0.0};
   const cloth::Cloth cloth(mesh, fabric, effects);
   const int size = static_cast<int>(cloth.particleCount());
-  System system{cloth::SymmetricBlockMatrix(size, mesh.triangles),
-                cloth::BlockVector::Zero(3, size)};
+  System system{linear::SymmetricBlockMatrix(size, mesh.triangles),
+                linear::BlockVector::Zero(3, size)};
   cloth::ClothState state = cloth.initialState();
   for (Eigen::Vector3d& position : state.positions) position *= 1.02;
   for (int i = 0; i < size; ++i) {
@@ -55,8 +55,8 @@ System makeSystem(int cells) {
 
 void factorisation(benchmark::State& run, int cells) {
   const System system = makeSystem(cells);
-  cloth::BlockCholesky cholesky(system.matrix);
-  cloth::BlockVector x(3, system.matrix.size());
+  linear::BlockCholesky cholesky(system.matrix);
+  linear::BlockVector x(3, system.matrix.size());
   for (auto _ : run) {
     if (!cholesky.factorise(system.matrix)) run.SkipWithError("not positive definite");
     x = system.rhs;
@@ -66,7 +66,7 @@ void factorisation(benchmark::State& run, int cells) {
 
 void keptFactorisation(benchmark::State& run, int cells) {
   const System system = makeSystem(cells);
-  cloth::BasicBlockCholesky<float> factor(system.matrix);
+  linear::BasicBlockCholesky<float> factor(system.matrix);
   for (auto _ : run) {
     if (!factor.factorise(system.matrix)) run.SkipWithError("not positive definite");
   }
@@ -74,9 +74,9 @@ void keptFactorisation(benchmark::State& run, int cells) {
 
 void keptSolve(benchmark::State& run, int cells) {
   const System system = makeSystem(cells);
-  cloth::BasicBlockCholesky<float> factor(system.matrix);
+  linear::BasicBlockCholesky<float> factor(system.matrix);
   if (!factor.factorise(system.matrix)) run.SkipWithError("not positive definite");
-  cloth::BlockVector x(3, system.matrix.size());
+  linear::BlockVector x(3, system.matrix.size());
   for (auto _ : run) {
     x = system.rhs;
     factor.solve(x);
@@ -85,8 +85,8 @@ void keptSolve(benchmark::State& run, int cells) {
 
 void iterations(benchmark::State& run, int cells) {
   const System system = makeSystem(cells);
-  cloth::ConjugateGradient solver(system.matrix.size());
-  cloth::BlockVector x(3, system.matrix.size());
+  linear::ConjugateGradient solver(system.matrix.size());
+  linear::BlockVector x(3, system.matrix.size());
   for (auto _ : run) {
     x.setZero();
     solver.solve(system.matrix, system.rhs, 1e-15, kIterations, x);
@@ -118,14 +118,14 @@ struct Patch {
     cloth::ModelledEffects effects;
     effects.viscosity = true;
     effects.bending = bending;
-    return {cloth::makeRectangle(0.025, 0.025, kPatchCells, kPatchCells,
-                                 cloth::Triangulation::kAlternating),
+    return {mesh::makeRectangle(0.025, 0.025, kPatchCells, kPatchCells,
+                                mesh::Triangulation::kAlternating),
             material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), effects};
   }
   explicit Patch(cloth::Cloth made)
       : cloth(std::move(made)),
         state(cloth.initialState()),
-        system{cloth.pattern(), cloth::BlockVector::Zero(3, cloth.particleCount())} {
+        system{cloth.pattern(), linear::BlockVector::Zero(3, cloth.particleCount())} {
     for (Eigen::Vector3d& position : state.positions) position *= 1.02;
     assemble();
   }
@@ -138,7 +138,7 @@ void patchAssembly(benchmark::State& run, bool bending) {
 
 void patchFactorisation(benchmark::State& run, bool bending) {
   const Patch patch(bending);
-  cloth::BlockCholesky cholesky(patch.system.matrix);
+  linear::BlockCholesky cholesky(patch.system.matrix);
   for (auto _ : run) {
     if (!cholesky.factorise(patch.system.matrix)) run.SkipWithError("not positive definite");
   }
@@ -146,9 +146,9 @@ void patchFactorisation(benchmark::State& run, bool bending) {
 
 void patchSolve(benchmark::State& run, bool bending) {
   const Patch patch(bending);
-  cloth::BlockCholesky cholesky(patch.system.matrix);
+  linear::BlockCholesky cholesky(patch.system.matrix);
   if (!cholesky.factorise(patch.system.matrix)) run.SkipWithError("not positive definite");
-  cloth::BlockVector x = patch.system.rhs;
+  linear::BlockVector x = patch.system.rhs;
   for (auto _ : run) {
     x = patch.system.rhs;
     cholesky.solve(x);
@@ -200,7 +200,7 @@ int main(int argc, char** argv) {
   Eigen::Vector2d spent;
   for (const int count : cells) {
     const System system = makeSystem(count);
-    const cloth::BlockCholesky cholesky(system.matrix);
+    const linear::BlockCholesky cholesky(system.matrix);
     const std::string triangles = std::to_string(2 * count * count);
     const double factorisation_time =
         reporter.time("linear_solver/factorise_and_solve/" + triangles);

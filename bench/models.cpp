@@ -5,10 +5,10 @@
 #include <array>
 #include <string>
 
-#include "haptex/cloth/integrator.h"
-#include "haptex/evaluation/cloth_oracles.h"
-#include "haptex/evaluation/virtual_test.h"
+#include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/kes/virtual_test.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/oracles/checks/cloth_oracles.h"
 #include "tab_lines.h"
 
 namespace {
@@ -27,15 +27,14 @@ constexpr std::array<Named, 3> kModels = {{{"green_lagrange", Elasticity::kGreen
 void printTensileTests(const material::Fabric& fabric, const std::vector<double>& weft_strains,
                        const std::vector<double>& warp_strains) {
   for (bool weft : {true, false}) {
-    const auto direction = weft ? evaluation::Direction::kWeft : evaluation::Direction::kWarp;
+    const auto direction = weft ? kes::Direction::kWeft : kes::Direction::kWarp;
     const std::string of = fabric.name + (weft ? "_weft_" : "_warp_");
     for (double strain : weft ? weft_strains : warp_strains) {
-      const std::string at = "/" + of + evaluation::numbered(strain) + "/2500";
-      bench::printLine("models/fabric" + at,
-                       evaluation::exactTensileForce(fabric, direction, strain), "N");
+      const std::string at = "/" + of + oracles::numbered(strain) + "/2500";
+      bench::printLine("models/fabric" + at, kes::exactTensileForce(fabric, direction, strain),
+                       "N");
       for (const Named& model : kModels) {
-        const auto readings =
-            evaluation::tensileTest(fabric, direction, {strain}, model.elasticity);
+        const auto readings = kes::tensileTest(fabric, direction, {strain}, model.elasticity);
         bench::printLine(std::string("models/") + model.name + at, readings.back().force, "N");
       }
     }
@@ -46,14 +45,13 @@ void printStep(const material::Fabric& fabric, const Named& model) {
   cloth::ModelledEffects effects;
   effects.elasticity = model.elasticity;
   effects.gravity = {0.0, 0.0, -9.80665};
-  cloth::ClothMesh mesh =
-      cloth::makeRectangle(0.5, 0.5, 32, 32, cloth::Triangulation::kAlternating);
+  mesh::ClothMesh mesh = mesh::makeRectangle(0.5, 0.5, 32, 32, mesh::Triangulation::kAlternating);
   for (Eigen::Vector3d& position : mesh.initial_positions) {
     position = {position.z(), position.y(), 0.0};
   }
   cloth::Cloth cloth(std::move(mesh), fabric, effects);
   cloth::ClothState state = cloth.initialState();
-  for (int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) {
+  for (int particle : sideParticles(cloth.mesh(), mesh::Side::kTop)) {
     cloth::AttachmentPath place;
     place.start = state.positions[particle];
     cloth.attach(particle, place);

@@ -8,12 +8,12 @@
 #include <random>
 #include <string>
 
-#include "haptex/cloth/cloth.h"
-#include "haptex/cloth/integrator.h"
-#include "haptex/cloth/mesh.h"
-#include "haptex/evaluation/deformed_sheets.h"
-#include "haptex/evaluation/fcl_sheet.h"
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/mesh/mesh.h"
+#include "haptex/oracles/experiments/deformed_sheets.h"
+#include "haptex/oracles/experiments/fcl_sheet.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "tab_lines.h"
 
@@ -34,10 +34,10 @@ constexpr int kRepetitions = 5;
 /// A sheet, where it is, and where it is asked about.
 struct Case {
   explicit Case(int cells)
-      : mesh(cloth::makeRectangle(kSide, kSide, cells, cells, cloth::Triangulation::kAlternating)),
+      : mesh(mesh::makeRectangle(kSide, kSide, cells, cells, mesh::Triangulation::kAlternating)),
         name(std::to_string(mesh.triangles.size())),
-        rest(evaluation::deformedSheet(mesh, "flat")),
-        positions(evaluation::deformedSheet(mesh, "crumpled_1")) {
+        rest(oracles::deformedSheet(mesh, "flat")),
+        positions(oracles::deformedSheet(mesh, "crumpled_1")) {
     // As many elements in reach as of the smallest sheet.
     const double scale = 32.0 / cells;
     std::mt19937 generator(1);
@@ -54,7 +54,7 @@ struct Case {
     smaller_radius = scale * kFingertipRadius;
   }
 
-  cloth::ClothMesh mesh;
+  mesh::ClothMesh mesh;
   std::string name;
   Positions rest, positions;
   Positions places;
@@ -118,14 +118,14 @@ std::vector<Cursor> capsules(const Positions& places) {
 template <typename Volume>
 void addFcl(const std::string& suffix, const Case& c) {
   add("proximity/build" + suffix + "/" + c.name, [&c](benchmark::State& run) {
-    for (auto _ : run) evaluation::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
+    for (auto _ : run) oracles::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
   });
   add("proximity/refit" + suffix + "/" + c.name, [&c](benchmark::State& run) {
-    evaluation::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
+    oracles::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
     for (auto _ : run) sheet.refit(c.positions);
   });
   add("proximity/query" + suffix + "/" + c.name, [&c](benchmark::State& run) {
-    const evaluation::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
+    const oracles::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
     std::size_t next = 0;
     for (auto _ : run) {
       benchmark::DoNotOptimize(sheet.touched({c.places[next], kFingertipRadius}));
@@ -231,7 +231,7 @@ void printVisits(const std::string& suffix, const Case& c, const HierarchySettin
 void printEquality(const Case& c) {
   KdopHierarchy hierarchy(c.mesh.triangles, c.rest);
   hierarchy.refit(c.positions);
-  const evaluation::FclSheet<fcl::KDOP<double, 24>> sheet(c.mesh.triangles, c.positions);
+  const oracles::FclSheet<fcl::KDOP<double, 24>> sheet(c.mesh.triangles, c.positions);
   std::vector<NearElement> found;
   std::size_t hits = 0;
   int different = 0;
@@ -239,7 +239,7 @@ void printEquality(const Case& c) {
     const Sphere fingertip{place, kFingertipRadius};
     hierarchy.query(Cursor::spheres({fingertip}), {0.0}, found);
     hits += found.size();
-    different += !evaluation::agree(hierarchy, sheet, fingertip, 1e-9);
+    different += !oracles::agree(hierarchy, sheet, fingertip, 1e-9);
   }
   bench::printLine("proximity/hits/" + c.name, static_cast<double>(hits) / kPlaces, "elements");
   bench::printLine("proximity/different_from_fcl_kdop24/" + c.name, different, "queries");
@@ -252,7 +252,7 @@ double movedInSwing(const Case& c) {
   effects.gravity = {9.80665, 0.0, 0.0};  // across the hanging sheet
   cloth::Cloth cloth(c.mesh, material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/linear.yaml"),
                      effects);
-  for (const int particle : cloth::sideParticles(c.mesh, cloth::Side::kTop)) {
+  for (const int particle : mesh::sideParticles(c.mesh, mesh::Side::kTop)) {
     cloth::AttachmentPath path;
     path.start = c.mesh.initial_positions[static_cast<std::size_t>(particle)];
     cloth.attach(particle, path);

@@ -17,8 +17,8 @@
 #include <thread>
 #include <vector>
 
-#include "haptex/cloth/mesh.h"
-#include "haptex/evaluation/deformed_sheets.h"
+#include "haptex/mesh/mesh.h"
+#include "haptex/oracles/experiments/deformed_sheets.h"
 #include "tab_lines.h"
 
 namespace {
@@ -35,8 +35,8 @@ constexpr int kFreshCalls = 400;
 class PlayedCloth {
  public:
   explicit PlayedCloth(ros::NodeHandle& node)
-      : mesh_(cloth::makeRectangle(0.2, 0.2, kCells, kCells, cloth::Triangulation::kAlternating)),
-        positions_(evaluation::deformedSheet(mesh_, "crumpled_1")),
+      : mesh_(mesh::makeRectangle(0.2, 0.2, kCells, kCells, mesh::Triangulation::kAlternating)),
+        positions_(oracles::deformedSheet(mesh_, "crumpled_1")),
         mesh_publisher_(node.advertise<ClothMesh>("cloth/mesh", 1, true)),
         state_publisher_(node.advertise<ClothState>("cloth/state", 1)) {
     publishMesh();
@@ -89,7 +89,7 @@ class PlayedCloth {
     }
   }
 
-  cloth::ClothMesh mesh_;
+  mesh::ClothMesh mesh_;
   std::vector<Eigen::Vector3d> positions_;
   ros::Publisher mesh_publisher_, state_publisher_;
   std::atomic<bool> stop_{false};

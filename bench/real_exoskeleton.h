@@ -14,11 +14,11 @@
 #include <thread>
 #include <vector>
 
-#include "haptex/nodes/driver_loop.h"
-#include "haptex/nodes/duration_histogram.h"
-#include "haptex/nodes/emulator.h"
-#include "haptex/nodes/periodic_thread.h"
-#include "haptex/nodes/steady_clock.h"
+#include "haptex/exoskeleton/control/driver_loop.h"
+#include "haptex/exoskeleton/emulator/emulator.h"
+#include "haptex/realtime/duration_histogram.h"
+#include "haptex/realtime/periodic_thread.h"
+#include "haptex/realtime/steady_clock.h"
 #include "tab_lines.h"
 
 namespace haptex::bench {
@@ -45,16 +45,17 @@ class BusyCores {
 
 class RealExoskeleton {
  public:
-  using Time = exoskeleton::Time;
+  using Time = base::Time;
 
   /// Homes and enables the device. @throws std::runtime_error if that does not succeed
   explicit RealExoskeleton(const std::string& urdf)
       : link_(std::filesystem::temp_directory_path() /
               ("haptex_bench_" + std::to_string(getpid()))),
-        emulator_(urdf, link_, [](const nodes::EmulatorSample&) {}),
+        emulator_(urdf, link_, [](const exoskeleton::EmulatorSample&) {}),
         driver_(link_, urdf),
-        emulator_thread_(nodes::Emulator::kPeriod, [this](Time now) { emulator_.advanceTo(now); }),
-        driver_thread_(nodes::DriverLoop::kPeriod, [this](Time now) { driver_.tick(now); }) {
+        emulator_thread_(exoskeleton::Emulator::kPeriod,
+                         [this](Time now) { emulator_.advanceTo(now); }),
+        driver_thread_(exoskeleton::DriverLoop::kPeriod, [this](Time now) { driver_.tick(now); }) {
     makeReady();
   }
 
@@ -62,7 +63,7 @@ class RealExoskeleton {
   void measure(const std::string& load, double low, double high, int steps) {
     const auto lateness_before = driver_thread_.lateness().counts();
     const std::uint64_t missed_before = driver_thread_.missed();
-    nodes::DurationHistogram latency;
+    realtime::DurationHistogram latency;
     int unseen = 0, faults = 0;
     run(high, low, kSettling, nullptr);
     for (int i = 0; i < steps; ++i) {
@@ -98,17 +99,17 @@ class RealExoskeleton {
 
   /// Commands `to` once per state for a while and notes how long after its first command the sensor
   /// left `from`. @returns false if it did not
-  bool run(double from, double to, Time duration, nodes::DurationHistogram* latency) {
+  bool run(double from, double to, Time duration, realtime::DurationHistogram* latency) {
     exoskeleton::ForceCommand command;
     command.force = {0.0, 0.0, to};
-    const Time begin = nodes::steadyNow();
+    const Time begin = realtime::steadyNow();
     bool seen = false;
-    nodes::DriverSnapshot snapshot;
-    for (Time now = begin; now < begin + duration; now = nodes::steadyNow()) {
-      driver_.command(exoskeleton::Finger::kIndex, command, now);
+    exoskeleton::DriverSnapshot snapshot;
+    for (Time now = begin; now < begin + duration; now = realtime::steadyNow()) {
+      driver_.command(base::Finger::kIndex, command, now);
       if (!driver_.takeMeasured(snapshot, std::chrono::milliseconds(20))) continue;
       if (seen || latency == nullptr || snapshot.state_time < begin) continue;
-      const double force = snapshot.fingers[exoskeleton::Finger::kIndex].force.z();
+      const double force = snapshot.fingers[base::Finger::kIndex].force.z();
       if ((force - from) / (to - from) < kSeen) continue;
       seen = true;
       latency->add(snapshot.state_time - begin);
@@ -116,9 +117,9 @@ class RealExoskeleton {
     return seen;
   }
 
-  static void print(const std::string& name, const nodes::DurationHistogram::Counts& counts) {
+  static void print(const std::string& name, const realtime::DurationHistogram::Counts& counts) {
     const auto line = [&](const char* which, Time time) {
-      printLine(name + "_" + which, 1e6 * exoskeleton::seconds(time), "us");
+      printLine(name + "_" + which, 1e6 * base::seconds(time), "us");
     };
     line("p50", counts.quantile(0.5));
     line("p99", counts.quantile(0.99));
@@ -136,11 +137,11 @@ class RealExoskeleton {
       const exoskeleton::OperatingState state = driver_.status().operating_state;
       if (state.mode == exoskeleton::Mode::kEnabled) return;
       if (state.mode == exoskeleton::Mode::kFault) {
-        driver_.ask(nodes::DriverRequest::kClearFault);
+        driver_.ask(exoskeleton::DriverRequest::kClearFault);
       } else if (!state.is_homed && !state.is_busy) {
-        driver_.ask(nodes::DriverRequest::kHome);
+        driver_.ask(exoskeleton::DriverRequest::kHome);
       } else if (state.is_homed) {
-        driver_.ask(nodes::DriverRequest::kEnable);
+        driver_.ask(exoskeleton::DriverRequest::kEnable);
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -148,10 +149,10 @@ class RealExoskeleton {
   }
 
   std::string link_;
-  nodes::Emulator emulator_;
-  nodes::DriverLoop driver_;
-  nodes::PeriodicThread emulator_thread_;
-  nodes::PeriodicThread driver_thread_;
+  exoskeleton::Emulator emulator_;
+  exoskeleton::DriverLoop driver_;
+  realtime::PeriodicThread emulator_thread_;
+  realtime::PeriodicThread driver_thread_;
 };
 
 }  // namespace haptex::bench

@@ -1,5 +1,5 @@
 // How does cloth behave at the extremes? bench_stability [--cases N] [--seed S] [--maps CSV]
-// Runs N generated cases (evaluation/extreme_case.h) on two threads, by default 50000 from seed 1,
+// Runs N generated cases (studies/extreme_case.h) on two threads, by default 50000 from seed 1,
 // and prints how many failed and by how much the worst missed its rest state, all together and by
 // kind. A failed case is shrunk, and printed on standard error as text that a test can take.
 // Then the limits of the explicit integrators, as longest step times highest angular frequency,
@@ -15,18 +15,18 @@
 #include <string>
 #include <thread>
 
-#include "haptex/evaluation/extreme_run.h"
-#include "haptex/evaluation/extreme_shrink.h"
-#include "haptex/evaluation/quantity.h"
-#include "haptex/evaluation/stability_map.h"
+#include "haptex/base/quantity.h"
+#include "haptex/studies/extreme_run.h"
+#include "haptex/studies/extreme_shrink.h"
+#include "haptex/studies/stability_map.h"
 #include "tab_lines.h"
 
 namespace {
 
 using namespace haptex;
-using evaluation::ExtremeCase;
-using evaluation::ExtremeFailure;
-using evaluation::ExtremeOutcome;
+using studies::ExtremeCase;
+using studies::ExtremeFailure;
+using studies::ExtremeOutcome;
 
 constexpr double kMapStiffness = 100.0;  // N/m, of the limits; they do not depend on it
 
@@ -69,9 +69,9 @@ struct Tally {
     other_rests += outcome.other_rest;
     slow += outcome.slow;
     rejected += outcome.rejected;
-    growth = evaluation::largerOrNaN(growth, outcome.growth);
+    growth = base::largerOrNaN(growth, outcome.growth);
     if (outcome.other_rest) return;
-    return_error = evaluation::largerOrNaN(return_error, outcome.return_error);
+    return_error = base::largerOrNaN(return_error, outcome.return_error);
   }
 };
 
@@ -90,7 +90,7 @@ void printFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome) {
   constexpr int kMostRuns = 100;  // of seconds each, where cloth does not return
   int runs = 0;
   const ExtremeCase small = shrinkExtremeCase(extreme, [&](const ExtremeCase& candidate) {
-    return ++runs <= kMostRuns && evaluation::runExtremeCase(candidate).failure == outcome.failure;
+    return ++runs <= kMostRuns && studies::runExtremeCase(candidate).failure == outcome.failure;
   });
   std::fprintf(stderr, "seed %llu: %s %s, growth %g, return error %g, shrunk to\n  %s\n",
                static_cast<unsigned long long>(extreme.seed), nameOf(outcome.failure),
@@ -114,8 +114,8 @@ class Cases {
  private:
   void work() {
     for (long i; (i = next_++) < arguments_.cases;) {
-      const ExtremeCase extreme = evaluation::drawExtremeCase(arguments_.seed + i);
-      const ExtremeOutcome outcome = evaluation::runExtremeCase(extreme);
+      const ExtremeCase extreme = studies::drawExtremeCase(arguments_.seed + i);
+      const ExtremeOutcome outcome = studies::runExtremeCase(extreme);
       add(extreme, outcome);
       if (outcome.failure != ExtremeFailure::kNone) printFailure(extreme, outcome);
     }
@@ -146,8 +146,7 @@ class Cases {
 void printLimits() {
   for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
     if (cloth::isImplicit(named.method)) continue;
-    const evaluation::StabilityLimit limit =
-        evaluation::findStabilityLimit(named.method, kMapStiffness);
+    const studies::StabilityLimit limit = studies::findStabilityLimit(named.method, kMapStiffness);
     bench::printLine(std::string("stability/limit/") + named.name, limit.measured, "h_omega");
     bench::printLine(std::string("stability/limit_of_theory/") + named.name, limit.theory,
                      "h_omega");
@@ -164,10 +163,10 @@ void writeMaps(const std::string& path) {
     std::fprintf(stderr, "map of %s\n", named.name);
     for (int k = -3 * kStiffnessesPerDecade; k <= 7 * kStiffnessesPerDecade; ++k) {
       const double stiffness = std::pow(10.0, static_cast<double>(k) / kStiffnessesPerDecade);
-      const double frequency = evaluation::highestFrequency(stiffness);
+      const double frequency = studies::highestFrequency(stiffness);
       for (int s = -6 * kStepsPerDecade; s <= kStepsPerDecade; ++s) {
         const double time_step = std::pow(10.0, static_cast<double>(s) / kStepsPerDecade);
-        const auto cell = evaluation::findStability(named.method, 1, time_step, stiffness);
+        const auto cell = studies::findStability(named.method, 1, time_step, stiffness);
         file << named.name << ',' << time_step << ',' << stiffness << ',' << frequency << ','
              << nameOf(cell.stability) << ',' << cell.energy_left << '\n';
       }

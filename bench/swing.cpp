@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "haptex/cloth/integrator.h"
-#include "haptex/cloth/scene.h"
+#include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/scene/scene.h"
 #include "tab_lines.h"
 
 namespace {
@@ -24,7 +24,7 @@ struct Outcome {
 
 class Swing {
  public:
-  Swing(const cloth::Scene& scene, double time_step)
+  Swing(const scene::Scene& scene, double time_step)
       : cloth_(scene.mesh, material::loadFabric(scene.fabric_path), scene.effects),
         state_(cloth_.initialState()),
         integrator_(cloth_, scene.step),
@@ -81,7 +81,7 @@ class Swing {
 };
 
 void printSwing(double milliseconds, int solves) {
-  cloth::Scene scene = cloth::loadScene(HAPTEX_CONFIG_DIRECTORY "/scenes/wool_sample.yaml");
+  scene::Scene scene = scene::loadScene(HAPTEX_CONFIG_DIRECTORY "/scenes/wool_sample.yaml");
   scene.step.newton_iterations = solves;
   const Outcome outcome = Swing(scene, 1e-3 * milliseconds).run();
   std::string step = std::to_string(milliseconds);

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "haptex/evaluation/known_surfaces.h"
-#include "haptex/evaluation/standard_stroke.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/oracles/experiments/known_surfaces.h"
+#include "haptex/oracles/experiments/standard_stroke.h"
 #include "haptex/tactile/weave_relief.h"
 #include "tab_lines.h"
 
@@ -63,7 +63,7 @@ void timeSteps(const std::string& name, const Surface& surface) {
   const double step = printTimes(name + "/two_fingers", kSteps, [&](int i) {
     for (int finger = 0; finger < 2; ++finger) {
       tactile::TouchedFabric touched;
-      touched.stroke = {0.02 * evaluation::direction(i + 90.0 * finger), 0.5};
+      touched.stroke = {0.02 * oracles::direction(i + 90.0 * finger), 0.5};
       touched.placement.origin = Eigen::Vector2d(1e-4 * i, 0.01 * finger);
       touched.forces.fill(0.02);
       benchmark::DoNotOptimize(tactile::arrayAmplitudes(surface, touched, {}));
@@ -101,7 +101,7 @@ int main() {
       });
     }
   }
-  for (const auto& fabric : evaluation::renderFabrics(HAPTEX_CONFIG_DIRECTORY)) {
+  for (const auto& fabric : oracles::renderFabrics(HAPTEX_CONFIG_DIRECTORY)) {
     const std::string name = "tactile/fabric/" + fabric.name;
     printLine(name + "/smd", 1e6 * fabric.roughness, "um");
     printLine(name + "/a40", 1e6 * fabric.stroke.amplitudes[tactile::k40], "um");
@@ -109,7 +109,7 @@ int main() {
     printLine(name + "/ratio", fabric.stroke.ratio(), "1");
     printLine(name + "/intensity", 1e6 * fabric.stroke.intensity, "um");
   }
-  for (const auto& weave : evaluation::renderWeaves(HAPTEX_CONFIG_DIRECTORY)) {
+  for (const auto& weave : oracles::renderWeaves(HAPTEX_CONFIG_DIRECTORY)) {
     printLine("tactile/weave/" + weave.name + "/ratio", weave.stroke.ratio(), "1");
   }
   return 0;

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "haptex/evaluation/quality_choice.h"
-#include "haptex/evaluation/trade_off_study.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/studies/quality_choice.h"
+#include "haptex/studies/trade_off_study.h"
 #include "tab_lines.h"
 
 namespace {
@@ -22,8 +22,8 @@ namespace {
 using namespace haptex;
 using cloth::Elasticity;
 using cloth::IntegrationMethod;
-using cloth::LinearSolverMethod;
-using evaluation::TradeOffPoint;
+using linear::LinearSolverMethod;
+using studies::TradeOffPoint;
 
 constexpr int kThreads = 2;
 constexpr double kMostCost = 3.0;  // computing time over simulated time, beyond which nobody goes
@@ -99,10 +99,10 @@ std::vector<TradeOffPoint> allPoints() {
   return points;
 }
 
-std::vector<evaluation::TradeOffCase> allCases() {
-  std::vector<evaluation::TradeOffCase> cases;
-  for (evaluation::Motion motion : {evaluation::Motion::kDrape, evaluation::Motion::kSwing,
-                                    evaluation::Motion::kStretch, evaluation::Motion::kHang}) {
+std::vector<studies::TradeOffCase> allCases() {
+  std::vector<studies::TradeOffCase> cases;
+  for (studies::Motion motion : {studies::Motion::kDrape, studies::Motion::kSwing,
+                                 studies::Motion::kStretch, studies::Motion::kHang}) {
     for (const char* fabric : {"wool", "linear"}) {
       cases.push_back({motion, material::loadFabric(std::string(HAPTEX_CONFIG_DIRECTORY) +
                                                     "/fabrics/" + fabric + ".yaml")});
@@ -111,16 +111,16 @@ std::vector<evaluation::TradeOffCase> allCases() {
   return cases;
 }
 
-void printTable(const evaluation::TradeOffTable& table) {
+void printTable(const studies::TradeOffTable& table) {
   for (std::size_t i = 0; i < table.cases.size(); ++i) {
     const std::string of = std::string("trade_off/") + nameOf(table.cases[i].motion) + "/" +
                            table.cases[i].fabric.name + "/";
-    const evaluation::TradeOffErrors& own = table.references[i].own_error;
+    const studies::TradeOffErrors& own = table.references[i].own_error;
     bench::printLine(of + "reference/position_error", own.position, "m");
     bench::printLine(of + "reference/force_error", own.force, "N");
     bench::printLine(of + "reference/energy_error", own.energy, "J");
     for (std::size_t k = 0; k < table.points.size(); ++k) {
-      const evaluation::TradeOffResult& result = table.results[k][i];
+      const studies::TradeOffResult& result = table.results[k][i];
       if (!result.followed) continue;
       const std::string name = of + nameOf(table.points[k]);
       bench::printLine(name + "/position_error", result.error.position, "m");
@@ -145,20 +145,20 @@ std::string machine() {
 }
 
 /// Counts what is done on standard error.
-evaluation::Progress counter(std::size_t of) {
+studies::Progress counter(std::size_t of) {
   return [of, done = std::size_t{0}](const std::string& what) mutable {
     std::fprintf(stderr, "%zu of %zu: %s\n", ++done, of, what.c_str());
   };
 }
 
-bool writePresets(const std::string& directory, const std::vector<cloth::Quality>& qualities) {
-  const auto write = [&](const std::string& name, const std::vector<cloth::Quality>& content) {
+bool writePresets(const std::string& directory, const std::vector<scene::Quality>& qualities) {
+  const auto write = [&](const std::string& name, const std::vector<scene::Quality>& content) {
     std::ofstream file(directory + "/" + name + ".yaml");
-    evaluation::writeQualities(file, content, machine());
+    studies::writeQualities(file, content, machine());
     return static_cast<bool>(file.flush());
   };
   bool written = write("front", qualities);
-  for (const cloth::Quality& quality : qualities) {
+  for (const scene::Quality& quality : qualities) {
     if (quality.name.rfind("point_", 0) != 0) written = write(quality.name, {quality}) && written;
   }
   return written;
@@ -172,13 +172,13 @@ int main(int argc, char** argv) {
     return 1;
   }
   const std::string path = argc > 1 ? argv[1] : HAPTEX_CONFIG_DIRECTORY "/../build/trade_off.csv";
-  evaluation::TradeOffTable table;
+  studies::TradeOffTable table;
   table.cases = allCases();
   table.points = allPoints();
   table.references = computeReferences(table.cases, {}, kThreads, counter(2 * table.cases.size()));
   table.results = followPoints(table.points, table.cases, table.references, kMostCost, kThreads,
                                counter(table.points.size()));
-  const std::vector<cloth::Quality> qualities = chooseQualities(table);
+  const std::vector<scene::Quality> qualities = chooseQualities(table);
   printTable(table);
   std::ofstream csv(path);
   writeTable(csv, table, qualities);

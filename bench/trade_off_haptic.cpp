@@ -13,13 +13,14 @@
 #include <stdexcept>
 #include <thread>
 
-#include "haptex/evaluation/haptic_trade_off.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/studies/haptic_trade_off.h"
 #include "tab_lines.h"
 
 namespace {
 
-using namespace haptex::evaluation;
+using namespace haptex;
+using namespace haptex::studies;
 using haptex::bench::printLine;
 
 constexpr int kThreads = 2;
@@ -103,7 +104,7 @@ void share(const char* what, int count, const std::function<void(int)>& job) {
 /// A touch with one fabric.
 struct Case {
   std::string fabric;
-  PrescribedTouch touch;
+  oracles::PrescribedTouch touch;
   TouchReference reference;
   std::vector<HapticCost> costs;  // per point
   std::vector<char> dominated;    // per point, by error and time of the force loop
@@ -114,7 +115,7 @@ std::vector<Case> makeCases() {
   for (const char* name : {"wool", "linear"}) {
     const auto fabric = haptex::material::loadFabric(
         std::string(HAPTEX_CONFIG_DIRECTORY "/fabrics/") + name + ".yaml");
-    for (const PrescribedTouch& touch : prescribedTouches(fabric)) {
+    for (const oracles::PrescribedTouch& touch : oracles::prescribedTouches(fabric)) {
       Case& here = cases.emplace_back();
       here.fabric = name;
       here.touch = touch;

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "haptex/evaluation/virtual_wall.h"
+#include "haptex/oracles/experiments/virtual_wall.h"
 #include "tab_lines.h"
 
 namespace haptex::bench {
@@ -16,25 +16,25 @@ constexpr int kHalvings = 7;                            // of that range: to 3 %
 constexpr int kSearchCycles = 10, kCycles = 100;        // while searching, and in the end
 constexpr double kStepBack = 0.97;                      // where the limit did not bear kCycles
 
-using exoskeleton::Finger;
-using exoskeleton::kFingers;
-using exoskeleton::PerFinger;
+using base::Finger;
+using base::kFingers;
+using base::PerFinger;
 
 /// What is asked of a wall: steady, and if `passive`, observed to be passive as well.
-inline bool good(const evaluation::WallTouch& touch, bool passive) {
+inline bool good(const oracles::WallTouch& touch, bool passive) {
   return touch.steady() && (!passive || touch.observedPassive());
 }
 
 struct Limit {
   double stiffness = 0.0;  // N/m, 0 if not even kSoftest is good
-  evaluation::WallTouch touch;
+  oracles::WallTouch touch;
 };
 
 /// By bisection, both fingers at a time; the walls differ from `wall` in their stiffness.
 class WallSearch {
  public:
   WallSearch(const std::string& urdf, const exoskeleton::FingerMechanics& mechanics,
-             const PerFinger<Eigen::Vector3d>& open, const evaluation::VirtualWall& wall)
+             const PerFinger<Eigen::Vector3d>& open, const oracles::VirtualWall& wall)
       : urdf_(urdf), mechanics_(mechanics), open_(open), wall_(wall) {}
 
   PerFinger<Limit> find(bool passive) {
@@ -42,7 +42,7 @@ class WallSearch {
     for (int i = 0; i < kHalvings; ++i) {
       PerFinger<double> middle;
       for (const Finger finger : kFingers) middle[finger] = std::sqrt(low[finger] * high[finger]);
-      const PerFinger<evaluation::WallTouch> touches = touch(middle, kSearchCycles);
+      const PerFinger<oracles::WallTouch> touches = touch(middle, kSearchCycles);
       for (const Finger finger : kFingers) {
         (good(touches[finger], passive) ? low : high)[finger] = middle[finger];
       }
@@ -51,17 +51,17 @@ class WallSearch {
   }
 
  private:
-  PerFinger<evaluation::WallTouch> touch(const PerFinger<double>& stiffness, int cycles) const {
-    PerFinger<evaluation::VirtualWall> walls{{wall_, wall_}};
+  PerFinger<oracles::WallTouch> touch(const PerFinger<double>& stiffness, int cycles) const {
+    PerFinger<oracles::VirtualWall> walls{{wall_, wall_}};
     for (const Finger finger : kFingers) walls[finger].stiffness = stiffness[finger];
-    return evaluation::touchWalls(urdf_, mechanics_, open_, walls, cycles);
+    return oracles::touchWalls(urdf_, mechanics_, open_, walls, cycles);
   }
 
   PerFinger<Limit> confirm(PerFinger<double> stiffness, bool passive) const {
     PerFinger<Limit> limits;
     for (bool found = false; !found;) {
       found = true;
-      const PerFinger<evaluation::WallTouch> touches = touch(stiffness, kCycles);
+      const PerFinger<oracles::WallTouch> touches = touch(stiffness, kCycles);
       for (const Finger finger : kFingers) {
         const bool is_good = good(touches[finger], passive);
         limits[finger] = {is_good ? stiffness[finger] : 0.0, touches[finger]};
@@ -76,7 +76,7 @@ class WallSearch {
   std::string urdf_;
   exoskeleton::FingerMechanics mechanics_;
   PerFinger<Eigen::Vector3d> open_;
-  evaluation::VirtualWall wall_;
+  oracles::VirtualWall wall_;
 };
 
 /// wall_stiffness: steady and observed to be passive; wall_steady: steady, whatever the passivity
@@ -85,7 +85,7 @@ class WallSearch {
 inline void printWallStiffness(const std::string& urdf, const std::string& person,
                                const exoskeleton::FingerMechanics& mechanics,
                                const PerFinger<Eigen::Vector3d>& open,
-                               const evaluation::VirtualWall& wall) {
+                               const oracles::VirtualWall& wall) {
   WallSearch search(urdf, mechanics, open, wall);
   const PerFinger<Limit> passive = search.find(true), steady = search.find(false);
   for (const Finger finger : kFingers) {

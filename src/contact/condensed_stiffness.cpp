@@ -48,7 +48,7 @@ void CondensedStiffness::update(Patch& patch, double h) {
 void CondensedStiffness::computeColumn(Patch& patch, double h) {
   const int f = next_ / 3;
   const int direction = next_ % 3;
-  const cloth::BlockVector& solution = patch.respond(f, direction);
+  const linear::BlockVector& solution = patch.respond(f, direction);
   Vector3d change = direct_[f].col(direction);
   for (const TouchedParticle& touched : patch.linearised(f)) {
     change -= h * h * touched.tangent * solution.col(touched.particle);

@@ -20,8 +20,8 @@ const material::Fabric& requireBending(const material::Fabric& fabric,
   return fabric;
 }
 
-cloth::ClothMesh requireSoundAndReturn(cloth::ClothMesh mesh) {
-  cloth::requireSound(mesh);
+mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
+  mesh::requireSound(mesh);
   return mesh;
 }
 
@@ -46,7 +46,7 @@ double shareOf(const TouchedParticle& point, const FingertipContact& contact, st
 }
 
 /// Images of the unit vectors along weft and warp of a triangle.
-std::pair<Vector3d, Vector3d> fabricDirections(const cloth::ClothMesh& mesh, int triangle,
+std::pair<Vector3d, Vector3d> fabricDirections(const mesh::ClothMesh& mesh, int triangle,
                                                const LargeScaleMotion& motion) {
   const std::array<int, 3>& corners = mesh.triangles[triangle];
   Eigen::Matrix2d rest;
@@ -65,7 +65,7 @@ void requireTouchable(const material::Fabric& fabric, const HapticSettings& sett
   ContactLaw(requireBending(fabric, settings));
 }
 
-HapticLayer::HapticLayer(cloth::ClothMesh mesh, material::Fabric fabric,
+HapticLayer::HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric,
                          const cloth::ModelledEffects& effects, const HapticSettings& settings)
     : settings_(settings),
       mesh_(requireSoundAndReturn(std::move(mesh))),

@@ -1,11 +1,11 @@
 #include "haptex/contact/haptic_settings.h"
 
-#include "haptex/material/yaml_reader.h"
+#include "haptex/base/yaml_reader.h"
 
 namespace haptex::contact {
 namespace {
 
-using material::YamlValue;
+using base::YamlValue;
 
 constexpr int kMostRefinement = 4;
 constexpr double kLargestMargin = 0.1;  // m

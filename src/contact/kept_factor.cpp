@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "haptex/cloth/dense_kernels.h"
 #include "haptex/contact/panel_kernels.h"
+#include "haptex/linear/dense_kernels.h"
 
 namespace haptex::contact {
 namespace {
@@ -17,8 +17,8 @@ int padded(int numbers) { return (numbers + kPanelLanes - 1) / kPanelLanes * kPa
 
 }  // namespace
 
-KeptFactor::KeptFactor(const cloth::SymmetricBlockMatrix& pattern) {
-  const cloth::Elimination elimination = cloth::analyse(pattern);
+KeptFactor::KeptFactor(const linear::SymmetricBlockMatrix& pattern) {
+  const linear::Elimination elimination = linear::analyse(pattern);
   order_ = elimination.order;
   position_ = elimination.position;
   makeNodes(elimination);
@@ -41,10 +41,10 @@ KeptFactor::KeptFactor(const cloth::SymmetricBlockMatrix& pattern) {
   values_.resize(std::size_t{3} * pattern.size());
 }
 
-void KeptFactor::makeNodes(const cloth::Elimination& elimination) {
+void KeptFactor::makeNodes(const linear::Elimination& elimination) {
   node_of_.resize(elimination.order.size());
   std::size_t offset = 0;
-  for (const cloth::Supernode& supernode : elimination.supernodes) {
+  for (const linear::Supernode& supernode : elimination.supernodes) {
     const int parts = (supernode.width() + kMostColumns - 1) / kMostColumns;
     for (int part = 0; part < parts; ++part) {
       const int first = supernode.first + supernode.width() * part / parts;
@@ -70,7 +70,7 @@ int KeptFactor::placeOf(const Node& node, int row) const {
          static_cast<int>(std::lower_bound(begin, begin + node.row_count, row) - begin);
 }
 
-void KeptFactor::makeEntries(const cloth::SymmetricBlockMatrix& pattern) {
+void KeptFactor::makeEntries(const linear::SymmetricBlockMatrix& pattern) {
   std::vector<std::vector<Entry>> entries(nodes_.size());
   const auto add = [&](int row, int column, int slot) {
     int below = position_[row], right = position_[column];
@@ -117,7 +117,7 @@ void KeptFactor::makeSources() {
   }
 }
 
-void KeptFactor::load(const Node& node, const cloth::SymmetricBlockMatrix& matrix) {
+void KeptFactor::load(const Node& node, const linear::SymmetricBlockMatrix& matrix) {
   std::fill_n(panel_.data(), std::size_t{3} * node.width * node.leading, 0.0f);
   for (int e = node.first_entry; e < node.end_entry; ++e) {
     const Entry& entry = entries_[e];
@@ -140,8 +140,8 @@ void KeptFactor::subtractSource(const Source& source, const Node& node) {
   const int columns = 3 * (source.end - source.begin);
   const float* rows = lower_.data() + from.offset + 3 * (from.width + source.begin);
   std::fill_n(product_.data(), static_cast<std::size_t>(height) * columns, 0.0f);
-  cloth::subtractProduct(height, columns, 3 * from.width, rows, from.leading, rows, from.leading,
-                         product_.data(), height);
+  linear::subtractProduct(height, columns, 3 * from.width, rows, from.leading, rows, from.leading,
+                          product_.data(), height);
   const int* places = places_.data() + source.first_place;
   for (int c = 0; c < columns; ++c) {
     float* target =
@@ -162,9 +162,9 @@ bool KeptFactor::factorisePanel(const Node& node) {
   for (int c = 0; c < 3 * node.width; c += 3) {
     float* const top = base + static_cast<std::size_t>(ld) * c + c;
     if (c > 0) {
-      cloth::subtractProduct(node.height - c, 3, c, base + c, ld, base + c, ld, top, ld);
+      linear::subtractProduct(node.height - c, 3, c, base + c, ld, base + c, ld, top, ld);
     }
-    if (!cloth::factoriseThreeColumns(node.height - c, top, ld)) return false;
+    if (!linear::factoriseThreeColumns(node.height - c, top, ld)) return false;
   }
   return true;
 }
@@ -188,11 +188,11 @@ void KeptFactor::invertPanel(const Node& node) {
   }
   const int below = node.height - width;
   if (below == 0) return;
-  cloth::subtractProduct(below, width, width, l + width, ld, transposed_.data(), width,
-                         result + width, ld);
+  linear::subtractProduct(below, width, width, l + width, ld, transposed_.data(), width,
+                          result + width, ld);
 }
 
-bool KeptFactor::renewNode(int index, const cloth::SymmetricBlockMatrix& matrix) {
+bool KeptFactor::renewNode(int index, const linear::SymmetricBlockMatrix& matrix) {
   const Node& node = nodes_[index];
   load(node, matrix);
   for (int s = node.first_source; s < node.end_source; ++s) subtractSource(sources_[s], node);
@@ -203,7 +203,7 @@ bool KeptFactor::renewNode(int index, const cloth::SymmetricBlockMatrix& matrix)
   return true;
 }
 
-bool KeptFactor::factorise(const cloth::SymmetricBlockMatrix& matrix) {
+bool KeptFactor::factorise(const linear::SymmetricBlockMatrix& matrix) {
   double largest = 0.0;
   for (std::size_t i = 0; i < order_.size(); ++i) {
     largest = std::max(largest, matrix.diagonal(static_cast<int>(i)).diagonal().maxCoeff());
@@ -217,7 +217,7 @@ bool KeptFactor::factorise(const cloth::SymmetricBlockMatrix& matrix) {
   return true;
 }
 
-bool KeptFactor::renew(const cloth::SymmetricBlockMatrix& matrix, double share) {
+bool KeptFactor::renew(const linear::SymmetricBlockMatrix& matrix, double share) {
   bool sound = true;
   const int count = static_cast<int>(nodes_.size());
   double left = share * cost_;
@@ -229,7 +229,7 @@ bool KeptFactor::renew(const cloth::SymmetricBlockMatrix& matrix, double share) 
   return sound;
 }
 
-void KeptFactor::solve(const cloth::BlockVector& r, cloth::BlockVector& z) {
+void KeptFactor::solve(const linear::BlockVector& r, linear::BlockVector& z) {
   const int n = static_cast<int>(order_.size());
   const double largest = r.leftCols(n).cwiseAbs().maxCoeff();
   const double size = largest > 0.0 ? largest : 1.0;

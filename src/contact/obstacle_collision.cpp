@@ -17,7 +17,7 @@ using proximity::SurfaceDistance;
 constexpr double kOffset = ObstacleCollision::kOffset;
 constexpr double kUntouched = 0.5 * kOffset;  // m, from here on a path has hit the surface
 
-double frictionOf(const cloth::Obstacle& obstacle, const material::Fabric& fabric) {
+double frictionOf(const mesh::Obstacle& obstacle, const material::Fabric& fabric) {
   if (obstacle.friction) return *obstacle.friction;
   if (fabric.friction) return *fabric.friction;
   throw std::invalid_argument("obstacle '" + obstacle.name + "' has no friction and fabric '" +
@@ -57,9 +57,9 @@ Vector3d slidingEnd(const RigidObstacle& shape, const Path& path, double touch) 
 }  // namespace
 
 ObstacleCollision::ObstacleCollision(const cloth::Cloth& cloth,
-                                     std::vector<cloth::Obstacle> obstacles)
+                                     std::vector<mesh::Obstacle> obstacles)
     : obstacles_(std::move(obstacles)), positions_(cloth.particleCount()) {
-  for (const cloth::Obstacle& obstacle : obstacles_) {
+  for (const mesh::Obstacle& obstacle : obstacles_) {
     RigidObstacle shape = makeObstacle(obstacle);
     shape.setPose(Eigen::Isometry3d::Identity());
     const double reach = shape.boundingRadius() + kOffset;
@@ -70,7 +70,7 @@ ObstacleCollision::ObstacleCollision(const cloth::Cloth& cloth,
 }
 
 void ObstacleCollision::requireFriction(const material::Fabric& fabric) const {
-  for (const cloth::Obstacle& obstacle : obstacles_) frictionOf(obstacle, fabric);
+  for (const mesh::Obstacle& obstacle : obstacles_) frictionOf(obstacle, fabric);
 }
 
 cloth::StepReport ObstacleCollision::step(cloth::Cloth& cloth, cloth::Integrator& integrator,

@@ -28,7 +28,7 @@ std::vector<double> tributaryAreas(const cloth::Membrane& membrane, std::size_t 
   return areas;
 }
 
-cloth::SymmetricBlockMatrix leadingPattern(const cloth::SymmetricBlockMatrix& matrix, int size) {
+linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& matrix, int size) {
   std::vector<std::array<int, 2>> pairs;
   for (int i = 0; i < size; ++i) {
     for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) {
@@ -40,7 +40,7 @@ cloth::SymmetricBlockMatrix leadingPattern(const cloth::SymmetricBlockMatrix& ma
 
 }  // namespace
 
-Patch::Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
+Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
              const cloth::ModelledEffects& effects, const ContactLaw& law)
     : cut_(std::move(cut)),
       effects_(effects),
@@ -65,7 +65,7 @@ Patch::Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fab
   contact_forces_.assign(count, 0.0);
   for (auto& touched : linearised_) touched.reserve(cut_.free_count);
   for (auto& responses : responses_) {
-    for (cloth::BlockVector& response : responses) response.setZero(3, cut_.free_count);
+    for (linear::BlockVector& response : responses) response.setZero(3, cut_.free_count);
   }
 }
 
@@ -87,7 +87,7 @@ void Patch::start(const LargeScaleMotion& motion) {
   for (int f = 0; f < kFingertips; ++f) {
     contacts_[f].clear();
     linearised_[f].clear();
-    for (cloth::BlockVector& response : responses_[f]) response.setZero();
+    for (linear::BlockVector& response : responses_[f]) response.setZero();
   }
 }
 
@@ -192,12 +192,12 @@ bool Patch::advance(const LargeScaleMotion& motion,
   return true;
 }
 
-const cloth::BlockVector& Patch::respond(int fingertip, int direction) {
+const linear::BlockVector& Patch::respond(int fingertip, int direction) {
   rhs_.leftCols(cut_.free_count).setZero();
   for (const TouchedParticle& touched : linearised_[fingertip]) {
     rhs_.col(touched.particle) = touched.tangent.col(direction);
   }
-  cloth::BlockVector& response = responses_[fingertip][direction];
+  linear::BlockVector& response = responses_[fingertip][direction];
   solver_.improve(matrix_, rhs_, response);
   return response;
 }

@@ -11,8 +11,8 @@
 namespace haptex::contact {
 namespace {
 
-using cloth::BlockVector;
-using cloth::SymmetricBlockMatrix;
+using linear::BlockVector;
+using linear::SymmetricBlockMatrix;
 
 // How far an iteration goes: the error e of a solution has the energy e.A e, with increments of
 // velocity in J. 5e-16 J in the cloth behind a contact of 1000 N/m change its force by 1e-6 N at

@@ -27,7 +27,7 @@ Support supportOf(const std::array<int, 3>& triangle, const std::array<int, 3>& 
 /// Whether the mesh goes on beyond the edge or corner that a support lies on, outside of the cut.
 class Rim {
  public:
-  Rim(const cloth::ClothMesh& mesh, const MeshTopology& topology, const std::vector<int>& triangles,
+  Rim(const mesh::ClothMesh& mesh, const MeshTopology& topology, const std::vector<int>& triangles,
       const std::vector<char>& attached)
       : topology_(topology), attached_(attached), inside_(mesh.triangles.size(), 0) {
     for (int triangle : triangles) inside_[triangle] = 1;
@@ -62,7 +62,7 @@ class Rim {
 };
 
 struct Builder {
-  const cloth::ClothMesh& mesh;
+  const mesh::ClothMesh& mesh;
   int divisions;
   std::map<Support, int> index_of;
   RefinedCut cut;
@@ -109,7 +109,7 @@ std::vector<T> reordered(const std::vector<T>& values, const std::vector<int>& o
 
 }  // namespace
 
-MeshTopology::MeshTopology(const cloth::ClothMesh& mesh)
+MeshTopology::MeshTopology(const mesh::ClothMesh& mesh)
     : neighbours_(mesh.triangles.size(), {-1, -1, -1}),
       triangles_of_(mesh.rest_coordinates.size()) {
   std::map<std::pair<int, int>, std::pair<int, int>> first_side;  // of an edge: triangle, corner
@@ -125,7 +125,7 @@ MeshTopology::MeshTopology(const cloth::ClothMesh& mesh)
   }
 }
 
-RefinedCut cutAndRefine(const cloth::ClothMesh& mesh, const MeshTopology& topology,
+RefinedCut cutAndRefine(const mesh::ClothMesh& mesh, const MeshTopology& topology,
                         const std::vector<int>& triangles, const std::vector<char>& attached,
                         int refinement) {
   Builder builder{mesh, 1 << refinement, {}, {}};

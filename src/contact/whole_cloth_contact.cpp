@@ -7,7 +7,7 @@ namespace haptex::contact {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-WholeClothContact::WholeClothContact(const cloth::ClothMesh& mesh, const material::Fabric& fabric,
+WholeClothContact::WholeClothContact(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
                                      const ContactLaw& law)
     : rest_coordinates_(mesh.rest_coordinates),
       areas_(mesh.rest_coordinates.size(), 0.0),

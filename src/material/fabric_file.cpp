@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "haptex/base/yaml_reader.h"
 #include "haptex/material/compression.h"
 #include "haptex/material/contraction.h"
 #include "haptex/material/strain_measures.h"
 #include "haptex/material/surface_file.h"
-#include "haptex/material/yaml_reader.h"
 
 namespace haptex::material {
 namespace {
@@ -28,7 +28,7 @@ struct CurveRules {
   bool from_tester;  // may state force per width over engineering strain
 };
 
-Provenance readProvenance(const YamlValue& value) {
+Provenance readProvenance(const base::YamlValue& value) {
   const bool measured = value.at("provenance").oneOf({"measured", "representative"}) == "measured";
   return {measured ? Provenance::Kind::kMeasured : Provenance::Kind::kRepresentative,
           value.at("source").text()};
@@ -36,7 +36,7 @@ Provenance readProvenance(const YamlValue& value) {
 
 // Runs `make` and gives what it refuses the file and key of `value`.
 template <typename Make>
-auto namingKey(const YamlValue& value, Make make) {
+auto namingKey(const base::YamlValue& value, Make make) {
   try {
     return make();
   } catch (const std::invalid_argument& error) {
@@ -47,16 +47,16 @@ auto namingKey(const YamlValue& value, Make make) {
   }
 }
 
-double readModulus(const YamlValue& value) {
+double readModulus(const base::YamlValue& value) {
   const double modulus = value.number();
   if (modulus < 0.0) value.refuse("must be a finite number >= 0");
   return modulus;
 }
 
-std::vector<CurvePoint> readPoints(const YamlValue& value) {
+std::vector<CurvePoint> readPoints(const base::YamlValue& value) {
   std::vector<CurvePoint> points;
-  for (const YamlValue& item : value.items()) {
-    const std::vector<YamlValue> pair = item.items(2);
+  for (const base::YamlValue& item : value.items()) {
+    const std::vector<base::YamlValue> pair = item.items(2);
     points.push_back({pair[0].number(), pair[1].number()});
   }
   return points;
@@ -64,7 +64,7 @@ std::vector<CurvePoint> readPoints(const YamlValue& value) {
 
 // With stress 0 at rate 0, a curve that nowhere falls has the sign of the rate: it takes energy
 // out.
-void requireDissipative(const YamlValue& value, const std::vector<CurvePoint>& points) {
+void requireDissipative(const base::YamlValue& value, const std::vector<CurvePoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double before = i > 0 ? points[i - 1].stress : points[0].stress;
     const bool wrong_sign = points[i].stress * points[i].strain < 0.0;
@@ -77,7 +77,7 @@ void requireDissipative(const YamlValue& value, const std::vector<CurvePoint>& p
 }
 
 // An elastic stress against its strain would do work on the cloth without end.
-void requireRestoring(const YamlValue& value, const std::vector<CurvePoint>& points) {
+void requireRestoring(const base::YamlValue& value, const std::vector<CurvePoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].stress * points[i].strain < 0.0) {
       value.at("points").items()[i].items()[1].refuse(
@@ -87,7 +87,7 @@ void requireRestoring(const YamlValue& value, const std::vector<CurvePoint>& poi
 }
 
 // The curve goes on with its outermost slopes, so a fall there would have no end either.
-void requireRisingEnds(const YamlValue& value, const StrainStressCurve& curve) {
+void requireRisingEnds(const base::YamlValue& value, const StrainStressCurve& curve) {
   for (const double knot : {curve.firstKnot(), curve.lastKnot()}) {
     const double slope = curve.evaluate(knot).slope;
     if (slope < 0.0) {
@@ -98,7 +98,7 @@ void requireRisingEnds(const YamlValue& value, const StrainStressCurve& curve) {
 }
 
 // Of a thread direction: no stretch has a smaller Green-Lagrange strain than none.
-void requirePossibleStrains(const YamlValue& value, const std::vector<CurvePoint>& points) {
+void requirePossibleStrains(const base::YamlValue& value, const std::vector<CurvePoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].strain < -0.5) {
       value.at("points").items()[i].items()[0].refuse(
@@ -107,7 +107,7 @@ void requirePossibleStrains(const YamlValue& value, const std::vector<CurvePoint
   }
 }
 
-StrainStressCurve readPointCurve(const YamlValue& value, const CurveRules& rules) {
+StrainStressCurve readPointCurve(const base::YamlValue& value, const CurveRules& rules) {
   const std::string quantity =
       rules.from_tester ? value.at("quantity").oneOf({kPiolaOverGreen, kForceOverEngineering})
                         : value.at("quantity").oneOf({kPiolaOverGreen});
@@ -137,13 +137,13 @@ bool falls(const StrainStressCurve& curve, const std::vector<double>& knots) {
   return curve.minimumSlope() < -StrainStressCurve::kJumpTolerance * largest_slope;
 }
 
-StrainStressCurve readPolynomialCurve(const YamlValue& value, CurveKind kind) {
+StrainStressCurve readPolynomialCurve(const base::YamlValue& value, CurveKind kind) {
   value.requireKeys({"knots", "coefficients"});
   std::vector<double> knots;
-  for (const YamlValue& knot : value.at("knots").items()) knots.push_back(knot.number());
+  for (const base::YamlValue& knot : value.at("knots").items()) knots.push_back(knot.number());
   std::vector<std::array<double, 4>> coefficients;
-  for (const YamlValue& row : value.at("coefficients").items()) {
-    const std::vector<YamlValue> numbers = row.items(4);
+  for (const base::YamlValue& row : value.at("coefficients").items()) {
+    const std::vector<base::YamlValue> numbers = row.items(4);
     coefficients.push_back(
         {numbers[0].number(), numbers[1].number(), numbers[2].number(), numbers[3].number()});
   }
@@ -157,7 +157,7 @@ StrainStressCurve readPolynomialCurve(const YamlValue& value, CurveKind kind) {
   return curve;
 }
 
-StrainStressCurve readCurve(const YamlValue& value, const CurveRules& rules) {
+StrainStressCurve readCurve(const base::YamlValue& value, const CurveRules& rules) {
   value.requireKeys({"unit", "provenance", "source"},
                     {"modulus", "points", "polynomials", "quantity"});
   value.at("unit").oneOf({rules.kind == CurveKind::kElastic ? "N/m" : "N.s/m"});
@@ -176,7 +176,7 @@ StrainStressCurve readCurve(const YamlValue& value, const CurveRules& rules) {
   return readPolynomialCurve(value.at("polynomials"), rules.kind);
 }
 
-double readArealDensity(const YamlValue& value) {
+double readArealDensity(const base::YamlValue& value) {
   value.requireKeys({"value", "unit", "provenance", "source"});
   value.at("unit").oneOf({"kg/m2"});
   const double density = value.at("value").number();
@@ -184,26 +184,26 @@ double readArealDensity(const YamlValue& value) {
   return density;
 }
 
-double readRigidity(const YamlValue& value) {
+double readRigidity(const base::YamlValue& value) {
   const double rigidity = value.number();
   if (rigidity < 0.0) value.refuse("must be a finite number >= 0");
   return rigidity;
 }
 
-BendingRigidity readBending(const YamlValue& value) {
+BendingRigidity readBending(const base::YamlValue& value) {
   value.requireKeys({"unit", "provenance", "source", "weft", "warp"}, {"hysteresis"});
   value.at("unit").oneOf({"N.m"});
   return {readRigidity(value.at("weft")), readRigidity(value.at("warp"))};
 }
 
-double readLoopWidth(const YamlValue& value, double rigidity) {
+double readLoopWidth(const base::YamlValue& value, double rigidity) {
   const double width = value.number();
   if (width < 0.0) value.refuse("must be a finite number >= 0");
   if (width > 0.0 && rigidity == 0.0) value.refuse("must be 0, as the rigidity is");
   return width;
 }
 
-BendingHysteresis readHysteresis(const YamlValue& value, const BendingRigidity& rigidity) {
+BendingHysteresis readHysteresis(const base::YamlValue& value, const BendingRigidity& rigidity) {
   value.requireKeys({"unit", "provenance", "source", "weft", "warp"});
   value.at("unit").oneOf({"N"});
   return {readLoopWidth(value.at("weft"), rigidity.weft),
@@ -211,9 +211,9 @@ BendingHysteresis readHysteresis(const YamlValue& value, const BendingRigidity& 
 }
 
 // Reads the bending, if there is one, and the provenance of its hysteresis into the fabric.
-void readBendingInto(const YamlValue& file, Fabric& fabric) {
+void readBendingInto(const base::YamlValue& file, Fabric& fabric) {
   if (!file.has("bending")) return;
-  const YamlValue value = file.at("bending");
+  const base::YamlValue value = file.at("bending");
   fabric.bending = readBending(value);
   if (!value.has("hysteresis")) return;
   fabric.bending_hysteresis = readHysteresis(value.at("hysteresis"), *fabric.bending);
@@ -221,7 +221,7 @@ void readBendingInto(const YamlValue& file, Fabric& fabric) {
 }
 
 /// Of a fabric whose curves are read.
-double readContraction(const YamlValue& value, const Fabric& fabric) {
+double readContraction(const base::YamlValue& value, const Fabric& fabric) {
   value.requireKeys({"value", "provenance", "source"});
   const double contraction = value.at("value").number();
   const double largest = largestContraction(fabric);
@@ -232,16 +232,16 @@ double readContraction(const YamlValue& value, const Fabric& fabric) {
   return contraction;
 }
 
-std::vector<ThicknessPoint> readThicknessPoints(const YamlValue& value) {
+std::vector<ThicknessPoint> readThicknessPoints(const base::YamlValue& value) {
   std::vector<ThicknessPoint> points;
-  for (const YamlValue& item : value.items()) {
-    const std::vector<YamlValue> pair = item.items(2);
+  for (const base::YamlValue& item : value.items()) {
+    const std::vector<base::YamlValue> pair = item.items(2);
     points.push_back({pair[0].number(), pair[1].number()});
   }
   return points;
 }
 
-Compression readCompression(const YamlValue& value) {
+Compression readCompression(const base::YamlValue& value) {
   value.requireKeys({"unit", "provenance", "source"}, {"points", "kes"});
   if (value.has("points") == value.has("kes")) {
     value.refuseBecause("must have exactly one of points, kes");
@@ -252,13 +252,13 @@ Compression readCompression(const YamlValue& value) {
     return namingKey(value, [&] { return compressionFromPoints(points); });
   }
   value.at("unit").oneOf({"m and J/m2"});
-  const YamlValue kes = value.at("kes");
+  const base::YamlValue kes = value.at("kes");
   kes.requireKeys({"T0", "Tm", "WC"});
   const KesCompression numbers{kes.at("T0").number(), kes.at("Tm").number(), kes.at("WC").number()};
   return namingKey(kes, [&] { return compressionFromKes(numbers); });
 }
 
-double readFriction(const YamlValue& value) {
+double readFriction(const base::YamlValue& value) {
   value.requireKeys({"value", "provenance", "source"});
   const double friction = value.at("value").number();
   if (friction <= 0.0) value.at("value").refuse("must be a finite number > 0");
@@ -266,9 +266,9 @@ double readFriction(const YamlValue& value) {
 }
 
 // Reads the curves of the direction `key` and their provenance into the fabric.
-MembraneCurves readDirection(const YamlValue& fabric_value, const std::string& key,
+MembraneCurves readDirection(const base::YamlValue& fabric_value, const std::string& key,
                              NegativeBranch negative_branch, Fabric& fabric) {
-  const YamlValue value = fabric_value.at(key);
+  const base::YamlValue value = fabric_value.at(key);
   value.requireKeys({"elastic"}, {"viscous"});
   MembraneCurves curves;
   const bool thread_direction = negative_branch == NegativeBranch::kLinear;
@@ -283,12 +283,12 @@ MembraneCurves readDirection(const YamlValue& fabric_value, const std::string& k
 }
 
 // Reads the surface, if there is one, and its provenance into the fabric, after the friction.
-void readSurfaceInto(const YamlValue& file, Fabric& fabric) {
+void readSurfaceInto(const base::YamlValue& file, Fabric& fabric) {
   if (!file.has("surface")) return;
   if (!fabric.friction) {
     file.refuseBecause("the key 'friction' is missing, required together with surface");
   }
-  const YamlValue value = file.at("surface");
+  const base::YamlValue value = file.at("surface");
   fabric.surface = readSurface(value, *fabric.friction);
   for (const std::string key : {"kes", "weave", "heights"}) {
     if (value.has(key)) fabric.provenance["surface." + key] = readProvenance(value.at(key));
@@ -298,7 +298,7 @@ void readSurfaceInto(const YamlValue& file, Fabric& fabric) {
 }  // namespace
 
 Fabric loadFabric(const std::string& path) {
-  const YamlValue file = YamlValue::load(path);
+  const base::YamlValue file = base::YamlValue::load(path);
   file.requireKeys({"name", "areal_density", "weft", "warp", "shear"},
                    {"description", "bending", "contraction", "compression", "friction", "surface"});
   Fabric fabric;

@@ -13,7 +13,8 @@ std::string written(double number) {
   return text.str();
 }
 
-double readFromTo(const YamlValue& value, double least, double most, const std::string& unit = "") {
+double readFromTo(const base::YamlValue& value, double least, double most,
+                  const std::string& unit = "") {
   const double number = value.number();
   if (number < least || number > most) {
     value.refuse("must be from " + written(least) + " to " + written(most) + unit);
@@ -21,7 +22,7 @@ double readFromTo(const YamlValue& value, double least, double most, const std::
   return number;
 }
 
-double readPositiveUpTo(const YamlValue& value, double most) {
+double readPositiveUpTo(const base::YamlValue& value, double most) {
   const double number = value.number();
   if (number <= 0.0 || number > most) {
     value.refuse("must be > 0 and at most " + written(most) + " m");
@@ -29,13 +30,13 @@ double readPositiveUpTo(const YamlValue& value, double most) {
   return number;
 }
 
-Yarns readYarns(const YamlValue& value) {
+Yarns readYarns(const base::YamlValue& value) {
   value.requireKeys({"spacing", "height"});
   return {readFromTo(value.at("spacing"), kSmallestYarnSpacing, kLargestYarnSpacing, " m"),
           readFromTo(value.at("height"), 0.0, kLargestYarnHeight, " m")};
 }
 
-WeaveKind readWeaveKind(const YamlValue& value) {
+WeaveKind readWeaveKind(const base::YamlValue& value) {
   const std::string kind = value.oneOf({"plain", "twill_2_2", "twill_3_1", "satin_5", "rib_2"});
   if (kind == "plain") return WeaveKind::kPlain;
   if (kind == "twill_2_2") return WeaveKind::kTwill22;
@@ -44,7 +45,7 @@ WeaveKind readWeaveKind(const YamlValue& value) {
   return WeaveKind::kRib2;
 }
 
-Weave readWeave(const YamlValue& value) {
+Weave readWeave(const base::YamlValue& value) {
   value.requireKeys({"unit", "provenance", "source", "kind", "weft", "warp", "irregularity"});
   value.at("unit").oneOf({"m"});
   const Weave weave{readWeaveKind(value.at("kind")), readYarns(value.at("weft")),
@@ -56,7 +57,7 @@ Weave readWeave(const YamlValue& value) {
   return weave;
 }
 
-HeightFile readHeightFile(const YamlValue& value) {
+HeightFile readHeightFile(const base::YamlValue& value) {
   value.requireKeys({"unit", "provenance", "source", "file", "spacing", "height", "periodic"});
   value.at("unit").oneOf({"m"});
   const std::filesystem::path file = value.at("file").text();
@@ -71,12 +72,12 @@ HeightFile readHeightFile(const YamlValue& value) {
 
 }  // namespace
 
-Surface readSurface(const YamlValue& value, double friction) {
+Surface readSurface(const base::YamlValue& value, double friction) {
   value.requireKeys({"kes"}, {"weave", "heights"});
   if (value.has("weave") == value.has("heights")) {
     value.refuseBecause("must have exactly one of weave, heights");
   }
-  const YamlValue kes = value.at("kes");
+  const base::YamlValue kes = value.at("kes");
   kes.requireKeys({"unit", "provenance", "source", "SMD", "MMD"});
   kes.at("unit").oneOf({"m"});
   Surface surface;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fixtures.h"
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth {
 
@@ -35,8 +35,8 @@ inline material::Fabric stiffeningFabric() {
   return fabric;
 }
 
-inline ClothMesh square(int cells, double size = 0.1) {
-  return makeRectangle(size, size, cells, cells, Triangulation::kAlternating);
+inline mesh::ClothMesh square(int cells, double size = 0.1) {
+  return mesh::makeRectangle(size, size, cells, cells, mesh::Triangulation::kAlternating);
 }
 
 /// The initial state with every coordinate and velocity moved at random.
@@ -55,12 +55,12 @@ inline ClothState randomState(const Cloth& cloth, double displacement, double sp
 }
 
 /// A random symmetric positive definite matrix on the pattern of a mesh.
-inline SymmetricBlockMatrix randomDefinite(const ClothMesh& mesh, double stiffness,
-                                           unsigned seed = 1) {
+inline linear::SymmetricBlockMatrix randomDefinite(const mesh::ClothMesh& mesh, double stiffness,
+                                                   unsigned seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   const int size = static_cast<int>(mesh.rest_coordinates.size());
-  SymmetricBlockMatrix matrix(size, mesh.triangles);
+  linear::SymmetricBlockMatrix matrix(size, mesh.triangles);
   for (int i = 0; i < size; ++i) {
     matrix.diagonal(i) += Eigen::Matrix3d::Identity();
     for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) {
@@ -75,7 +75,7 @@ inline SymmetricBlockMatrix randomDefinite(const ClothMesh& mesh, double stiffne
   return matrix;
 }
 
-inline Eigen::MatrixXd dense(const SymmetricBlockMatrix& matrix) {
+inline Eigen::MatrixXd dense(const linear::SymmetricBlockMatrix& matrix) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * matrix.size(), 3 * matrix.size());
   for (int i = 0; i < matrix.size(); ++i) {
     result.block<3, 3>(3 * i, 3 * i) = matrix.diagonal(i);
@@ -88,7 +88,7 @@ inline Eigen::MatrixXd dense(const SymmetricBlockMatrix& matrix) {
   return result;
 }
 
-inline Eigen::VectorXd stacked(const BlockVector& vector) {
+inline Eigen::VectorXd stacked(const linear::BlockVector& vector) {
   return Eigen::Map<const Eigen::VectorXd>(vector.data(), vector.size());
 }
 

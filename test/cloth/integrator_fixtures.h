@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "haptex/cloth/step.h"
+#include "haptex/cloth/dynamics/step.h"
 
 namespace haptex::cloth {
 
@@ -13,7 +13,7 @@ namespace haptex::cloth {
 inline StepSettings settingsOf(IntegrationMethod method, int newton_iterations = 1) {
   StepSettings settings;
   settings.method = method;
-  settings.solver = LinearSolverMethod::kCholesky;
+  settings.solver = linear::LinearSolverMethod::kCholesky;
   settings.tolerance = 1e-12;
   settings.newton_iterations = newton_iterations;
   settings.newton_tolerance = 1e-12;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fixtures.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/integrator.h"
 
 namespace haptex::cloth {
 namespace {
@@ -169,22 +169,22 @@ struct OneTriangle {
   explicit OneTriangle(const AirCoefficients& coefficients, unsigned seed)
       : cloth(mesh(), limpFabric(), effectsOf(gusty(coefficients))),
         matrix(cloth.pattern()),
-        rhs(BlockVector::Zero(3, 3)) {
+        rhs(linear::BlockVector::Zero(3, 3)) {
     state = randomState(cloth, 0.05, 3.0, seed);
     matrix.setZero();
     cloth.air()->addStep(cloth.membrane().elements(), state.positions, state.velocities,
                          {kA, 0.0, state.time}, matrix, rhs);
     by_velocity = 9.0 * cloth.jacobian(state, {0}).front().by_velocity;
   }
-  static ClothMesh mesh() {
+  static mesh::ClothMesh mesh() {
     return {{{0, 0}, {0.1, 0}, {0, 0.1}}, {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}}, {{0, 1, 2}}};
   }
 
   static constexpr double kA = 0.01;
   Cloth cloth;
   ClothState state;
-  SymmetricBlockMatrix matrix;
-  BlockVector rhs;
+  linear::SymmetricBlockMatrix matrix;
+  linear::BlockVector rhs;
   Matrix3d by_velocity;
 };
 
@@ -230,9 +230,9 @@ TEST(Aerodynamics, ANewtonIterationDescendsThePotentialOfFixedNormals) {
   air.fix(elements, at.positions, at.velocities, 0.3, fixed);
   constexpr double kA = 0.004;
   const auto gradient = [&](const Velocities& velocities, Eigen::MatrixXd* hessian) {
-    SymmetricBlockMatrix matrix = cloth.pattern();
+    linear::SymmetricBlockMatrix matrix = cloth.pattern();
     matrix.setZero();
-    BlockVector rhs = BlockVector::Zero(3, cloth.particleCount());
+    linear::BlockVector rhs = linear::BlockVector::Zero(3, cloth.particleCount());
     air.addNewton(elements, velocities, fixed, kA, matrix, rhs);
     if (hessian != nullptr) *hessian = dense(matrix);
     return Eigen::VectorXd(-stacked(rhs));
@@ -314,7 +314,7 @@ TEST(AirAndMidpoint, EnergyNeverGrowsInStillAir) {
   effects.gravity = {0.0, 0.0, -9.81};
   Cloth cloth(square(6), stiffeningFabric(), effects);
   ClothState state = randomState(cloth, 0.002, 0.5);
-  for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+  for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
     AttachmentPath path;
     path.start = cloth.mesh().initial_positions[particle];
     cloth.attach(particle, path);
@@ -346,13 +346,13 @@ TEST(Aerodynamics, AStormAtLongStepsStaysFinite) {
       material::Fabric light = stiffeningFabric();
       light.areal_density = 0.03;
       Cloth cloth(square(8, 0.3), light, effects);
-      for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+      for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
         AttachmentPath path;
         path.start = cloth.mesh().initial_positions[particle];
         cloth.attach(particle, path);
       }
       ClothState state = randomState(cloth, 1e-4, 0.0);
-      for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+      for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
         state.positions[particle] = cloth.mesh().initial_positions[particle];
       }
       StepSettings settings;

@@ -6,13 +6,13 @@
 
 #include "../malloc_counter.h"
 #include "fixtures.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/integrator.h"
 
 namespace haptex::cloth {
 namespace {
 
-class StepAllocation
-    : public testing::TestWithParam<std::tuple<NamedIntegrationMethod, LinearSolverMethod>> {};
+class StepAllocation : public testing::TestWithParam<
+                           std::tuple<NamedIntegrationMethod, linear::LinearSolverMethod>> {};
 
 TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
 #ifdef __SANITIZE_ADDRESS__
@@ -30,7 +30,7 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
     fabric.bending = {1e-5, 2e-5};
     fabric.bending_hysteresis = {3e-4, 1e-4};
     Cloth cloth(square(16), fabric, effects);
-    for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+    for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
       AttachmentPath path;
       path.start = cloth.mesh().initial_positions[particle];
       cloth.attach(particle, path);
@@ -59,11 +59,12 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, StepAllocation,
-                         testing::Combine(testing::ValuesIn(kIntegrationMethods),
-                                          testing::Values(LinearSolverMethod::kConjugateGradient,
-                                                          LinearSolverMethod::kCholesky,
-                                                          LinearSolverMethod::kAutomatic)));
+INSTANTIATE_TEST_SUITE_P(
+    Methods, StepAllocation,
+    testing::Combine(testing::ValuesIn(kIntegrationMethods),
+                     testing::Values(linear::LinearSolverMethod::kConjugateGradient,
+                                     linear::LinearSolverMethod::kCholesky,
+                                     linear::LinearSolverMethod::kAutomatic)));
 
 class StepAllocationOfOtherModels : public testing::TestWithParam<Elasticity> {};
 INSTANTIATE_TEST_SUITE_P(Models, StepAllocationOfOtherModels,

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "fixtures.h"
-#include "haptex/cloth/integrator.h"
-#include "haptex/cloth/stage_solver.h"
+#include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/cloth/dynamics/stage_solver.h"
 
 namespace haptex::cloth {
 namespace {
@@ -18,7 +18,7 @@ ModelledEffects gravity(double g = 9.81) {
 }
 
 void attachTop(Cloth& cloth) {
-  for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+  for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
     AttachmentPath path;
     path.start = cloth.mesh().initial_positions[particle];
     cloth.attach(particle, path);
@@ -104,7 +104,7 @@ TEST(BackwardEuler, EnergyNeverGrowsWithoutWork) {
     Cloth cloth(square(6), linearFabric(0.1), gravity());
     attachTop(cloth);
     ClothState state = randomState(cloth, 0.002, 0.5);
-    for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+    for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
       state.positions[particle] = cloth.mesh().initial_positions[particle];
       state.velocities[particle].setZero();
     }
@@ -160,8 +160,9 @@ TEST(BackwardEuler, NewtonReachesItsToleranceWhereOneSolveDoesNot) {
   // The state solves M (v - v0) = h F(x, rate) with the discrete strain rate.
   std::vector<MembraneStrain> begin;
   cloth.membrane().computeStrains(start.positions, begin);
-  SymmetricBlockMatrix unused(static_cast<int>(cloth.particleCount()), cloth.mesh().triangles);
-  BlockVector impulse = BlockVector::Zero(3, cloth.particleCount());
+  linear::SymmetricBlockMatrix unused(static_cast<int>(cloth.particleCount()),
+                                      cloth.mesh().triangles);
+  linear::BlockVector impulse = linear::BlockVector::Zero(3, cloth.particleCount());
   cloth.membrane().addNewton(state.positions, begin, 0.01, Membrane::Hessian::kExact, unused,
                              impulse);
   double scale = impulse.norm();
@@ -217,8 +218,8 @@ TEST(BackwardEuler, DoesNotCallAFailedSolveConverged) {
 
 TEST(BackwardEuler, BothSolversGiveTheSameMotion) {
   std::vector<ClothState> ends;
-  for (LinearSolverMethod method :
-       {LinearSolverMethod::kConjugateGradient, LinearSolverMethod::kCholesky}) {
+  for (linear::LinearSolverMethod method :
+       {linear::LinearSolverMethod::kConjugateGradient, linear::LinearSolverMethod::kCholesky}) {
     Cloth cloth(square(8), stiffeningFabric(), gravity());
     attachTop(cloth);
     StepSettings settings;
@@ -271,7 +272,8 @@ TEST(BackwardEuler, RefusesBadStepsAndSettings) {
   settings = {};
   settings.newton_tolerance = nan;
   EXPECT_THROW(Integrator(cloth, settings), std::invalid_argument);
-  const Cloth coarser(makeRectangle(0.1, 0.1, 2, 1, Triangulation::kOneWay), linearFabric(), {});
+  const Cloth coarser(mesh::makeRectangle(0.1, 0.1, 2, 1, mesh::Triangulation::kOneWay),
+                      linearFabric(), {});
   Integrator other_integrator(coarser, {});
   EXPECT_THROW(other_integrator.step(cloth, state, 0.01), std::invalid_argument);
   settings = {};
@@ -308,7 +310,7 @@ TEST(BackwardEuler, ThreadsDoNotChangeTheMotion) {
 TEST(BackwardEuler, DocumentedDefaultsHold) {
   const StepSettings settings;
   EXPECT_EQ(settings.method, IntegrationMethod::kBackwardEuler);
-  EXPECT_EQ(settings.solver, LinearSolverMethod::kAutomatic);
+  EXPECT_EQ(settings.solver, linear::LinearSolverMethod::kAutomatic);
   EXPECT_EQ(settings.tolerance, 1e-6);
   EXPECT_EQ(settings.newton_iterations, 1);
   EXPECT_EQ(settings.newton_tolerance, 1e-8);

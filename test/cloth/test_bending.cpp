@@ -5,9 +5,9 @@
 #include <random>
 
 #include "fixtures.h"
-#include "haptex/cloth/bending.h"
-#include "haptex/cloth/bending_stencils.h"
-#include "haptex/cloth/block_cholesky.h"
+#include "haptex/cloth/forces/bending.h"
+#include "haptex/cloth/forces/bending_stencils.h"
+#include "haptex/linear/block_cholesky.h"
 
 namespace haptex::cloth {
 namespace {
@@ -17,13 +17,13 @@ using Eigen::Vector3d;
 constexpr material::BendingRigidity kWool{2e-6, 1e-6};
 
 /// A rectangle of 12 x `cells_v` cells of 10 mm x 8 mm.
-ClothMesh strip(int cells_v, Triangulation triangulation) {
-  return makeRectangle(0.12, 0.008 * cells_v, 12, cells_v, triangulation);
+mesh::ClothMesh strip(int cells_v, mesh::Triangulation triangulation) {
+  return mesh::makeRectangle(0.12, 0.008 * cells_v, 12, cells_v, triangulation);
 }
 
 /// Inner particles moved by up to a quarter of a cell.
-ClothMesh irregular(int cells_v) {
-  ClothMesh mesh = strip(cells_v, Triangulation::kAlternating);
+mesh::ClothMesh irregular(int cells_v) {
+  mesh::ClothMesh mesh = strip(cells_v, mesh::Triangulation::kAlternating);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> shift(-0.002, 0.002);
   for (Eigen::Vector2d& place : mesh.rest_coordinates) {
@@ -35,7 +35,8 @@ ClothMesh irregular(int cells_v) {
 }
 
 /// Energy with the second derivatives wuu, wvv, wuv of the displacement out of the plane.
-double energyOf(const ClothMesh& mesh, const Bending& bending, double wuu, double wvv, double wuv) {
+double energyOf(const mesh::ClothMesh& mesh, const Bending& bending, double wuu, double wvv,
+                double wuv) {
   Positions positions;
   for (const Eigen::Vector2d& x : mesh.rest_coordinates) {
     positions.emplace_back(
@@ -46,9 +47,10 @@ double energyOf(const ClothMesh& mesh, const Bending& bending, double wuu, doubl
 
 TEST(Bending, CylindersHaveTheRigidityAskedForHoweverTheCellsAreCut) {
   const double twist = std::sqrt(kWool.weft * kWool.warp);
-  for (Triangulation triangulation : {Triangulation::kOneWay, Triangulation::kAlternating}) {
+  for (mesh::Triangulation triangulation :
+       {mesh::Triangulation::kOneWay, mesh::Triangulation::kAlternating}) {
     for (int cells : {1, 2, 3, 4, 15}) {  // narrow strips too
-      const ClothMesh mesh = strip(cells, triangulation);
+      const mesh::ClothMesh mesh = strip(cells, triangulation);
       const Bending bending(mesh, kWool);
       // Half a cell along both edges across the curvature has none.
       const double weft = 0.5 * kWool.weft * (0.12 - 0.01) * 0.008 * cells;
@@ -67,7 +69,7 @@ TEST(Bending, CylindersHaveTheRigidityAskedForHoweverTheCellsAreCut) {
 
 TEST(Bending, CylindersOfAnIrregularMeshHaveTheRigidityAskedFor) {
   const int cells = 15;
-  const ClothMesh mesh = irregular(cells);
+  const mesh::ClothMesh mesh = irregular(cells);
   const Bending bending(mesh, kWool);
   const double weft = 0.5 * kWool.weft * (0.12 - 0.01) * 0.008 * cells;
   const double warp = 0.5 * kWool.warp * 0.12 * 0.008 * (cells - 1);
@@ -84,7 +86,8 @@ TEST(Bending, CylindersOfAnIrregularMeshHaveTheRigidityAskedFor) {
 // The patch test: a curvature that is the same everywhere is in equilibrium, whatever the mesh.
 TEST(Bending, AConstantMomentDoesNoWorkOnInnerParticles) {
   const int cells = 15;
-  for (const ClothMesh& mesh : {strip(cells, Triangulation::kOneWay), irregular(cells)}) {
+  for (const mesh::ClothMesh& mesh :
+       {strip(cells, mesh::Triangulation::kOneWay), irregular(cells)}) {
     for (BendingModel model : {BendingModel::kLinear, BendingModel::kQuadratic}) {
       const Bending bending(mesh, kWool, {model});
       for (const Vector3d& k : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)}) {
@@ -117,7 +120,8 @@ TEST(Bending, GridsHaveHingesOfFourParticlesAndIrregularMeshesOfMore) {
       corners = std::max(corners, hinge.end - hinge.begin);
     return corners;
   };
-  for (Triangulation triangulation : {Triangulation::kOneWay, Triangulation::kAlternating}) {
+  for (mesh::Triangulation triangulation :
+       {mesh::Triangulation::kOneWay, mesh::Triangulation::kAlternating}) {
     EXPECT_EQ(most(Bending(strip(6, triangulation), kWool)), 4);
   }
   EXPECT_GT(most(Bending(irregular(6), kWool)), 4);
@@ -127,7 +131,8 @@ TEST(Bending, GridsHaveHingesOfFourParticlesAndIrregularMeshesOfMore) {
 // Too few particles to tell every curvature: what is flat is still flat.
 TEST(Bending, SmallMeshesHaveNoEnergyWhenFlat) {
   for (int cells : {1, 2}) {
-    ClothMesh mesh = makeRectangle(0.01 * cells, 0.01, cells, 1, Triangulation::kOneWay);
+    mesh::ClothMesh mesh =
+        mesh::makeRectangle(0.01 * cells, 0.01, cells, 1, mesh::Triangulation::kOneWay);
     mesh.rest_coordinates.front() += Eigen::Vector2d(-0.002, 0.001);
     const Bending bending(mesh, kWool, {BendingModel::kQuadratic});
     ASSERT_FALSE(bending.hinges().empty());
@@ -143,11 +148,11 @@ TEST(Bending, SmallMeshesHaveNoEnergyWhenFlat) {
 
 TEST(Bending, AnIsotropicFabricMayBeCutInAnyDirection) {
   // The same grid turned by 30 degrees against the threads, of a fabric without a direction.
-  ClothMesh mesh = strip(15, Triangulation::kOneWay);
+  mesh::ClothMesh mesh = strip(15, mesh::Triangulation::kOneWay);
   const Eigen::Rotation2Dd turn(M_PI / 6.0);
   for (Eigen::Vector2d& place : mesh.rest_coordinates) place = turn * place;
   const Bending turned(mesh, {1e-6, 1e-6});
-  const ClothMesh straight = strip(15, Triangulation::kOneWay);
+  const mesh::ClothMesh straight = strip(15, mesh::Triangulation::kOneWay);
   const Bending reference(straight, {1e-6, 1e-6});
   // Curvature along the grid's own first axis: H = a a^T.
   const Eigen::Vector2d a = turn * Eigen::Vector2d::UnitX();
@@ -157,7 +162,7 @@ TEST(Bending, AnIsotropicFabricMayBeCutInAnyDirection) {
 }
 
 TEST(Bending, FlatStatesHaveNoEnergyAndNoForces) {
-  for (const ClothMesh& mesh : {strip(5, Triangulation::kOneWay), irregular(5)}) {
+  for (const mesh::ClothMesh& mesh : {strip(5, mesh::Triangulation::kOneWay), irregular(5)}) {
     const Bending bending(mesh, kWool);
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
@@ -178,10 +183,10 @@ TEST(Bending, FlatStatesHaveNoEnergyAndNoForces) {
 }
 
 TEST(Bending, ForcesAreTheGradientAndTheStepIsTheirLinearisation) {
-  const ClothMesh mesh = irregular(3);
+  const mesh::ClothMesh mesh = irregular(3);
   Bending bending(mesh, kWool);
   const int size = static_cast<int>(mesh.rest_coordinates.size());
-  SymmetricBlockMatrix matrix(size, mesh.triangles, bending.pairs());
+  linear::SymmetricBlockMatrix matrix(size, mesh.triangles, bending.pairs());
   bending.bind(matrix);
   Positions positions(size);
   Velocities velocities(size);
@@ -213,7 +218,7 @@ TEST(Bending, ForcesAreTheGradientAndTheStepIsTheirLinearisation) {
     }
   }
   const double h = 0.01;
-  BlockVector rhs = BlockVector::Zero(3, size);
+  linear::BlockVector rhs = linear::BlockVector::Zero(3, size);
   bending.addStep(positions, velocities, {h, h}, matrix, rhs);
   EXPECT_LT((dense(matrix) + h * h * jacobian).norm(), 1e-12 * h * h * jacobian.norm());
   Eigen::VectorXd exact(3 * size), velocity(3 * size);
@@ -228,7 +233,7 @@ TEST(Bending, ForcesAreTheGradientAndTheStepIsTheirLinearisation) {
 }
 
 TEST(Bending, AFabricWithoutRigidityCostsNothingAndBadOnesAreRefused) {
-  const ClothMesh mesh = strip(2, Triangulation::kOneWay);
+  const mesh::ClothMesh mesh = strip(2, mesh::Triangulation::kOneWay);
   EXPECT_TRUE(Bending(mesh, {0.0, 0.0}).hinges().empty());
   const Bending only_warp(mesh, {0.0, 1e-6});
   EXPECT_LT(energyOf(mesh, only_warp, 1, 0, 0), 1e-15 * energyOf(mesh, only_warp, 0, 1, 0));
@@ -243,14 +248,15 @@ TEST(Bending, AFabricWithoutRigidityCostsNothingAndBadOnesAreRefused) {
 }
 
 /// Tip drop over horizontal reach of a strip clamped at one end, at rest under its own weight.
-double dropOverReach(double gamma, Triangulation triangulation, bool along_warp) {
+double dropOverReach(double gamma, mesh::Triangulation triangulation, bool along_warp) {
   const double length = 0.1, weight = 1.0;  // m, N/m2
   const int cells = 60;
   // Two rows are held: the clamp is half way between them.
   const double cell = length / (cells - 0.5);
   const double width = 3.0 * cell;
-  const ClothMesh mesh = along_warp ? makeRectangle(width, cells * cell, 3, cells, triangulation)
-                                    : makeRectangle(cells * cell, width, cells, 3, triangulation);
+  const mesh::ClothMesh mesh =
+      along_warp ? mesh::makeRectangle(width, cells * cell, 3, cells, triangulation)
+                 : mesh::makeRectangle(cells * cell, width, cells, 3, triangulation);
   const double rigidity = weight * length * length * length / gamma;
   const material::BendingRigidity both{along_warp ? 7.0 * rigidity : rigidity,
                                        along_warp ? rigidity : 7.0 * rigidity};
@@ -260,10 +266,10 @@ double dropOverReach(double gamma, Triangulation triangulation, bool along_warp)
   fabric.shear.elastic = material::StrainStressCurve::linear(5e3);
   Membrane membrane(mesh, fabric, false);
   const int size = static_cast<int>(mesh.rest_coordinates.size());
-  SymmetricBlockMatrix matrix(size, mesh.triangles, bending.pairs());
+  linear::SymmetricBlockMatrix matrix(size, mesh.triangles, bending.pairs());
   bending.bind(matrix);
   membrane.bind(matrix);
-  BlockCholesky cholesky(matrix);
+  linear::BlockCholesky cholesky(matrix);
   Positions positions;
   std::vector<char> fixed;
   std::vector<double> areas(size, 0.0);
@@ -277,11 +283,11 @@ double dropOverReach(double gamma, Triangulation triangulation, bool along_warp)
   }
   // Steps from rest each time: Newton's method, damped by the mass.
   const Velocities still(size, Vector3d::Zero());
-  const BlockVector nothing = BlockVector::Zero(3, size);
+  const linear::BlockVector nothing = linear::BlockVector::Zero(3, size);
   double h = 0.003;
   for (int iteration = 0; iteration < 400; ++iteration) {
     matrix.setZero();
-    BlockVector rhs = BlockVector::Zero(3, size);
+    linear::BlockVector rhs = linear::BlockVector::Zero(3, size);
     for (int i = 0; i < size; ++i) {
       matrix.diagonal(i).diagonal().setConstant(0.1 * areas[i]);
       rhs(2, i) = -h * weight * areas[i];
@@ -296,7 +302,8 @@ double dropOverReach(double gamma, Triangulation triangulation, bool along_warp)
     h = std::min(1.1 * h, 1.0);
   }
   Vector3d tip = Vector3d::Zero();
-  for (int particle : sideParticles(mesh, along_warp ? Side::kTop : Side::kRight)) {
+  for (int particle :
+       mesh::sideParticles(mesh, along_warp ? mesh::Side::kTop : mesh::Side::kRight)) {
     tip += 0.25 * positions[particle];
   }
   return -tip.z() / tip.x();
@@ -309,7 +316,8 @@ TEST(Bending, TheHeavyCantileverHangsAsTheElastica) {
   const std::array<std::array<double, 2>, 4> elastica = {
       {{0.1, 0.012500}, {1.0, 0.124562}, {10.0, 1.066802}, {100.0, 5.888105}}};
   for (const auto& [gamma, exact] : elastica) {
-    for (Triangulation triangulation : {Triangulation::kOneWay, Triangulation::kAlternating}) {
+    for (mesh::Triangulation triangulation :
+         {mesh::Triangulation::kOneWay, mesh::Triangulation::kAlternating}) {
       for (bool along_warp : {false, true}) {
         const double found = dropOverReach(gamma, triangulation, along_warp);
         // 60 cells: 0.13 % at gamma 100, where the fabric turns down within four cells.

@@ -6,7 +6,7 @@
 
 #include "derivatives.h"
 #include "fixtures.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/integrator.h"
 
 namespace haptex::cloth {
 namespace {
@@ -139,7 +139,8 @@ TEST(BendingCloth, ARestCurvatureThatIsNotGivenIsNotThere) {
 TEST(BendingCloth, AShortStripDropsAsABeamDoes) {
   constexpr int kCells = 20;
   constexpr double kCell = 0.005, kWidth = 0.02;
-  ClothMesh mesh = makeRectangle(kCell * kCells, kWidth, kCells, 4, Triangulation::kAlternating);
+  mesh::ClothMesh mesh =
+      mesh::makeRectangle(kCell * kCells, kWidth, kCells, 4, mesh::Triangulation::kAlternating);
   for (std::size_t i = 0; i < mesh.rest_coordinates.size(); ++i) {
     mesh.initial_positions[i] << mesh.rest_coordinates[i], 0.0;
   }

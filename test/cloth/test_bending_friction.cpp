@@ -8,8 +8,8 @@
 
 #include "derivatives.h"
 #include "fixtures.h"
-#include "haptex/cloth/bending_friction.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/cloth/forces/bending_friction.h"
 
 namespace haptex::cloth {
 namespace {
@@ -35,8 +35,8 @@ material::Fabric frictionFabric() {
 }
 
 /// 10 x 8 cells of 10 mm; irregular: inner particles moved by up to a quarter of a cell.
-ClothMesh sheet(Triangulation triangulation, bool irregular = false) {
-  ClothMesh mesh = makeRectangle(0.1, 0.08, 10, 8, triangulation);
+mesh::ClothMesh sheet(mesh::Triangulation triangulation, bool irregular = false) {
+  mesh::ClothMesh mesh = mesh::makeRectangle(0.1, 0.08, 10, 8, triangulation);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> shift(-0.0025, 0.0025);
   for (Eigen::Vector2d& place : mesh.rest_coordinates) {
@@ -49,7 +49,7 @@ ClothMesh sheet(Triangulation triangulation, bool irregular = false) {
 }
 
 /// Second derivatives wuu, wvv, wuv of a displacement out of the plane (1/m).
-Positions bent(const ClothMesh& mesh, const Vector3d& w) {
+Positions bent(const mesh::ClothMesh& mesh, const Vector3d& w) {
   Positions positions;
   for (const Eigen::Vector2d& x : mesh.rest_coordinates) {
     positions.emplace_back(
@@ -61,7 +61,7 @@ Positions bent(const ClothMesh& mesh, const Vector3d& w) {
 
 /// What friction that yields adds to the energy per curvature (N.m2) as the sheet is bent like `w`.
 /// The displacement is so small that no normal turns; the past lies far on the other side.
-double yieldMoment(const ClothMesh& mesh, const Bending& bending, const Vector3d& w) {
+double yieldMoment(const mesh::ClothMesh& mesh, const Bending& bending, const Vector3d& w) {
   constexpr double kSmall = 1e-3;
   const BendingFriction& friction = *bending.friction();
   PlasticBends past = friction.withoutFriction(bent(mesh, kSmall * w));
@@ -73,12 +73,12 @@ double yieldMoment(const ClothMesh& mesh, const Bending& bending, const Vector3d
 
 struct NamedSheet {
   const char* name;
-  ClothMesh mesh;
+  mesh::ClothMesh mesh;
 };
 std::array<NamedSheet, 3> sheets() {
-  return {{{"one way", sheet(Triangulation::kOneWay)},
-           {"alternating", sheet(Triangulation::kAlternating)},
-           {"irregular", sheet(Triangulation::kAlternating, true)}}};
+  return {{{"one way", sheet(mesh::Triangulation::kOneWay)},
+           {"alternating", sheet(mesh::Triangulation::kAlternating)},
+           {"irregular", sheet(mesh::Triangulation::kAlternating, true)}}};
 }
 
 // The area that resists, without the half cells at free edges, is that of the elastic hinges.
@@ -157,8 +157,8 @@ struct FreeStrip {
   ClothState state;
 
   explicit FreeStrip(double curvature)
-      : cloth(makeRectangle(0.1, 0.02, 10, 2, Triangulation::kAlternating), frictionFabric(),
-              hysteresis()),
+      : cloth(mesh::makeRectangle(0.1, 0.02, 10, 2, mesh::Triangulation::kAlternating),
+              frictionFabric(), hysteresis()),
         state(cloth.initialState()) {
     for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
       const Eigen::Vector2d& rest = cloth.mesh().rest_coordinates[i];

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "fixtures.h"
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth {
 namespace {
@@ -28,13 +28,14 @@ AttachmentPath pathAt(const Eigen::Vector3d& place) {
 }
 
 TEST(Cloth, MassesSumToDensityTimesArea) {
-  const Cloth cloth(makeRectangle(0.3, 0.2, 7, 5, Triangulation::kOneWay), linearFabric(), {});
+  const Cloth cloth(mesh::makeRectangle(0.3, 0.2, 7, 5, mesh::Triangulation::kOneWay),
+                    linearFabric(), {});
   const double mass = std::accumulate(cloth.masses().begin(), cloth.masses().end(), 0.0);
   EXPECT_NEAR(mass, 0.1 * 0.3 * 0.2, 1e-15);
 }
 
 TEST(Cloth, RefusesWhatCannotBeSimulated) {
-  ClothMesh bad = square(2);
+  mesh::ClothMesh bad = square(2);
   bad.triangles.push_back({0, 0, 1});
   EXPECT_EQ(refusal([&] { Cloth(bad, linearFabric(), {}); }), "degenerate triangles: 8");
   material::Fabric weightless = linearFabric();

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "fixtures.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/integrator.h"
 
 namespace haptex::cloth {
 namespace {
@@ -28,11 +28,12 @@ ParticleContact touching(const ClothState& state, int particle, const Vector3d& 
 }
 
 TEST(SymmetricBlockMatrix, ConfinesLikeTheDenseProjection) {
-  const ClothMesh mesh = square(3);
-  SymmetricBlockMatrix matrix = randomDefinite(mesh, 10.0);
+  const mesh::ClothMesh mesh = square(3);
+  linear::SymmetricBlockMatrix matrix = randomDefinite(mesh, 10.0);
   const int size = matrix.size();
-  BlockVector rhs = BlockVector::Random(3, size), normals = BlockVector::Random(3, size);
-  BlockVector values = BlockVector::Zero(3, size);
+  linear::BlockVector rhs = linear::BlockVector::Random(3, size),
+                      normals = linear::BlockVector::Random(3, size);
+  linear::BlockVector values = linear::BlockVector::Zero(3, size);
   std::vector<char> confined(size, 0);
   Eigen::MatrixXd projection = Eigen::MatrixXd::Identity(3 * size, 3 * size);
   for (const int i : {0, 1, 5, 10}) {  // 0, 1 and 5 are neighbours of each other

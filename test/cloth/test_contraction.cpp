@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fixtures.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/contraction.h"
 
 namespace haptex::cloth {
@@ -90,12 +90,12 @@ TEST(Contraction, CurvesStayAsMeasuredWhereTheTransverseStretchIsHeld) {
 /// matrix and rhs of a linearised stage by the membrane of a cloth.
 struct System {
   System(const Cloth& cloth, const ClothState& state, const StageTimes& times)
-      : matrix(cloth.pattern()), rhs(BlockVector::Zero(3, cloth.particleCount())) {
+      : matrix(cloth.pattern()), rhs(linear::BlockVector::Zero(3, cloth.particleCount())) {
     matrix.setZero();
     cloth.membrane().addStep(state.positions, state.velocities, times, matrix, rhs);
   }
-  SymmetricBlockMatrix matrix;
-  BlockVector rhs;
+  linear::SymmetricBlockMatrix matrix;
+  linear::BlockVector rhs;
 };
 
 TEST(Contraction, BatchesAddWhatTrianglesAloneAdd) {
@@ -106,11 +106,11 @@ TEST(Contraction, BatchesAddWhatTrianglesAloneAdd) {
         const ClothState state = randomState(cloth, 2e-3 * seed, 1.0, seed);
         const StageTimes times{0.002, 0.003};
         const System batched(cloth, state, times);
-        SymmetricBlockMatrix matrix = cloth.pattern();
+        linear::SymmetricBlockMatrix matrix = cloth.pattern();
         matrix.setZero();
-        BlockVector rhs = BlockVector::Zero(3, cloth.particleCount());
+        linear::BlockVector rhs = linear::BlockVector::Zero(3, cloth.particleCount());
         for (const std::array<int, 3>& triangle : cloth.mesh().triangles) {
-          ClothMesh one = cloth.mesh();
+          mesh::ClothMesh one = cloth.mesh();
           one.triangles = {triangle};
           Membrane membrane(one, fabric, viscosity, true);
           membrane.bind(matrix);
@@ -134,9 +134,9 @@ TEST(Contraction, TheStepsMatrixIsSemidefiniteWhateverTheTangentIs) {
       return values.minCoeff() / values.maxCoeff();
     };
     EXPECT_GT(least(dense(System(cloth, state, {0.01, 0.0}).matrix)), -1e-13);
-    SymmetricBlockMatrix exact = cloth.pattern();
+    linear::SymmetricBlockMatrix exact = cloth.pattern();
     exact.setZero();
-    BlockVector rhs = BlockVector::Zero(3, cloth.particleCount());
+    linear::BlockVector rhs = linear::BlockVector::Zero(3, cloth.particleCount());
     std::vector<MembraneStrain> strains;
     cloth.membrane().computeStrains(state.positions, strains);
     cloth.membrane().addNewton(state.positions, strains, 0.01, Membrane::Hessian::kExact, exact,
@@ -166,7 +166,7 @@ TEST(Contraction, EnergyOfASwingInItIsKept) {
   ModelledEffects effects = contracting();
   effects.gravity = {0.0, 0.0, -9.81};
   Cloth cloth(square(4), contractingFabric(), effects);
-  for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+  for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
     AttachmentPath path;
     path.start = cloth.mesh().initial_positions[particle];
     cloth.attach(particle, path);

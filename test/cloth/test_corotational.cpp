@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "elasticity_fixtures.h"
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth {
 namespace {
@@ -13,7 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-Cloth corotationalCloth(const ClothMesh& mesh, const material::Fabric& fabric) {
+Cloth corotationalCloth(const mesh::ClothMesh& mesh, const material::Fabric& fabric) {
   return Cloth(mesh, fabric, effectsOf(Elasticity::kCorotational));
 }
 
@@ -51,7 +51,7 @@ TEST(Corotational, UniaxialForceIsTheModulusTimesTheEngineeringStrain) {
 }
 
 TEST(Corotational, AffineDeformationHasNoInteriorForces) {
-  ClothMesh mesh = square(4);
+  mesh::ClothMesh mesh = square(4);
   for (int particle : {6, 7, 8, 11, 12, 13, 16, 17, 18}) {
     const Vector2d shift = 0.007 * Vector2d(std::sin(particle), std::cos(2.0 * particle));
     mesh.rest_coordinates[particle] += shift;

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "elasticity_fixtures.h"
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth {
 namespace {
@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 
 Cloth clothOf(Elasticity elasticity, bool viscosity) {
   // Cells of 20 x 30 mm, and bend springs where there are any.
-  return Cloth(makeRectangle(0.06, 0.09, 3, 3, Triangulation::kAlternating), fabricWithRigidity(),
+  return Cloth(mesh::makeRectangle(0.06, 0.09, 3, 3, mesh::Triangulation::kAlternating),
+               fabricWithRigidity(),
                effectsOf(elasticity, viscosity, elasticity == Elasticity::kMassSpring));
 }
 
@@ -164,9 +165,9 @@ TEST_P(EveryElasticity, JacobianIsTheDerivativeOfTheForces) {
 
 struct System {
   explicit System(const Cloth& cloth)
-      : matrix(cloth.pattern()), rhs(BlockVector::Zero(3, cloth.particleCount())) {}
-  SymmetricBlockMatrix matrix;
-  BlockVector rhs;
+      : matrix(cloth.pattern()), rhs(linear::BlockVector::Zero(3, cloth.particleCount())) {}
+  linear::SymmetricBlockMatrix matrix;
+  linear::BlockVector rhs;
 };
 
 TEST_P(EveryElasticity, StepMatrixIsPositiveSemidefiniteForEveryState) {
@@ -202,7 +203,7 @@ TEST_P(EveryElasticity, StepIsTheExactLinearisationInTension) {
     cloth.addStep(state.positions, state.velocities, state.plastic_bends, {h, h}, system.matrix,
                   system.rhs);
     const Eigen::MatrixXd assembled = dense(system.matrix);
-    BlockVector rhs(3, cloth.particleCount());
+    linear::BlockVector rhs(3, cloth.particleCount());
     const std::vector<Vector3d> forces = forcesOf(cloth, state);
     for (std::size_t i = 0; i < forces.size(); ++i) rhs.col(i) = h * forces[i];
     for (const JacobianBlock& block : cloth.jacobian(state, allParticles(cloth))) {

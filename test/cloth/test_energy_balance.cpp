@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "fixtures.h"
-#include "haptex/cloth/energy_balance.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/energy_balance.h"
+#include "haptex/cloth/dynamics/integrator.h"
 
 namespace haptex::cloth {
 namespace {
@@ -27,7 +27,7 @@ ModelledEffects gravity() {
 }
 
 void attachTop(Cloth& cloth) {
-  for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+  for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
     AttachmentPath place;
     place.start = cloth.mesh().initial_positions[particle];
     cloth.attach(particle, place);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "fixtures.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/integrator.h"
 #include "integrator_fixtures.h"
 
 namespace haptex::cloth {
@@ -32,7 +32,7 @@ class SmoothMotion {
       position = {0.2 * z * (1.0 + y), stretch * y, stretch * z};
       start_.velocities[i] = {2.0 * z - y, 3.0 * z * y, -z};
     }
-    for (int particle : sideParticles(cloth_.mesh(), Side::kTop)) {
+    for (int particle : mesh::sideParticles(cloth_.mesh(), mesh::Side::kTop)) {
       AttachmentPath path;
       path.start = start_.positions[particle];
       path.duration = 0.2;

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "fixtures.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/integrator.h"
 #include "integrator_fixtures.h"
 
 namespace haptex::cloth {
@@ -19,7 +19,7 @@ using Complex = std::complex<double>;
 using Method = IntegrationMethod;
 
 void attachTop(Cloth& cloth) {
-  for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+  for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
     AttachmentPath path;
     path.start = cloth.mesh().initial_positions[particle];
     cloth.attach(particle, path);
@@ -230,7 +230,7 @@ TEST(BackwardMidpoint, EnergyNeverGrowsWithoutWork) {
     Cloth cloth(square(6), stiffeningFabric(), effects);
     attachTop(cloth);
     ClothState state = randomState(cloth, 0.002, 0.5);
-    for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+    for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
       state.positions[particle] = cloth.mesh().initial_positions[particle];
       state.velocities[particle].setZero();
     }
@@ -310,7 +310,8 @@ TEST_P(EveryIntegrator, RefusesBadSteps) {
   ClothState other = state;
   other.velocities.pop_back();
   EXPECT_THROW(integrator.step(cloth, other, 0.01), std::invalid_argument);
-  const Cloth coarser(makeRectangle(0.1, 0.1, 2, 1, Triangulation::kOneWay), linearFabric(), {});
+  const Cloth coarser(mesh::makeRectangle(0.1, 0.1, 2, 1, mesh::Triangulation::kOneWay),
+                      linearFabric(), {});
   Integrator other_integrator(coarser, settingsOf(GetParam().method));
   EXPECT_THROW(other_integrator.step(cloth, state, 0.01), std::invalid_argument);
   EXPECT_EQ(state.time, 0.0);

@@ -5,35 +5,35 @@
 #include <limits>
 
 #include "fixtures.h"
-#include "haptex/cloth/block_cholesky.h"
-#include "haptex/cloth/conjugate_gradient.h"
-#include "haptex/cloth/linear_solver.h"
+#include "haptex/linear/block_cholesky.h"
+#include "haptex/linear/conjugate_gradient.h"
+#include "haptex/linear/linear_solver.h"
 
 namespace haptex::cloth {
 namespace {
 
 TEST(SymmetricBlockMatrix, MultipliesLikeItsDenseForm) {
-  const SymmetricBlockMatrix matrix = randomDefinite(square(6), 3.0);
-  const BlockVector x = BlockVector::Random(3, matrix.size());
-  BlockVector y(3, matrix.size());
+  const linear::SymmetricBlockMatrix matrix = randomDefinite(square(6), 3.0);
+  const linear::BlockVector x = linear::BlockVector::Random(3, matrix.size());
+  linear::BlockVector y(3, matrix.size());
   matrix.multiply(x, y);
   const Eigen::VectorXd exact = dense(matrix) * stacked(x);
   EXPECT_LT((stacked(y) - exact).norm(), 1e-14 * exact.norm());
 }
 
 TEST(SymmetricBlockMatrix, NamesABlockThatIsNotInThePattern) {
-  const SymmetricBlockMatrix matrix = randomDefinite(square(3), 1.0);
+  const linear::SymmetricBlockMatrix matrix = randomDefinite(square(3), 1.0);
   EXPECT_NO_THROW(matrix.slot(1, 0));
   EXPECT_THROW(matrix.slot(15, 0), std::out_of_range);
 }
 
 TEST(SymmetricBlockMatrix, EliminationGivesTheSolutionOfTheConstrainedSystem) {
-  SymmetricBlockMatrix matrix = randomDefinite(square(4), 5.0);
+  linear::SymmetricBlockMatrix matrix = randomDefinite(square(4), 5.0);
   const Eigen::MatrixXd a = dense(matrix);
-  BlockVector rhs = BlockVector::Random(3, matrix.size());
+  linear::BlockVector rhs = linear::BlockVector::Random(3, matrix.size());
   const Eigen::VectorXd b = stacked(rhs);
   std::vector<char> fixed(matrix.size(), 0);
-  BlockVector values = BlockVector::Zero(3, matrix.size());
+  linear::BlockVector values = linear::BlockVector::Zero(3, matrix.size());
   for (int particle : {0, 3, 7}) {
     fixed[particle] = 1;
     values.col(particle).setRandom();
@@ -52,12 +52,12 @@ TEST(SymmetricBlockMatrix, EliminationGivesTheSolutionOfTheConstrainedSystem) {
 }
 
 TEST(ConjugateGradient, ReachesTheStatedTrueResidual) {
-  const SymmetricBlockMatrix matrix = randomDefinite(square(12), 300.0);
-  const BlockVector rhs = BlockVector::Random(3, matrix.size());
-  ConjugateGradient solver(matrix.size());
+  const linear::SymmetricBlockMatrix matrix = randomDefinite(square(12), 300.0);
+  const linear::BlockVector rhs = linear::BlockVector::Random(3, matrix.size());
+  linear::ConjugateGradient solver(matrix.size());
   for (double tolerance : {1e-2, 1e-6, 1e-10}) {
-    BlockVector x = BlockVector::Zero(3, matrix.size());
-    const SolveResult result = solver.solve(matrix, rhs, tolerance, 10000, x);
+    linear::BlockVector x = linear::BlockVector::Zero(3, matrix.size());
+    const linear::SolveResult result = solver.solve(matrix, rhs, tolerance, 10000, x);
     const double residual =
         (stacked(rhs) - dense(matrix) * stacked(x)).norm() / stacked(rhs).norm();
     EXPECT_TRUE(result.converged);
@@ -67,11 +67,11 @@ TEST(ConjugateGradient, ReachesTheStatedTrueResidual) {
 }
 
 TEST(ConjugateGradient, ReportsTheTrueResidualWhereItCannotReachTheTolerance) {
-  const SymmetricBlockMatrix matrix = randomDefinite(square(12), 1e10);
-  const BlockVector rhs = BlockVector::Random(3, matrix.size());
-  ConjugateGradient solver(matrix.size());
-  BlockVector x = BlockVector::Zero(3, matrix.size());
-  const SolveResult result = solver.solve(matrix, rhs, 1e-14, 20000, x);
+  const linear::SymmetricBlockMatrix matrix = randomDefinite(square(12), 1e10);
+  const linear::BlockVector rhs = linear::BlockVector::Random(3, matrix.size());
+  linear::ConjugateGradient solver(matrix.size());
+  linear::BlockVector x = linear::BlockVector::Zero(3, matrix.size());
+  const linear::SolveResult result = solver.solve(matrix, rhs, 1e-14, 20000, x);
   const double residual = (stacked(rhs) - dense(matrix) * stacked(x)).norm() / stacked(rhs).norm();
   EXPECT_FALSE(result.converged);
   EXPECT_LE(result.residual, 1.0);  // never worse than no solution
@@ -79,80 +79,81 @@ TEST(ConjugateGradient, ReportsTheTrueResidualWhereItCannotReachTheTolerance) {
 }
 
 TEST(ConjugateGradient, SaysSoWhenTheIterationsDoNotSuffice) {
-  const SymmetricBlockMatrix matrix = randomDefinite(square(12), 300.0);
-  const BlockVector rhs = BlockVector::Random(3, matrix.size());
-  ConjugateGradient solver(matrix.size());
-  BlockVector x = BlockVector::Zero(3, matrix.size());
-  const SolveResult result = solver.solve(matrix, rhs, 1e-8, 3, x);
+  const linear::SymmetricBlockMatrix matrix = randomDefinite(square(12), 300.0);
+  const linear::BlockVector rhs = linear::BlockVector::Random(3, matrix.size());
+  linear::ConjugateGradient solver(matrix.size());
+  linear::BlockVector x = linear::BlockVector::Zero(3, matrix.size());
+  const linear::SolveResult result = solver.solve(matrix, rhs, 1e-8, 3, x);
   EXPECT_FALSE(result.converged);
   EXPECT_EQ(result.iterations, 3);
   EXPECT_GT(result.residual, 1e-8);
 }
 
 TEST(ConjugateGradient, DropsAGuessThatIsWorseThanNone) {
-  const SymmetricBlockMatrix matrix = randomDefinite(square(8), 10.0);
-  const BlockVector rhs = BlockVector::Random(3, matrix.size());
-  ConjugateGradient solver(matrix.size());
-  BlockVector cold = BlockVector::Zero(3, matrix.size());
-  BlockVector bad = BlockVector::Constant(3, matrix.size(), 1e12);
+  const linear::SymmetricBlockMatrix matrix = randomDefinite(square(8), 10.0);
+  const linear::BlockVector rhs = linear::BlockVector::Random(3, matrix.size());
+  linear::ConjugateGradient solver(matrix.size());
+  linear::BlockVector cold = linear::BlockVector::Zero(3, matrix.size());
+  linear::BlockVector bad = linear::BlockVector::Constant(3, matrix.size(), 1e12);
   const int iterations = solver.solve(matrix, rhs, 1e-8, 1000, cold).iterations;
   EXPECT_EQ(solver.solve(matrix, rhs, 1e-8, 1000, bad).iterations, iterations);
   bad.setConstant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(solver.solve(matrix, rhs, 1e-8, 1000, bad).iterations, iterations);
 }
 
-class EveryMethod : public testing::TestWithParam<LinearSolverMethod> {};
+class EveryMethod : public testing::TestWithParam<linear::LinearSolverMethod> {};
 
 TEST_P(EveryMethod, ReachesTheToleranceOnSoftAndStiffSystems) {
   for (double stiffness : {1e-3, 1.0, 1e6}) {
-    const SymmetricBlockMatrix matrix = randomDefinite(square(10), stiffness);
-    LinearSolver solver(matrix, GetParam());
-    const BlockVector rhs = BlockVector::Random(3, matrix.size());
-    BlockVector x = BlockVector::Zero(3, matrix.size());
-    const SolveResult result = solver.solve(matrix, rhs, 1e-7, x);
+    const linear::SymmetricBlockMatrix matrix = randomDefinite(square(10), stiffness);
+    linear::LinearSolver solver(matrix, GetParam());
+    const linear::BlockVector rhs = linear::BlockVector::Random(3, matrix.size());
+    linear::BlockVector x = linear::BlockVector::Zero(3, matrix.size());
+    const linear::SolveResult result = solver.solve(matrix, rhs, 1e-7, x);
     EXPECT_TRUE(result.converged) << stiffness;
     EXPECT_LT((dense(matrix) * stacked(x) - stacked(rhs)).norm(), 1.01e-7 * stacked(rhs).norm());
   }
 }
 
 TEST_P(EveryMethod, AnswersZeroForZero) {
-  const SymmetricBlockMatrix matrix = randomDefinite(square(4), 1.0);
-  LinearSolver solver(matrix, GetParam());
-  BlockVector x = BlockVector::Ones(3, matrix.size());
-  EXPECT_TRUE(solver.solve(matrix, BlockVector::Zero(3, matrix.size()), 1e-6, x).converged);
+  const linear::SymmetricBlockMatrix matrix = randomDefinite(square(4), 1.0);
+  linear::LinearSolver solver(matrix, GetParam());
+  linear::BlockVector x = linear::BlockVector::Ones(3, matrix.size());
+  EXPECT_TRUE(solver.solve(matrix, linear::BlockVector::Zero(3, matrix.size()), 1e-6, x).converged);
   EXPECT_TRUE(x.isZero());
 }
 
 TEST_P(EveryMethod, SaysSoWhenTheSystemIsNotANumber) {
-  SymmetricBlockMatrix matrix = randomDefinite(square(4), 1.0);
+  linear::SymmetricBlockMatrix matrix = randomDefinite(square(4), 1.0);
   matrix.diagonal(3).setConstant(std::numeric_limits<double>::quiet_NaN());
-  LinearSolver solver(matrix, GetParam());
-  BlockVector x = BlockVector::Zero(3, matrix.size());
-  EXPECT_FALSE(solver.solve(matrix, BlockVector::Ones(3, matrix.size()), 1e-6, x).converged);
+  linear::LinearSolver solver(matrix, GetParam());
+  linear::BlockVector x = linear::BlockVector::Zero(3, matrix.size());
+  EXPECT_FALSE(
+      solver.solve(matrix, linear::BlockVector::Ones(3, matrix.size()), 1e-6, x).converged);
 }
 
 INSTANTIATE_TEST_SUITE_P(LinearSolver, EveryMethod,
-                         testing::Values(LinearSolverMethod::kConjugateGradient,
-                                         LinearSolverMethod::kCholesky,
-                                         LinearSolverMethod::kAutomatic));
+                         testing::Values(linear::LinearSolverMethod::kConjugateGradient,
+                                         linear::LinearSolverMethod::kCholesky,
+                                         linear::LinearSolverMethod::kAutomatic));
 
 TEST(LinearSolver, AutomaticIteratesWhereItIsEasyAndFactorisesWhereItIsHard) {
-  const SymmetricBlockMatrix easy = randomDefinite(square(20), 1e-3);
-  const SymmetricBlockMatrix hard = randomDefinite(square(20), 1e6);
-  const BlockVector rhs = BlockVector::Random(3, easy.size());
-  LinearSolver solver(easy, LinearSolverMethod::kAutomatic);
+  const linear::SymmetricBlockMatrix easy = randomDefinite(square(20), 1e-3);
+  const linear::SymmetricBlockMatrix hard = randomDefinite(square(20), 1e6);
+  const linear::BlockVector rhs = linear::BlockVector::Random(3, easy.size());
+  linear::LinearSolver solver(easy, linear::LinearSolverMethod::kAutomatic);
   EXPECT_GT(solver.iterationBudget(), 5);
-  BlockVector x = BlockVector::Zero(3, easy.size());
+  linear::BlockVector x = linear::BlockVector::Zero(3, easy.size());
   EXPECT_TRUE(solver.solve(easy, rhs, 1e-6, x).converged);
-  EXPECT_EQ(solver.lastMethod(), LinearSolverMethod::kConjugateGradient);
+  EXPECT_EQ(solver.lastMethod(), linear::LinearSolverMethod::kConjugateGradient);
   EXPECT_TRUE(solver.solve(hard, rhs, 1e-6, x).converged);
-  EXPECT_EQ(solver.lastMethod(), LinearSolverMethod::kCholesky);
+  EXPECT_EQ(solver.lastMethod(), linear::LinearSolverMethod::kCholesky);
   // The failed try itself ends in a factorisation too; the next tries come 8 and 16 solves later.
   const auto direct_solves_before_success = [&] {
     for (int count = 0; count < 1000; ++count) {
       x.setZero();
       solver.solve(easy, rhs, 1e-6, x);
-      if (solver.lastMethod() == LinearSolverMethod::kConjugateGradient) return count;
+      if (solver.lastMethod() == linear::LinearSolverMethod::kConjugateGradient) return count;
     }
     return -1;
   };
@@ -165,24 +166,24 @@ TEST(LinearSolver, AutomaticIteratesWhereItIsEasyAndFactorisesWhereItIsHard) {
 }
 
 TEST(LinearSolver, KeepsAFactorWhileTheSystemsChangeLittle) {
-  const SymmetricBlockMatrix start = randomDefinite(square(20), 1e4);
-  const BlockVector rhs = BlockVector::Random(3, start.size());
-  LinearSolver solver(start, LinearSolverMethod::kAutomatic);
+  const linear::SymmetricBlockMatrix start = randomDefinite(square(20), 1e4);
+  const linear::BlockVector rhs = linear::BlockVector::Random(3, start.size());
+  linear::LinearSolver solver(start, linear::LinearSolverMethod::kAutomatic);
   for (int i = 0; i < 8; ++i) {
-    SymmetricBlockMatrix matrix = start;
+    linear::SymmetricBlockMatrix matrix = start;
     for (int k = 0; k < matrix.size(); ++k) matrix.diagonal(k) *= 1.0 + 1e-6 * i;
-    BlockVector x = BlockVector::Zero(3, matrix.size());
-    const SolveResult result = solver.solve(matrix, rhs, 1e-4, x);
+    linear::BlockVector x = linear::BlockVector::Zero(3, matrix.size());
+    const linear::SolveResult result = solver.solve(matrix, rhs, 1e-4, x);
     EXPECT_TRUE(result.converged);
-    EXPECT_EQ(solver.lastMethod(), LinearSolverMethod::kCholesky);
-    BlockVector product(3, matrix.size());
+    EXPECT_EQ(solver.lastMethod(), linear::LinearSolverMethod::kCholesky);
+    linear::BlockVector product(3, matrix.size());
     matrix.multiply(x, product);
     EXPECT_LE((product - rhs).norm(), 1.01e-4 * rhs.norm());
   }
   EXPECT_LE(solver.factorisations(), 2);
-  const SymmetricBlockMatrix other = randomDefinite(square(20), 1e4, 7);
+  const linear::SymmetricBlockMatrix other = randomDefinite(square(20), 1e4, 7);
   const long before = solver.factorisations();
-  BlockVector x = BlockVector::Zero(3, start.size());
+  linear::BlockVector x = linear::BlockVector::Zero(3, start.size());
   EXPECT_TRUE(solver.solve(other, rhs, 1e-4, x).converged);
   EXPECT_EQ(solver.factorisations(), before + 1);  // the kept one does not help
 }
@@ -190,29 +191,29 @@ TEST(LinearSolver, KeepsAFactorWhileTheSystemsChangeLittle) {
 TEST(LinearSolver, SolvesWhatIsTooStiffForAFactorInSinglePrecisionAlone) {
   // Condition numbers above 1e8, where the rounding of single precision is larger than the smallest
   // eigenvalues of the scaled matrix.
-  const SymmetricBlockMatrix matrix = randomDefinite(square(20), 1e8);
-  const BlockVector rhs = BlockVector::Random(3, matrix.size());
-  LinearSolver solver(matrix, LinearSolverMethod::kAutomatic);
-  BlockVector x = BlockVector::Zero(3, matrix.size()), product = x;
+  const linear::SymmetricBlockMatrix matrix = randomDefinite(square(20), 1e8);
+  const linear::BlockVector rhs = linear::BlockVector::Random(3, matrix.size());
+  linear::LinearSolver solver(matrix, linear::LinearSolverMethod::kAutomatic);
+  linear::BlockVector x = linear::BlockVector::Zero(3, matrix.size()), product = x;
   EXPECT_TRUE(solver.solve(matrix, rhs, 1e-6, x).converged);
   matrix.multiply(x, product);
   EXPECT_LE((product - rhs).norm(), 1.01e-6 * rhs.norm());
 }
 
 TEST(LinearSolver, GivesUpWhatIsNotPositiveDefiniteAfterItsFactorsIfThatIsWorthNoSearch) {
-  SymmetricBlockMatrix matrix = randomDefinite(square(20), 1e4);
-  const BlockVector rhs = BlockVector::Random(3, matrix.size());
-  LinearSolver solver(matrix, LinearSolverMethod::kAutomatic);
-  BlockVector x = BlockVector::Zero(3, matrix.size());
-  const auto solve = [&](LinearSolver::Definiteness definiteness) {
+  linear::SymmetricBlockMatrix matrix = randomDefinite(square(20), 1e4);
+  const linear::BlockVector rhs = linear::BlockVector::Random(3, matrix.size());
+  linear::LinearSolver solver(matrix, linear::LinearSolverMethod::kAutomatic);
+  linear::BlockVector x = linear::BlockVector::Zero(3, matrix.size());
+  const auto solve = [&](linear::LinearSolver::Definiteness definiteness) {
     x.setZero();
     return solver.solve(matrix, rhs, 1e-6, x, definiteness);
   };
-  EXPECT_TRUE(solve(LinearSolver::Definiteness::kUnknown).converged);
+  EXPECT_TRUE(solve(linear::LinearSolver::Definiteness::kUnknown).converged);
   matrix.diagonal(17) -= 1e7 * Eigen::Matrix3d::Identity();
-  EXPECT_FALSE(solve(LinearSolver::Definiteness::kUnknown).converged);
+  EXPECT_FALSE(solve(linear::LinearSolver::Definiteness::kUnknown).converged);
   const long before = solver.factorisations();
-  const SolveResult result = solve(LinearSolver::Definiteness::kUnknown);
+  const linear::SolveResult result = solve(linear::LinearSolver::Definiteness::kUnknown);
   EXPECT_FALSE(result.converged);
   EXPECT_EQ(result.iterations, 0);
   EXPECT_LE(solver.factorisations(), before + 2);  // in single and in double precision
@@ -224,7 +225,7 @@ class FoldedSystem {
   explicit FoldedSystem(const material::Fabric& fabric)
       : cloth_(square(32, 0.2), fabric, {}), matrix_(cloth_.pattern()) {}
 
-  void assemble(double height, double phase, BlockVector& rhs) {
+  void assemble(double height, double phase, linear::BlockVector& rhs) {
     ClothState state = cloth_.initialState();
     for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
       Eigen::Vector3d& place = state.positions[i];
@@ -241,11 +242,11 @@ class FoldedSystem {
     cloth_.addStep(state.positions, state.velocities, state.plastic_bends, {0.0125, 0.0125, 0.0},
                    matrix_, rhs);
   }
-  const SymmetricBlockMatrix& matrix() const { return matrix_; }
+  const linear::SymmetricBlockMatrix& matrix() const { return matrix_; }
 
  private:
   Cloth cloth_;
-  SymmetricBlockMatrix matrix_;
+  linear::SymmetricBlockMatrix matrix_;
 };
 
 material::Fabric timesStiffer(double factor) {
@@ -259,13 +260,14 @@ material::Fabric timesStiffer(double factor) {
 TEST(LinearSolver, NeedsOneFactorInSinglePrecisionPerSystemOfFoldedClothWhateverItsStiffness) {
   for (double factor : {1.0, 10.0, 100.0}) {
     FoldedSystem system(timesStiffer(factor));
-    const SymmetricBlockMatrix& matrix = system.matrix();
-    BlockVector rhs(3, matrix.size()), x = BlockVector::Zero(3, matrix.size()), product = x;
-    LinearSolver solver(matrix, LinearSolverMethod::kAutomatic);
+    const linear::SymmetricBlockMatrix& matrix = system.matrix();
+    linear::BlockVector rhs(3, matrix.size()), x = linear::BlockVector::Zero(3, matrix.size()),
+                                               product = x;
+    linear::LinearSolver solver(matrix, linear::LinearSolverMethod::kAutomatic);
     for (int step = 0; step < 12; ++step) {
       system.assemble(0.01, 0.3 * step, rhs);
       const long before = solver.factorisations();
-      const SolveResult result = solver.solve(matrix, rhs, 1e-6, x);
+      const linear::SolveResult result = solver.solve(matrix, rhs, 1e-6, x);
       EXPECT_TRUE(result.converged);
       EXPECT_LE(solver.factorisations(), before + 1) << factor << ", step " << step;
       matrix.multiply(x, product);
@@ -275,11 +277,11 @@ TEST(LinearSolver, NeedsOneFactorInSinglePrecisionPerSystemOfFoldedClothWhatever
 }
 
 TEST(SymmetricBlockMatrix, HasTheBlocksOfFurtherPairsForBothSolvers) {
-  const ClothMesh mesh = square(6);
+  const mesh::ClothMesh mesh = square(6);
   const int size = static_cast<int>(mesh.rest_coordinates.size());
   const std::vector<std::array<int, 2>> pairs = {{0, 48}, {30, 2}, {2, 30}, {0, 1}};
-  const SymmetricBlockMatrix without(size, mesh.triangles);
-  SymmetricBlockMatrix matrix(size, mesh.triangles, pairs);
+  const linear::SymmetricBlockMatrix without(size, mesh.triangles);
+  linear::SymmetricBlockMatrix matrix(size, mesh.triangles, pairs);
   EXPECT_EQ(matrix.lowerCount(), without.lowerCount() + 2);  // {0, 1} is an edge
   for (int i = 0; i < size; ++i) {
     matrix.diagonal(i) = 20.0 * Eigen::Matrix3d::Identity();
@@ -287,15 +289,15 @@ TEST(SymmetricBlockMatrix, HasTheBlocksOfFurtherPairsForBothSolvers) {
   }
   matrix.lower(matrix.slot(48, 0)).setConstant(2.0);
   matrix.lower(matrix.slot(30, 2)).setConstant(-3.0);
-  const BlockVector rhs = BlockVector::Random(3, size);
+  const linear::BlockVector rhs = linear::BlockVector::Random(3, size);
   const Eigen::VectorXd exact = dense(matrix).llt().solve(stacked(rhs));
-  BlockVector x = rhs;
-  BlockCholesky cholesky(matrix);
+  linear::BlockVector x = rhs;
+  linear::BlockCholesky cholesky(matrix);
   ASSERT_TRUE(cholesky.factorise(matrix));
   cholesky.solve(x);
   EXPECT_LT((stacked(x) - exact).norm(), 1e-12 * exact.norm());
   x.setZero();
-  EXPECT_TRUE(ConjugateGradient(size).solve(matrix, rhs, 1e-12, 1000, x).converged);
+  EXPECT_TRUE(linear::ConjugateGradient(size).solve(matrix, rhs, 1e-12, 1000, x).converged);
   EXPECT_LT((stacked(x) - exact).norm(), 1e-10 * exact.norm());
 }
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "fixtures.h"
-#include "haptex/cloth/membrane.h"
+#include "haptex/cloth/forces/membrane.h"
 
 namespace haptex::cloth {
 namespace {
@@ -29,11 +29,11 @@ std::vector<Vector3d> membraneForces(const Cloth& cloth, const ClothState& state
 
 /// What the membrane adds to an empty system.
 struct System {
-  SymmetricBlockMatrix matrix;
-  BlockVector rhs;
+  linear::SymmetricBlockMatrix matrix;
+  linear::BlockVector rhs;
   explicit System(const Cloth& cloth)
       : matrix(static_cast<int>(cloth.particleCount()), cloth.mesh().triangles),
-        rhs(BlockVector::Zero(3, cloth.particleCount())) {}
+        rhs(linear::BlockVector::Zero(3, cloth.particleCount())) {}
 };
 
 TEST(Membrane, RestHasNoForceAndNoEnergy) {
@@ -189,7 +189,7 @@ TEST_P(StepRightHandSide, IsForceAndElasticStiffnessTimesVelocity) {
   const double h = 0.01;
   System system(cloth);
   cloth.membrane().addStep(state.positions, state.velocities, {h, h}, system.matrix, system.rhs);
-  BlockVector velocity(3, cloth.particleCount()),
+  linear::BlockVector velocity(3, cloth.particleCount()),
       stiffness_times_velocity(3, cloth.particleCount());
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) velocity.col(i) = state.velocities[i];
   system.matrix.multiply(velocity, stiffness_times_velocity);  // -h D v - h^2 K v
@@ -206,15 +206,16 @@ TEST_P(StepRightHandSide, IsForceAndElasticStiffnessTimesVelocity) {
 }
 
 /// What is added for all triangles, each as a mesh of its own: too few to be added in batches.
-System sumOfEachAlone(const Cloth& cloth, const material::Fabric& fabric,
-                      const std::function<void(const Membrane&, std::size_t triangle,
-                                               SymmetricBlockMatrix&, BlockVector&)>& add) {
+System sumOfEachAlone(
+    const Cloth& cloth, const material::Fabric& fabric,
+    const std::function<void(const Membrane&, std::size_t triangle, linear::SymmetricBlockMatrix&,
+                             linear::BlockVector&)>& add) {
   System sum(cloth);
   for (std::size_t t = 0; t < cloth.mesh().triangles.size(); ++t) {
-    ClothMesh mesh = cloth.mesh();
+    mesh::ClothMesh mesh = cloth.mesh();
     mesh.triangles = {mesh.triangles[t]};
     const Membrane membrane(mesh, fabric, cloth.effects().viscosity, cloth.effects().contraction);
-    SymmetricBlockMatrix matrix(sum.matrix.size(), mesh.triangles);
+    linear::SymmetricBlockMatrix matrix(sum.matrix.size(), mesh.triangles);
     add(membrane, t, matrix, sum.rhs);
     for (int i = 0; i < matrix.size(); ++i) {
       sum.matrix.diagonal(i) += matrix.diagonal(i);
@@ -244,8 +245,8 @@ TEST_P(StepInBatches, IsTheSumOfTheStepsOfTheTrianglesAlone) {
       const StageTimes times{0.002, std::array{0.002, 0.0, 0.003}[seed % 3]};
       const System exact =
           sumOfEachAlone(cloth, stiffeningFabric(),
-                         [&](const Membrane& membrane, std::size_t, SymmetricBlockMatrix& matrix,
-                             BlockVector& rhs) {
+                         [&](const Membrane& membrane, std::size_t,
+                             linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) {
                            membrane.addStep(state.positions, state.velocities, times, matrix, rhs);
                          });
       System system(cloth);
@@ -281,8 +282,8 @@ TEST_P(StepInBatches, HasTheNewtonSystemAndThePotentialOfTheTrianglesAlone) {
           potential = 0.0;
           const System exact = sumOfEachAlone(
               cloth, fabric,
-              [&](const Membrane& one, std::size_t t, SymmetricBlockMatrix& matrix,
-                  BlockVector& rhs) {
+              [&](const Membrane& one, std::size_t t, linear::SymmetricBlockMatrix& matrix,
+                  linear::BlockVector& rhs) {
                 one.addNewton(state.positions, {begin[t]}, kStep, hessian, matrix, rhs);
                 potential += one.incrementalPotential(state.positions, {begin[t]}, kStep);
               });
@@ -308,10 +309,10 @@ TEST(Membrane, TheWayAheadAddsTheMatrixTimesTheVelocities) {
   cloth.membrane().addStep(state.positions, state.velocities, {a, 0.0}, there.matrix, there.rhs);
   cloth.membrane().addStep(state.positions, state.velocities, {a, ahead}, ahead_of.matrix,
                            ahead_of.rhs);
-  BlockVector velocities(3, cloth.particleCount()), product(3, cloth.particleCount());
+  linear::BlockVector velocities(3, cloth.particleCount()), product(3, cloth.particleCount());
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) velocities.col(i) = state.velocities[i];
   there.matrix.multiply(velocities, product);
-  const BlockVector growth = ahead_of.rhs - there.rhs;
+  const linear::BlockVector growth = ahead_of.rhs - there.rhs;
   EXPECT_LT((growth + ahead / a * product).norm(), 1e-12 * growth.norm());
   EXPECT_EQ(dense(ahead_of.matrix), dense(there.matrix));
 }

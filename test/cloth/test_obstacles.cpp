@@ -10,15 +10,15 @@
 #include <variant>
 #include <vector>
 
-#include "haptex/cloth/obj_file.h"
-#include "haptex/cloth/scene.h"
+#include "haptex/mesh/obj_file.h"
+#include "haptex/scene/scene.h"
 
 namespace haptex::cloth {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kConfig = fs::path(__FILE__).parent_path() / "../../config";
+const fs::path kConfig = HAPTEX_CONFIG_DIRECTORY;
 
 const std::string kSurface = R"(# no texture coordinates
 v 0 0 0
@@ -43,12 +43,12 @@ class ObstacleList : public testing::Test {
 
   std::string path() const { return (root_ / "scenes/scene.yaml").string(); }
 
-  std::vector<Obstacle> load(const std::string& obstacles) const {
+  std::vector<mesh::Obstacle> load(const std::string& obstacles) const {
     std::ofstream(path()) << "fabric: silk\n"
                              "sheet: {size: [1, 1], cells: [1, 1], diagonals: one_way}\n"
                              "attach: []\nmodel: []\ntime_step: 0.01\n"
                           << obstacles;
-    return loadScene(path()).obstacles;
+    return scene::loadScene(path()).obstacles;
   }
 
   std::string refusalOf(const std::string& obstacles) const {
@@ -77,16 +77,16 @@ TEST_F(ObstacleList, ReadsEveryShape) {
 )");
   ASSERT_EQ(obstacles.size(), 4u);
   EXPECT_EQ(obstacles[0].name, "table");
-  EXPECT_EQ(std::get<ObstacleBox>(obstacles[0].shape).sides, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(std::get<mesh::ObstacleBox>(obstacles[0].shape).sides, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(obstacles[0].pose.translation(), Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(obstacles[0].pose.linear(), Eigen::Matrix3d::Identity());
   EXPECT_EQ(obstacles[1].name, "ball");
-  EXPECT_EQ(std::get<ObstacleSphere>(obstacles[1].shape).radius, 0.05);
+  EXPECT_EQ(std::get<mesh::ObstacleSphere>(obstacles[1].shape).radius, 0.05);
   EXPECT_EQ(obstacles[2].name, "post");
-  EXPECT_EQ(std::get<ObstacleCapsule>(obstacles[2].shape).radius, 0.01);
-  EXPECT_EQ(std::get<ObstacleCapsule>(obstacles[2].shape).length, 0.2);
+  EXPECT_EQ(std::get<mesh::ObstacleCapsule>(obstacles[2].shape).radius, 0.01);
+  EXPECT_EQ(std::get<mesh::ObstacleCapsule>(obstacles[2].shape).length, 0.2);
   EXPECT_EQ(obstacles[3].name, "shelf");
-  const auto& mesh = std::get<ObstacleMesh>(obstacles[3].shape);
+  const auto& mesh = std::get<mesh::ObstacleMesh>(obstacles[3].shape);
   EXPECT_EQ(mesh.vertices.size(), 4u);
   EXPECT_EQ(mesh.triangles, (std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 1, 3}}));
 }
@@ -157,7 +157,7 @@ TEST_F(ObstacleList, MustNotBeEmptyIfTheModelListsObstacles) {
                            "sheet: {size: [1, 1], cells: [1, 1], diagonals: one_way}\n"
                            "attach: []\nmodel: [obstacles]\ntime_step: 0.01\nobstacles: []\n";
   try {
-    loadScene(path());
+    scene::loadScene(path());
     ADD_FAILURE();
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("must have at least one"), std::string::npos)
@@ -170,7 +170,7 @@ TEST_F(ObstacleList, FindsMeshesByPath) {
                                   (root_ / "meshes/corner.obj").string()}) {
     const auto obstacles =
         load("obstacles: [{name: a, mesh: " + name + ", position: [0, 0, 0]}]\n");
-    EXPECT_EQ(std::get<ObstacleMesh>(obstacles[0].shape).triangles.size(), 2u) << name;
+    EXPECT_EQ(std::get<mesh::ObstacleMesh>(obstacles[0].shape).triangles.size(), 2u) << name;
   }
 }
 
@@ -293,7 +293,7 @@ TEST_F(ObstacleList, NamesFileAndLineOfABadSurface) {
 TEST_F(ObstacleList, NamesTheSurfaceThatCannotBeRead) {
   const std::string missing = (root_ / "meshes/none.obj").string();
   try {
-    loadObjSurface(missing);
+    mesh::loadObjSurface(missing);
     ADD_FAILURE() << "was read";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(error.what(), missing + ": cannot be read, must be a Wavefront OBJ file");
@@ -301,16 +301,17 @@ TEST_F(ObstacleList, NamesTheSurfaceThatCannotBeRead) {
 }
 
 TEST(ShippedScenes, WoolAmongObstaclesHasOneOfEachKind) {
-  const Scene scene = loadScene((kConfig / "scenes/wool_among_obstacles.yaml").string());
+  const scene::Scene scene =
+      scene::loadScene((kConfig / "scenes/wool_among_obstacles.yaml").string());
   ASSERT_EQ(scene.obstacles.size(), 4u);
-  EXPECT_TRUE(std::holds_alternative<ObstacleBox>(scene.obstacles[0].shape));
-  EXPECT_TRUE(std::holds_alternative<ObstacleSphere>(scene.obstacles[1].shape));
-  EXPECT_TRUE(std::holds_alternative<ObstacleCapsule>(scene.obstacles[2].shape));
-  EXPECT_TRUE(std::holds_alternative<ObstacleMesh>(scene.obstacles[3].shape));
+  EXPECT_TRUE(std::holds_alternative<mesh::ObstacleBox>(scene.obstacles[0].shape));
+  EXPECT_TRUE(std::holds_alternative<mesh::ObstacleSphere>(scene.obstacles[1].shape));
+  EXPECT_TRUE(std::holds_alternative<mesh::ObstacleCapsule>(scene.obstacles[2].shape));
+  EXPECT_TRUE(std::holds_alternative<mesh::ObstacleMesh>(scene.obstacles[3].shape));
   for (const char* name :
        {"acrylic_knit_sample", "cotton_knit_sample", "linear_sheet", "wool_sample"}) {
     const fs::path path = kConfig / "scenes" / (std::string(name) + ".yaml");
-    EXPECT_TRUE(loadScene(path.string()).obstacles.empty()) << name;
+    EXPECT_TRUE(scene::loadScene(path.string()).obstacles.empty()) << name;
   }
 }
 

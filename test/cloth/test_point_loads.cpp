@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "fixtures.h"
-#include "haptex/cloth/integrator.h"
+#include "haptex/cloth/dynamics/integrator.h"
 
 namespace haptex::cloth {
 namespace {
@@ -34,7 +34,7 @@ Vector3d pointOf(const Cloth& cloth, const PointLoad& load, const Positions& pos
 }
 
 void attachTop(Cloth& cloth) {
-  for (int particle : sideParticles(cloth.mesh(), Side::kTop)) {
+  for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
     AttachmentPath path;
     path.start = cloth.mesh().initial_positions[particle];
     cloth.attach(particle, path);
@@ -196,7 +196,7 @@ TEST(PointLoads, StayStableHoweverStiffTheyAre) {
 
 TEST(PointLoads, TheStepIsTheLinearisationOfTheLoad) {
   // A load on a free triangle without stress: (M + h^2 w w^T K) dv = h w (f - K (x + h v - p)).
-  Cloth cloth(makeRectangle(0.1, 0.1, 1, 1, Triangulation::kOneWay), linearFabric(),
+  Cloth cloth(mesh::makeRectangle(0.1, 0.1, 1, 1, mesh::Triangulation::kOneWay), linearFabric(),
               loadedEffects());
   const PointLoad press = load(1);
   cloth.setPointLoads({press});
@@ -332,7 +332,7 @@ TEST(PointLoads, KeepTheSystemDefiniteWithinTheTolerancesOfTheirStiffness) {
   cloth.setPointLoads({press});
   ClothState state = cloth.initialState();
   StepSettings settings;
-  settings.solver = LinearSolverMethod::kCholesky;
+  settings.solver = linear::LinearSolverMethod::kCholesky;
   EXPECT_TRUE(Integrator(cloth, settings).step(cloth, state, 0.04).accepted);
 }
 

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "fixtures.h"
-#include "haptex/cloth/rest_detector.h"
+#include "haptex/cloth/dynamics/rest_detector.h"
 
 namespace haptex::cloth {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "elasticity_fixtures.h"
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth {
 namespace {
@@ -13,7 +13,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-Cloth latticeCloth(const ClothMesh& mesh, const material::Fabric& fabric, bool bending = false) {
+Cloth latticeCloth(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
+                   bool bending = false) {
   return Cloth(mesh, fabric, effectsOf(Elasticity::kMassSpring, false, bending));
 }
 
@@ -25,15 +26,16 @@ Vector2d pullOf(const Cloth& cloth, const Eigen::Matrix2d& deformation, int side
     state.positions[i] << 0.0, deformation * cloth.mesh().rest_coordinates[i];
   }
   const std::vector<Vector3d> forces = forcesOf(cloth, state);
-  const Side side = side_axis == 0 ? Side::kRight : Side::kTop;
+  const mesh::Side side = side_axis == 0 ? mesh::Side::kRight : mesh::Side::kTop;
   Vector2d pull = Vector2d::Zero();
-  for (int particle : sideParticles(cloth.mesh(), side)) pull -= forces[particle].tail<2>();
+  for (int particle : mesh::sideParticles(cloth.mesh(), side)) pull -= forces[particle].tail<2>();
   return pull;
 }
 
 TEST(SpringLattice, StretchedAndHeldAcrossItPullsAsTheFabricsCurvesSay) {
   const material::Fabric fabric = stiffeningFabric();
-  const Cloth cloth = latticeCloth(makeRectangle(0.06, 0.12, 3, 4, Triangulation::kOneWay), fabric);
+  const Cloth cloth =
+      latticeCloth(mesh::makeRectangle(0.06, 0.12, 3, 4, mesh::Triangulation::kOneWay), fabric);
   for (double stretch : {0.9, 1.02, 1.1}) {
     const double strain = 0.5 * (stretch * stretch - 1.0);
     Eigen::Matrix2d weft = Eigen::Matrix2d::Identity(), warp = weft;
@@ -49,7 +51,8 @@ TEST(SpringLattice, TheDiagonalsPullAcrossByTheShearCurve) {
   // Cells of 20 x 30 mm: stretching weft by e strains the shear curve by r e, r = 20 / 30, and the
   // warp direction is pulled by fs(r e) / r. The fabric itself has no such force: the defect.
   const material::Fabric fabric = stiffeningFabric();
-  const Cloth cloth = latticeCloth(makeRectangle(0.06, 0.12, 3, 4, Triangulation::kOneWay), fabric);
+  const Cloth cloth =
+      latticeCloth(mesh::makeRectangle(0.06, 0.12, 3, 4, mesh::Triangulation::kOneWay), fabric);
   const double ratio = 0.02 / 0.03, strain = 0.5 * (1.1 * 1.1 - 1.0);
   Eigen::Matrix2d weft = Eigen::Matrix2d::Identity();
   weft(0, 0) = 1.1;
@@ -63,7 +66,8 @@ TEST(SpringLattice, ShearOfCellsWhoseSidesKeepTheirLengthFollowsTheShearCurve) {
   // Not alike to both sides, as a twill's.
   fabric.shear.elastic = material::StrainStressCurve::fit(
       {{-0.5, -40.0}, {-0.2, -10.0}, {0.2, 5.0}, {0.5, 60.0}}, material::NegativeBranch::kLinear);
-  const Cloth cloth = latticeCloth(makeRectangle(0.06, 0.12, 3, 4, Triangulation::kOneWay), fabric);
+  const Cloth cloth =
+      latticeCloth(mesh::makeRectangle(0.06, 0.12, 3, 4, mesh::Triangulation::kOneWay), fabric);
   for (double angle : {-0.4, -0.1, 0.1, 0.4}) {
     ClothState state = cloth.initialState();
     for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
@@ -80,8 +84,8 @@ TEST(SpringLattice, AFoldCostsWhatTheRigidityAsksAtARightAngleAndTooLittleBelow)
   // energy is 2 B width / cell sin^2(angle / 2) (Volino and Magnenat-Thalmann 2006).
   constexpr double kCell = 0.01, kWidth = 0.03;
   const material::Fabric fabric = fabricWithRigidity();
-  const Cloth cloth =
-      latticeCloth(makeRectangle(0.04, kWidth, 4, 3, Triangulation::kAlternating), fabric, true);
+  const Cloth cloth = latticeCloth(
+      mesh::makeRectangle(0.04, kWidth, 4, 3, mesh::Triangulation::kAlternating), fabric, true);
   for (double angle : {0.1, 0.5, 0.5 * M_PI, 2.0}) {
     ClothState state = cloth.initialState();
     for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
@@ -109,7 +113,7 @@ TEST(SpringLattice, BendSpringsDoNotResistTension) {
 TEST(SpringLattice, HasTheSpringsOfItsCellsWithTheirShares) {
   // Two cells side by side: their common side carries half of each, the others half of one.
   const auto springs =
-      findLatticeSprings(makeRectangle(0.02, 0.03, 2, 1, Triangulation::kOneWay), true);
+      findLatticeSprings(mesh::makeRectangle(0.02, 0.03, 2, 1, mesh::Triangulation::kOneWay), true);
   std::map<LatticeSpring::Kind, int> count;
   std::map<LatticeSpring::Kind, double> area;
   for (const LatticeSpring& spring : springs) {
@@ -130,7 +134,7 @@ TEST(SpringLattice, HasTheSpringsOfItsCellsWithTheirShares) {
 
 TEST(SpringLattice, TakesCellsOfDifferentShape) {
   // Linear springs on unequal cells pass the patch test all the same.
-  ClothMesh mesh = square(3);
+  mesh::ClothMesh mesh = square(3);
   for (std::size_t i = 0; i < mesh.rest_coordinates.size(); ++i) {
     Vector2d& rest = mesh.rest_coordinates[i];
     rest = {rest.x() * (1.0 + 5.0 * rest.x()), rest.y() * (1.0 + 3.0 * rest.y())};
@@ -148,7 +152,7 @@ TEST(SpringLattice, TakesCellsOfDifferentShape) {
   }
 }
 
-void expectRefused(const ClothMesh& mesh, const std::string& triangle) {
+void expectRefused(const mesh::ClothMesh& mesh, const std::string& triangle) {
   try {
     latticeCloth(mesh, linearFabric());
     FAIL() << "not refused";
@@ -161,13 +165,13 @@ void expectRefused(const ClothMesh& mesh, const std::string& triangle) {
 }
 
 TEST(SpringLattice, RefusesOtherMeshesNamingATriangle) {
-  ClothMesh oblique = square(2);
+  mesh::ClothMesh oblique = square(2);
   oblique.rest_coordinates[4].x() += 1e-6;
   expectRefused(oblique, "0");
-  ClothMesh turned = square(2);
+  mesh::ClothMesh turned = square(2);
   for (Vector2d& rest : turned.rest_coordinates) rest = Eigen::Rotation2Dd(0.3) * rest;
   expectRefused(turned, "0");
-  ClothMesh half_a_cell = square(2);
+  mesh::ClothMesh half_a_cell = square(2);
   half_a_cell.triangles.pop_back();
   expectRefused(half_a_cell, "6");
 }

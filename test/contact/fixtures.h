@@ -13,15 +13,15 @@ inline material::Fabric wool() {
 }
 
 /// 40 mm, 8 x 8 cells of 5 mm, in the plane x = 0 with its middle in (0, 0, -0.02 m).
-inline cloth::ClothMesh smallSample() {
-  return cloth::makeRectangle(0.04, 0.04, 8, 8, cloth::Triangulation::kAlternating);
+inline mesh::ClothMesh smallSample() {
+  return mesh::makeRectangle(0.04, 0.04, 8, 8, mesh::Triangulation::kAlternating);
 }
 
 inline const Eigen::Vector3d kSmallSampleMiddle(0.0, 0.0, -0.02);
 
 /// Triangles with all corners within a distance (m) of a place in rest coordinates, as seen along
 /// the axes.
-inline std::vector<int> trianglesAround(const cloth::ClothMesh& mesh, const Eigen::Vector2d& place,
+inline std::vector<int> trianglesAround(const mesh::ClothMesh& mesh, const Eigen::Vector2d& place,
                                         double distance) {
   std::vector<int> result;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -34,11 +34,11 @@ inline std::vector<int> trianglesAround(const cloth::ClothMesh& mesh, const Eige
   return result;
 }
 
-inline std::vector<char> nothingAttached(const cloth::ClothMesh& mesh) {
+inline std::vector<char> nothingAttached(const mesh::ClothMesh& mesh) {
   return std::vector<char>(mesh.rest_coordinates.size(), 0);
 }
 
-inline std::vector<Eigen::Vector3d> atRest(const cloth::ClothMesh& mesh) {
+inline std::vector<Eigen::Vector3d> atRest(const mesh::ClothMesh& mesh) {
   return std::vector<Eigen::Vector3d>(mesh.rest_coordinates.size(), Eigen::Vector3d::Zero());
 }
 

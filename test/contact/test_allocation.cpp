@@ -12,7 +12,7 @@ TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer brings its own malloc";
 #endif
-  const cloth::ClothMesh mesh = smallSample();
+  const mesh::ClothMesh mesh = smallSample();
   for (const auto kind : {HapticSettings::Layer::kPatch, HapticSettings::Layer::kWholeCloth}) {
     HapticSettings settings;
     settings.layer = kind;
@@ -53,10 +53,10 @@ TEST(ContactAllocation, StepsAmongObstaclesAllocateNothing) {
   GTEST_SKIP() << "the address sanitizer brings its own malloc";
 #endif
   const Eigen::Isometry3d under(Eigen::Translation3d(0.0, 0.0, -0.12));
-  std::vector<cloth::Obstacle> obstacles = {
-      {"ball", cloth::ObstacleSphere{0.03}, under},
-      {"sheet", cloth::ObstacleMesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}}, under}};
-  obstacles[0].motion = cloth::ObstacleOrbit{{0.05, 0.0, -0.12}, Eigen::Vector3d::UnitZ(), 1.0};
+  std::vector<mesh::Obstacle> obstacles = {
+      {"ball", mesh::ObstacleSphere{0.03}, under},
+      {"sheet", mesh::ObstacleMesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}}, under}};
+  obstacles[0].motion = mesh::ObstacleOrbit{{0.05, 0.0, -0.12}, Eigen::Vector3d::UnitZ(), 1.0};
   for (const int newton_iterations : {1, 5}) {
     cloth::ModelledEffects effects;
     effects.gravity = {0.0, 0.0, -9.81};

@@ -62,7 +62,7 @@ class CondensedStiffnessTest : public testing::Test {
     return result;
   }
 
-  const cloth::ClothMesh mesh_ = smallSample();
+  const mesh::ClothMesh mesh_ = smallSample();
   const MeshTopology topology_{mesh_};
   const material::Fabric fabric_ = wool();
   const ContactLaw law_{fabric_, {PulpSettings().stiffness, 1e-6}};  // no damping

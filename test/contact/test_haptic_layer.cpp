@@ -33,7 +33,7 @@ class HapticLayerTest : public testing::Test {
     return "(not refused)";
   }
 
-  const cloth::ClothMesh mesh_ = smallSample();
+  const mesh::ClothMesh mesh_ = smallSample();
   const std::vector<int> middle_ = trianglesAround(mesh_, {0.02, 0.02}, 0.01);
   HapticLayer layer_{mesh_, wool(), {true, Vector3d::Zero()}, {}};
 };

@@ -11,11 +11,11 @@
 namespace haptex::contact {
 namespace {
 
-using cloth::ClothMesh;
 using cloth::ClothState;
-using cloth::Obstacle;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
+using mesh::ClothMesh;
+using mesh::Obstacle;
 
 Isometry3d at(const Vector3d& place) { return Isometry3d(Eigen::Translation3d(place)); }
 
@@ -31,7 +31,7 @@ struct HangingSheet {
         state(cloth.initialState()),
         integrator(cloth, settings),
         collision(cloth, obstacles) {
-    for (const int particle : sideParticles(cloth.mesh(), cloth::Side::kTop)) {
+    for (const int particle : sideParticles(cloth.mesh(), mesh::Side::kTop)) {
       cloth.attach(particle, {state.positions[particle], Vector3d::Zero(), 0.0, 0.0});
     }
   }
@@ -68,18 +68,18 @@ constexpr double kLeast = ObstacleCollision::kOffset - ObstacleCollision::kToler
 class Methods : public testing::TestWithParam<cloth::NamedIntegrationMethod> {};
 
 TEST_P(Methods, LetNoParticleIntoAnyShape) {
-  Obstacle sphere{"sphere", cloth::ObstacleSphere{0.04}, at({0.1, 0.0, -0.12})};
-  Obstacle box{"box", cloth::ObstacleBox{{0.002, 0.15, 0.15}}, at({0.1, 0.0, -0.15})};
-  Obstacle capsule{"capsule", cloth::ObstacleCapsule{0.02, 0.3},
+  Obstacle sphere{"sphere", mesh::ObstacleSphere{0.04}, at({0.1, 0.0, -0.12})};
+  Obstacle box{"box", mesh::ObstacleBox{{0.002, 0.15, 0.15}}, at({0.1, 0.0, -0.15})};
+  Obstacle capsule{"capsule", mesh::ObstacleCapsule{0.02, 0.3},
                    at({0.1, 0.0, -0.12}) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX())};
   Obstacle mesh{"mesh",
-                cloth::ObstacleMesh{{{0, -0.2, 0.05}, {0, 0.2, 0.05}, {0, 0, -0.25}}, {{0, 1, 2}}},
+                mesh::ObstacleMesh{{{0, -0.2, 0.05}, {0, 0.2, 0.05}, {0, 0, -0.25}}, {{0, 1, 2}}},
                 at({0.1, 0.0, -0.12})};
   const bool implicit = isImplicit(GetParam().method);
   const double h = implicit ? 0.0125 : 5e-4;
   for (Obstacle obstacle : {sphere, box, capsule, mesh}) {
     for (const double speed : {-0.5, -10.0}) {
-      obstacle.motion = cloth::ObstacleDrift{{speed, 0.0, 0.0}};
+      obstacle.motion = mesh::ObstacleDrift{{speed, 0.0, 0.0}};
       cloth::StepSettings settings;
       settings.method = GetParam().method;
       HangingSheet sheet({obstacle}, settings);
@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(cloth::kIntegrationMeth
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(ObstacleCollision, BringsOutWhatAJumpOfTheObstacleHasCaught) {
-  Obstacle sphere{"sphere", cloth::ObstacleSphere{0.04}, at({0.01, 0.003, -0.12})};
+  Obstacle sphere{"sphere", mesh::ObstacleSphere{0.04}, at({0.01, 0.003, -0.12})};
   HangingSheet sheet({sphere}, {});  // starts with the sphere in it
   EXPECT_LT(sheet.least(), -0.01);
   for (int i = 0; i < 20; ++i) {
@@ -122,7 +122,7 @@ TEST(ObstacleCollision, BringsOutWhatAJumpOfTheObstacleHasCaught) {
 }
 
 TEST(ObstacleCollision, DoesNothingToAClothOutOfReach) {
-  const Obstacle far{"far", cloth::ObstacleSphere{0.04}, at({1.0, 0.0, 0.0})};
+  const Obstacle far{"far", mesh::ObstacleSphere{0.04}, at({1.0, 0.0, 0.0})};
   HangingSheet among({far}, {}), alone({far}, {});
   for (int i = 0; i < 20; ++i) {
     among.collision.step(among.cloth, among.integrator, among.state, 0.01);
@@ -137,7 +137,7 @@ TEST(ObstacleCollision, NeedsACoefficientOfFriction) {
   material::Fabric bare = HangingSheet::fabric();
   bare.friction.reset();
   const cloth::Cloth cloth(cloth::square(2), bare, HangingSheet::effects());
-  Obstacle sphere{"ball", cloth::ObstacleSphere{0.04}, at({1.0, 0.0, 0.0})};
+  Obstacle sphere{"ball", mesh::ObstacleSphere{0.04}, at({1.0, 0.0, 0.0})};
   try {
     const ObstacleCollision collision(cloth, {sphere});
     ADD_FAILURE();

@@ -7,24 +7,23 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/cloth/scene.h"
 #include "haptex/contact/obstacles.h"
+#include "haptex/scene/scene.h"
 
 namespace haptex::contact {
 namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kScene =
-    (fs::path(__FILE__).parent_path() / "../../config/scenes/wool_among_obstacles.yaml").string();
+const std::string kScene = HAPTEX_CONFIG_DIRECTORY "/scenes/wool_among_obstacles.yaml";
 
 // The gaps that the comments of the scene promise, computed from its numbers by hand: the sample is
 // flat in x = 0 when the scene starts, from y = -0.1 to 0.1 and z = -0.2 to 0.
 TEST(MakeObstacle, ShippedObstaclesAreAsFarFromTheFlatSampleAsTheSceneSays) {
-  const cloth::Scene scene = cloth::loadScene(kScene);
+  const scene::Scene scene = scene::loadScene(kScene);
   const std::map<std::string, double> expected = {
       {"table", 0.01}, {"ball", 0.02}, {"post", 0.005}, {"shelf", 0.01}};
-  for (const cloth::Obstacle& obstacle : scene.obstacles) {
+  for (const mesh::Obstacle& obstacle : scene.obstacles) {
     const proximity::RigidObstacle made = makeObstacle(obstacle);
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [a, b, c] : scene.mesh.triangles) {
@@ -36,7 +35,7 @@ TEST(MakeObstacle, ShippedObstaclesAreAsFarFromTheFlatSampleAsTheSceneSays) {
 }
 
 TEST(MakeObstacle, TakesThePose) {
-  cloth::Obstacle post{"post", cloth::ObstacleCapsule{0.1, 2.0}, Eigen::Isometry3d::Identity()};
+  mesh::Obstacle post{"post", mesh::ObstacleCapsule{0.1, 2.0}, Eigen::Isometry3d::Identity()};
   post.pose.translation() = Eigen::Vector3d(0, 3, 0);
   post.pose.linear() = Eigen::AngleAxisd(std::asin(1.0), Eigen::Vector3d::UnitX()).matrix();
   // The segment along z lies along y now: it reaches from 2 to 4.
@@ -45,7 +44,7 @@ TEST(MakeObstacle, TakesThePose) {
 }
 
 TEST(MakeObstacle, RefusesWhatTheSceneFileWouldNotHaveLetThrough) {
-  const cloth::Obstacle ball{"ball", cloth::ObstacleSphere{-1.0}, Eigen::Isometry3d::Identity()};
+  const mesh::Obstacle ball{"ball", mesh::ObstacleSphere{-1.0}, Eigen::Isometry3d::Identity()};
   EXPECT_THROW(makeObstacle(ball), std::invalid_argument);
 }
 

@@ -35,7 +35,7 @@ class PatchTest : public testing::Test {
     }
   }
 
-  const cloth::ClothMesh mesh_ = smallSample();
+  const mesh::ClothMesh mesh_ = smallSample();
   const MeshTopology topology_{mesh_};
   const material::Fabric fabric_ = wool();
   const ContactLaw law_{fabric_};

@@ -5,17 +5,17 @@
 #include <limits>
 
 #include "fixtures.h"
-#include "haptex/cloth/block_cholesky.h"
 #include "haptex/contact/kept_factor.h"
 #include "haptex/contact/patch_solver.h"
+#include "haptex/linear/block_cholesky.h"
 
 namespace haptex::contact {
 namespace {
 
-using cloth::BlockVector;
-using cloth::SymmetricBlockMatrix;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using linear::BlockVector;
+using linear::SymmetricBlockMatrix;
 
 // The matrices have a condition number of about 1e5: from inertia alone, 1e-4, to six springs. With
 // the rounding of single precision, 6e-8, a factor in it may be wrong by 7e-3.
@@ -23,7 +23,7 @@ constexpr double kOfSinglePrecision = 7e-3;
 
 /// Springs along the edges of a sheet in a frame that turns with `angle` (rad), stiff along it and
 /// a thousand times softer across, and a contact on the first `touched` particles.
-void fill(const cloth::ClothMesh& mesh, double angle, int touched, SymmetricBlockMatrix& matrix) {
+void fill(const mesh::ClothMesh& mesh, double angle, int touched, SymmetricBlockMatrix& matrix) {
   const Vector3d stiff(0.0, std::cos(angle), std::sin(angle));
   const Matrix3d spring = stiff * stiff.transpose() + 1e-3 * Matrix3d::Identity();
   matrix.setZero();
@@ -50,7 +50,7 @@ class PatchSolverTest : public testing::Test {
   }
   BlockVector exact() {
     BlockVector solution = rhs_;
-    cloth::BlockCholesky cholesky(matrix_);
+    linear::BlockCholesky cholesky(matrix_);
     EXPECT_TRUE(cholesky.factorise(matrix_));
     cholesky.solve(solution);
     return solution;
@@ -64,7 +64,7 @@ class PatchSolverTest : public testing::Test {
     return std::sqrt(error.cwiseProduct(product).sum() / right.cwiseProduct(rhs_).sum());
   }
 
-  const cloth::ClothMesh mesh_ = smallSample();
+  const mesh::ClothMesh mesh_ = smallSample();
   SymmetricBlockMatrix matrix_{static_cast<int>(mesh_.rest_coordinates.size()), mesh_.triangles};
   BlockVector rhs_;
 };

@@ -8,7 +8,7 @@
 namespace haptex::contact {
 namespace {
 
-double signedArea(const cloth::ClothMesh& mesh, int triangle) {
+double signedArea(const mesh::ClothMesh& mesh, int triangle) {
   const auto& t = mesh.triangles[triangle];
   const Eigen::Vector2d a = mesh.rest_coordinates[t[1]] - mesh.rest_coordinates[t[0]];
   const Eigen::Vector2d b = mesh.rest_coordinates[t[2]] - mesh.rest_coordinates[t[0]];
@@ -23,7 +23,7 @@ class RefinedCutLevel : public testing::TestWithParam<int> {
   }
   int divisions() const { return 1 << GetParam(); }
 
-  const cloth::ClothMesh mesh_ = smallSample();
+  const mesh::ClothMesh mesh_ = smallSample();
   const MeshTopology topology_{mesh_};
   const std::vector<int> triangles_ = trianglesAround(mesh_, {0.02, 0.02}, 0.005);
 };
@@ -111,7 +111,7 @@ TEST_P(RefinedCutLevel, TheMeshsOwnBorderIsFree) {
 TEST_P(RefinedCutLevel, WhatIsAttachedBelongsToTheRim) {
   const std::vector<int> triangles = trianglesAround(mesh_, {0.005, 0.005}, 0.005);
   std::vector<char> attached = nothingAttached(mesh_);
-  for (int particle : sideParticles(mesh_, cloth::Side::kBottom)) attached[particle] = 1;
+  for (int particle : sideParticles(mesh_, mesh::Side::kBottom)) attached[particle] = 1;
   const RefinedCut cut = cutAndRefine(mesh_, topology_, triangles, attached, GetParam());
   const int side = 2 * divisions();
   EXPECT_EQ(cut.free_count, side * (side - 1));
@@ -145,7 +145,7 @@ TEST_P(RefinedCutLevel, AnotherCutHasTheSameSupportForTheSamePlace) {
 }
 
 TEST(MeshTopology, NeighboursAreMutualAndTheBorderHasNone) {
-  const cloth::ClothMesh mesh = smallSample();
+  const mesh::ClothMesh mesh = smallSample();
   const MeshTopology topology(mesh);
   int border = 0;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 class WholeClothContactTest : public testing::Test {
  protected:
-  const cloth::ClothMesh mesh_ = smallSample();
+  const mesh::ClothMesh mesh_ = smallSample();
   const material::Fabric fabric_ = wool();
   const ContactLaw law_{fabric_};
   WholeClothContact contact_{mesh_, fabric_, law_};

@@ -10,8 +10,8 @@
 #include <random>
 #include <string>
 
-#include "haptex/exoskeleton/device_controller.h"
-#include "haptex/exoskeleton/emulated_finger.h"
+#include "haptex/exoskeleton/control/device_controller.h"
+#include "haptex/exoskeleton/emulator/emulated_finger.h"
 #include "shipped_urdf.h"
 
 namespace haptex::exoskeleton {

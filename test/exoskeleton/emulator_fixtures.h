@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <random>
 
-#include "haptex/exoskeleton/emulated_finger.h"
+#include "haptex/exoskeleton/emulator/emulated_finger.h"
 #include "shipped_urdf.h"
 
 namespace haptex::exoskeleton {

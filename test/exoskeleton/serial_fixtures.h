@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "haptex/exoskeleton/clock.h"
-#include "haptex/exoskeleton/frame_parser.h"
-#include "haptex/exoskeleton/serial_frame.h"
+#include "haptex/exoskeleton/finger.h"
+#include "haptex/exoskeleton/protocol/frame_parser.h"
+#include "haptex/exoskeleton/protocol/serial_frame.h"
 
 namespace haptex::exoskeleton {
 

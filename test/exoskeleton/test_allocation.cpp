@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "../malloc_counter.h"
-#include "haptex/exoskeleton/device_controller.h"
-#include "haptex/exoskeleton/emulated_device.h"
-#include "haptex/exoskeleton/finger_kinematics.h"
+#include "haptex/exoskeleton/control/device_controller.h"
+#include "haptex/exoskeleton/control/finger_kinematics.h"
+#include "haptex/exoskeleton/emulator/emulated_device.h"
 #include "shipped_urdf.h"
 
 namespace haptex::exoskeleton {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "controlled_device.h"
-#include "haptex/evaluation/workload.h"
-#include "haptex/exoskeleton/auto_recovery.h"
+#include "haptex/base/workload.h"
+#include "haptex/exoskeleton/control/auto_recovery.h"
 
 namespace haptex::exoskeleton {
 namespace {
@@ -85,7 +85,7 @@ TEST(AutoRecovery, StallsThatAreFarApartAreNotInARow) {
   Recovering all;
   all.run(0.1);
   constexpr int kMost = AutoRecovery::kMostInARow;
-  for (int i = 0; i < evaluation::unlessSanitized(2 * kMost, kMost + 1); ++i) {
+  for (int i = 0; i < base::unlessSanitized(2 * kMost, kMost + 1); ++i) {
     all.stall(0.2);
     all.run(11.0);
     ASSERT_EQ(all.mode(), Mode::kEnabled) << i;

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "haptex/exoskeleton/command_check.h"
+#include "haptex/exoskeleton/control/command_check.h"
 
 namespace haptex::exoskeleton {
 namespace {

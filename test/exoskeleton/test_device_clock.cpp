@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "haptex/exoskeleton/device_clock.h"
+#include "haptex/exoskeleton/protocol/device_clock.h"
 
 namespace haptex::exoskeleton {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "controlled_device.h"
-#include "haptex/exoskeleton/device_controller.h"
+#include "haptex/exoskeleton/control/device_controller.h"
 
 namespace haptex::exoskeleton {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "haptex/exoskeleton/device_end.h"
+#include "haptex/exoskeleton/protocol/device_end.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {

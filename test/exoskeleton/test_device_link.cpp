@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "haptex/exoskeleton/device_end.h"
-#include "haptex/exoskeleton/device_link.h"
+#include "haptex/exoskeleton/protocol/device_end.h"
+#include "haptex/exoskeleton/protocol/device_link.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "emulator_fixtures.h"
-#include "haptex/exoskeleton/emulated_device.h"
+#include "haptex/exoskeleton/emulator/emulated_device.h"
 
 namespace haptex::exoskeleton {
 namespace {

@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "emulator_fixtures.h"
-#include "haptex/exoskeleton/emulated_finger.h"
+#include "haptex/exoskeleton/emulator/emulated_finger.h"
 
 namespace haptex::exoskeleton {
 namespace {

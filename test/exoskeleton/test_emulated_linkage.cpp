@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "emulator_fixtures.h"
-#include "haptex/exoskeleton/emulated_linkage.h"
+#include "haptex/exoskeleton/emulator/emulated_linkage.h"
 
 namespace haptex::exoskeleton {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/exoskeleton/fault_injector.h"
+#include "haptex/exoskeleton/emulator/fault_injector.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {

@@ -9,18 +9,18 @@
 #include <limits>
 #include <string>
 
-#include "haptex/evaluation/exoskeleton_loop.h"
-#include "haptex/evaluation/stalled_hold.h"
-#include "haptex/evaluation/workload.h"
-#include "haptex/exoskeleton/hand_path.h"
+#include "haptex/base/workload.h"
+#include "haptex/exoskeleton/emulator/hand_path.h"
+#include "haptex/oracles/experiments/exoskeleton_loop.h"
+#include "haptex/oracles/experiments/stalled_hold.h"
 #include "shipped_urdf.h"
 
 namespace haptex::exoskeleton {
 namespace {
 
 using Eigen::Vector3d;
-using evaluation::ExoskeletonLoop;
-using evaluation::LoopSample;
+using oracles::ExoskeletonLoop;
+using oracles::LoopSample;
 using std::chrono::milliseconds;
 
 constexpr double kCommanded = 3.0;  // N
@@ -39,7 +39,7 @@ constexpr double kWeightAndFriction = 0.25;
 constexpr Time kOnTheLine = std::chrono::microseconds(375);
 
 /// Of the driver's period, at which commander or driver end: quarters of it.
-constexpr int kMoments = evaluation::unlessSanitized(4, 1);
+constexpr int kMoments = base::unlessSanitized(4, 1);
 
 /// What the fingers felt at worst.
 struct Worst {
@@ -131,7 +131,7 @@ class FaultsOfTheLine : public testing::TestWithParam<bool> {};
 
 TEST_P(FaultsOfTheLine, NeitherJerkNorOverloadAFinger) {
   FaultyLoop faulty;
-  evaluation::SimulatedLine& line = GetParam() ? faulty.loop.toDevice() : faulty.loop.toDriver();
+  oracles::SimulatedLine& line = GetParam() ? faulty.loop.toDevice() : faulty.loop.toDriver();
   double largest_change = 0.0, largest_force = 0.0;
   for (const LineFault fault : lineFaults()) {
     const double probability = fault == LineFault::kStall ? 1.0 : 0.3;
@@ -238,13 +238,13 @@ TEST(Faults, TheMotorsAreOffTwentyMillisecondsAfterCommanderOrDriverFellSilent) 
 TEST(Faults, AStallOfUpToFifteenMillisecondsDoesNotOpenTheHand) {
   const PerFinger<Vector3d> open =
       loadHandPath(HAPTEX_SOURCE_DIRECTORY "/config/paths/pinch.yaml").at(1.5).fingertips;
-  for (const evaluation::StalledPart part : evaluation::kStalledParts) {
-    const auto holds = evaluation::holdThroughStalls(
+  for (const oracles::StalledPart part : oracles::kStalledParts) {
+    const auto holds = oracles::holdThroughStalls(
         shippedUrdf(), open, 1.6, 800.0, part,
         {milliseconds(5), milliseconds(11), milliseconds(15), milliseconds(19), milliseconds(25)});
     ASSERT_EQ(holds.size(), 5u);
     for (std::size_t i = 0; i < holds.size(); ++i) {
-      const std::string which = evaluation::name(part) + std::string(" ") + std::to_string(i);
+      const std::string which = oracles::name(part) + std::string(" ") + std::to_string(i);
       EXPECT_NEAR(holds[i].hold, 1.6, 0.05) << which;
       EXPECT_LT(holds[i].overshoot, 0.3) << which;
       EXPECT_LT(holds[i].jump, 0.6) << which;

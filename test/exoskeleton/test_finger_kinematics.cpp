@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "haptex/exoskeleton/finger_kinematics.h"
+#include "haptex/exoskeleton/control/finger_kinematics.h"
 #include "shipped_urdf.h"
 #include "urdf_poses.h"
 

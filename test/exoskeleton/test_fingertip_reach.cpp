@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "emulator_fixtures.h"
-#include "haptex/exoskeleton/fingertip_reach.h"
+#include "haptex/exoskeleton/control/fingertip_reach.h"
 
 namespace haptex::exoskeleton {
 namespace {

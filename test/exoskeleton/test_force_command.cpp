@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "haptex/exoskeleton/force_command.h"
+#include "haptex/exoskeleton/control/force_command.h"
 
 namespace haptex::exoskeleton {
 namespace {

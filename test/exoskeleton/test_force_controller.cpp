@@ -8,7 +8,7 @@
 #include <random>
 
 #include "controlled_device.h"
-#include "haptex/exoskeleton/force_controller.h"
+#include "haptex/exoskeleton/control/force_controller.h"
 
 namespace haptex::exoskeleton {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "haptex/exoskeleton/frame_parser.h"
+#include "haptex/exoskeleton/protocol/frame_parser.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/exoskeleton/hand_path.h"
+#include "haptex/exoskeleton/emulator/hand_path.h"
 
 namespace haptex::exoskeleton {
 namespace {

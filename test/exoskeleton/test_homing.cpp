@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptex/exoskeleton/homing.h"
+#include "haptex/exoskeleton/control/homing.h"
 
 namespace haptex::exoskeleton {
 namespace {

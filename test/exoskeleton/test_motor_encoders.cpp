@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "haptex/exoskeleton/motor_encoders.h"
+#include "haptex/exoskeleton/control/motor_encoders.h"
 
 namespace haptex::exoskeleton {
 namespace {

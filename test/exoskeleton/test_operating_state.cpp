@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "haptex/exoskeleton/operating_state.h"
+#include "haptex/exoskeleton/control/operating_state.h"
 
 namespace haptex::exoskeleton {
 namespace {

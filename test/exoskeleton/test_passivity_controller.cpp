@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "haptex/exoskeleton/passivity_controller.h"
+#include "haptex/exoskeleton/control/passivity_controller.h"
 
 namespace haptex::exoskeleton {
 namespace {

@@ -2,15 +2,15 @@
 
 #include <cmath>
 
-#include "haptex/evaluation/pinch.h"
+#include "haptex/oracles/experiments/pinch.h"
 #include "shipped_urdf.h"
 
 namespace haptex::exoskeleton {
 namespace {
 
-using evaluation::findPinch;
-using evaluation::Meeting;
-using evaluation::Pinch;
+using oracles::findPinch;
+using oracles::Meeting;
+using oracles::Pinch;
 
 constexpr double kDegrees = M_PI / 180.0;
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <utility>
 
-#include "haptex/exoskeleton/safety_chain.h"
+#include "haptex/exoskeleton/control/safety_chain.h"
 
 namespace haptex::exoskeleton {
 namespace {

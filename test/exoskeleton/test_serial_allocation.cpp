@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "../malloc_counter.h"
-#include "haptex/exoskeleton/device_end.h"
-#include "haptex/exoskeleton/device_link.h"
-#include "haptex/exoskeleton/pseudo_terminal.h"
-#include "haptex/exoskeleton/serial_port.h"
+#include "haptex/exoskeleton/protocol/device_end.h"
+#include "haptex/exoskeleton/protocol/device_link.h"
+#include "haptex/exoskeleton/protocol/pseudo_terminal.h"
+#include "haptex/exoskeleton/protocol/serial_port.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "haptex/exoskeleton/serial_port.h"
+#include "haptex/exoskeleton/protocol/serial_port.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {
@@ -74,8 +74,8 @@ TEST(SerialFrame, AMillisecondHoldsAStateAt921600BaudAndNotAtHalfOfIt) {
   EXPECT_EQ(frameOf(DeviceState{}).size(), kLongestFrame);
   EXPECT_EQ(frameOf(DeviceCommand{}).size(), 20u);
   const double bits = 10.0 * kLongestFrame;  // a start and a stop bit each
-  EXPECT_LT(bits / SerialPort::kBaudRate, 0.6e-3);
-  EXPECT_GT(bits / (0.5 * SerialPort::kBaudRate), 1e-3);
+  EXPECT_LT(bits / kBaudRate, 0.6e-3);
+  EXPECT_GT(bits / (0.5 * kBaudRate), 1e-3);
 }
 
 TEST(SerialFrame, EveryMessageComesBackAsItWasSent) {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "haptex/exoskeleton/device_end.h"
-#include "haptex/exoskeleton/device_link.h"
-#include "haptex/exoskeleton/fault_injector.h"
+#include "haptex/exoskeleton/emulator/fault_injector.h"
+#include "haptex/exoskeleton/protocol/device_end.h"
+#include "haptex/exoskeleton/protocol/device_link.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {

@@ -16,8 +16,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/exoskeleton/pseudo_terminal.h"
-#include "haptex/exoskeleton/serial_port.h"
+#include "haptex/exoskeleton/protocol/pseudo_terminal.h"
+#include "haptex/exoskeleton/protocol/serial_port.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "haptex/exoskeleton/emulated_finger.h"
-#include "haptex/exoskeleton/fingertip_reach.h"
-#include "haptex/exoskeleton/hand_path.h"
+#include "haptex/exoskeleton/control/fingertip_reach.h"
+#include "haptex/exoskeleton/emulator/emulated_finger.h"
+#include "haptex/exoskeleton/emulator/hand_path.h"
 #include "shipped_urdf.h"
 
 namespace haptex::exoskeleton {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "haptex/exoskeleton/safety_chain.h"
-#include "haptex/exoskeleton/smooth_command.h"
+#include "haptex/exoskeleton/control/safety_chain.h"
+#include "haptex/exoskeleton/control/smooth_command.h"
 
 namespace haptex::exoskeleton {
 namespace {

@@ -9,22 +9,21 @@
 #include <cmath>
 #include <vector>
 
-#include "haptex/cloth/mesh.h"
-#include "haptex/nodes/cloth_messages.h"
-#include "haptex/nodes/cloth_proximity.h"
-#include "haptex/nodes/marker_shapes.h"
+#include "haptex/mesh/mesh.h"
+#include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/marker_shapes.h"
+#include "haptex/nodes/proximity/cloth_proximity.h"
 
 namespace haptex::nodes {
 
 constexpr int kTestCells = 8;      // along weft and warp
 constexpr double kTestSize = 0.2;  // m
 
-inline cloth::ClothMesh testMesh(int cells = kTestCells) {
-  return cloth::makeRectangle(kTestSize, kTestSize, cells, cells,
-                              cloth::Triangulation::kAlternating);
+inline mesh::ClothMesh testMesh(int cells = kTestCells) {
+  return mesh::makeRectangle(kTestSize, kTestSize, cells, cells, mesh::Triangulation::kAlternating);
 }
 
-inline haptex::ClothMesh testMeshMessage(const cloth::ClothMesh& mesh) {
+inline haptex::ClothMesh testMeshMessage(const mesh::ClothMesh& mesh) {
   haptex::ClothMesh message;
   message.header.frame_id = kFixedFrame;
   for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {

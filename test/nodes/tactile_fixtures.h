@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "haptex/nodes/tactile_messages.h"
+#include "haptex/nodes/tactile_renderer/tactile_messages.h"
 #include "haptex/tactile/contactor_array.h"
 
 namespace haptex::nodes {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <random>
 
-#include "haptex/nodes/cloth_markers.h"
-#include "haptex/nodes/cloth_messages.h"
-#include "haptex/nodes/colour_map.h"
-#include "small_scene.h"
+#include "../simulation/small_scene.h"
+#include "haptex/nodes/cloth_simulation/cloth_markers.h"
+#include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/colour_map.h"
 
 namespace haptex::nodes {
 namespace {
@@ -56,7 +56,7 @@ TEST(ColourMap, LargestPrincipalStrainIsTheLargestEigenvalue) {
 }
 
 TEST(ClothMarkers, ShowEveryTriangleAtItsPlaceWithFiniteColours) {
-  SimulatedCloth simulation = smallSimulation();
+  simulation::SimulatedCloth simulation = simulation::smallSimulation();
   ClothMarkers markers(simulation.cloth().mesh(), 0.01);
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(simulation.step());
   const Marker& cloth =
@@ -73,7 +73,7 @@ TEST(ClothMarkers, ShowEveryTriangleAtItsPlaceWithFiniteColours) {
 }
 
 TEST(ClothMarkers, ShowAttachedParticlesAndVanishWithThem) {
-  SimulatedCloth simulation = smallSimulation();
+  simulation::SimulatedCloth simulation = simulation::smallSimulation();
   ClothMarkers markers(simulation.cloth().mesh(), 0.01);
   simulation.attach({0});
   const auto& with = markers.update(simulation, ros::Time(1));
@@ -86,7 +86,7 @@ TEST(ClothMarkers, ShowAttachedParticlesAndVanishWithThem) {
 }
 
 TEST(ClothMarkers, AreAllStampedAndInTheFixedFrame) {
-  SimulatedCloth simulation = smallSimulation();
+  simulation::SimulatedCloth simulation = simulation::smallSimulation();
   ClothMarkers markers(simulation.cloth().mesh(), 0.01);
   int labels = 0;
   for (const Marker& marker : markers.update(simulation, ros::Time(7)).markers) {

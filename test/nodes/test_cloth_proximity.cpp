@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "haptex/nodes/cloth_proximity.h"
+#include "haptex/nodes/proximity/cloth_proximity.h"
 #include "proximity_fixtures.h"
 
 namespace haptex::nodes {
@@ -90,7 +90,7 @@ class ClothProximityTest : public testing::Test {
     EXPECT_EQ(response.distance, elements.empty() ? kInfinity : elements.front().distance);
   }
 
-  cloth::ClothMesh mesh_;
+  mesh::ClothMesh mesh_;
   std::vector<Eigen::Vector3d> positions_;
   ClothProximity proximity_{kStaleAfter, ballAndTable()};
 };

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <string>
 
-#include "haptex/nodes/contact_markers.h"
+#include "haptex/nodes/force_renderer/contact_markers.h"
 
 namespace haptex::nodes {
 namespace {
 
-using exoskeleton::Finger;
+using base::Finger;
 using visualization_msgs::Marker;
 
 const ros::Time kStamp(1234, 5678);
@@ -22,8 +22,8 @@ const Marker& find(const visualization_msgs::MarkerArray& markers, const std::st
 }
 
 /// The index touches with 2 N, of which half is rendered, on a patch of one triangle.
-ContactPicture touch() {
-  ContactPicture picture;
+simulation::ContactPicture touch() {
+  simulation::ContactPicture picture;
   contact::FingertipContact& index = picture.contacts[Finger::kIndex];
   index.touching = true;
   index.force = {0.0, 0.0, 2.0};
@@ -54,7 +54,7 @@ TEST(ContactMarkers, AForceOfAHundredthNewtonIsSeenAndFiveNewtonFitTheView) {
   EXPECT_LT(arrowLength(5.0), 0.1);
   EXPECT_GT(arrowLength(5.0), arrowLength(1.0));
   ContactMarkers markers;
-  ContactPicture picture = touch();
+  simulation::ContactPicture picture = touch();
   picture.contacts[Finger::kIndex].force = {0.02, 0.0, 0.0};  // half of it is rendered
   EXPECT_EQ(find(markers.update(picture, LoopRates(), kStamp), "contact_force").action,
             Marker::ADD);
@@ -76,7 +76,7 @@ TEST(ContactMarkers, ShowThePatchInTheColoursOfTheContactForceOnBothSides) {
 TEST(ContactMarkers, DeleteWhatThereIsNothingOf) {
   ContactMarkers markers;
   markers.update(touch(), LoopRates(), kStamp);
-  const auto shown = markers.update(ContactPicture(), LoopRates(), kStamp);
+  const auto shown = markers.update(simulation::ContactPicture(), LoopRates(), kStamp);
   for (const std::string name : {"contact_points", "contact_force", "patch"}) {
     EXPECT_EQ(find(shown, name).action, Marker::DELETE) << name;
   }

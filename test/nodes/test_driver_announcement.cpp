@@ -2,14 +2,14 @@
 
 #include <string>
 
-#include "haptex/nodes/commander_watch.h"
-#include "haptex/nodes/driver_announcement.h"
-#include "haptex/nodes/hand_markers.h"
+#include "haptex/exoskeleton/control/commander_watch.h"
+#include "haptex/exoskeleton/control/driver_announcement.h"
+#include "haptex/nodes/common/hand_markers.h"
 
 namespace haptex::nodes {
 namespace {
 
-using exoskeleton::Finger;
+using base::Finger;
 using exoskeleton::Mode;
 using exoskeleton::OperatingState;
 
@@ -22,24 +22,24 @@ OperatingState state(Mode mode, bool is_homed, bool is_busy = false) {
 }
 
 TEST(DriverAnnouncement, NamesTheFaultAndEveryServiceToCall) {
-  EXPECT_EQ(announcement(state(Mode::kFault, true), "no states from the device"),
+  EXPECT_EQ(exoskeleton::announcement(state(Mode::kFault, true), "no states from the device"),
             "FAULT: no states from the device; forces are off. Call exoskeleton/clear_fault, then "
             "exoskeleton/enable");
-  EXPECT_EQ(announcement(state(Mode::kFault, false), "an encoder of the thumb jumped"),
+  EXPECT_EQ(exoskeleton::announcement(state(Mode::kFault, false), "an encoder of the thumb jumped"),
             "FAULT: an encoder of the thumb jumped; forces are off. Call exoskeleton/clear_fault, "
             "then exoskeleton/home, then exoskeleton/enable");
 }
 
 TEST(DriverAnnouncement, SaysOfEveryStateWhetherThereAreForcesAndWhatToCall) {
-  EXPECT_EQ(announcement(state(Mode::kEnabled, true), ""),
+  EXPECT_EQ(exoskeleton::announcement(state(Mode::kEnabled, true), ""),
             "ENABLED: commanded forces are rendered");
-  EXPECT_EQ(announcement(state(Mode::kPaused, true), ""),
+  EXPECT_EQ(exoskeleton::announcement(state(Mode::kPaused, true), ""),
             "PAUSED: forces are off. Call exoskeleton/enable");
-  EXPECT_EQ(announcement(state(Mode::kDisabled, true), ""),
+  EXPECT_EQ(exoskeleton::announcement(state(Mode::kDisabled, true), ""),
             "DISABLED: forces are off. Call exoskeleton/enable");
-  EXPECT_EQ(announcement(state(Mode::kDisabled, false), ""),
+  EXPECT_EQ(exoskeleton::announcement(state(Mode::kDisabled, false), ""),
             "DISABLED, not homed: forces are off. Call exoskeleton/home, then exoskeleton/enable");
-  EXPECT_NE(announcement(state(Mode::kDisabled, false, true), "").find("homing"),
+  EXPECT_NE(exoskeleton::announcement(state(Mode::kDisabled, false, true), "").find("homing"),
             std::string::npos);
 }
 
@@ -56,7 +56,7 @@ TEST(StateMarker, IsATextAboveTheHandThatIsRedForAFault) {
 }
 
 TEST(CommanderWatch, KnowsTheDeathOfTheOneWhoCommandedLastOnce) {
-  CommanderWatch watch;
+  exoskeleton::CommanderWatch watch;
   EXPECT_FALSE(watch.hasDied(Finger::kIndex, "")) << "nobody has commanded";
   watch.commanded(Finger::kIndex, "/renderer");
   EXPECT_FALSE(watch.hasDied(Finger::kThumb, "/renderer"));

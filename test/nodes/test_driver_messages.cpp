@@ -4,17 +4,17 @@
 #include <string>
 
 #include "../exoskeleton/shipped_urdf.h"
-#include "haptex/nodes/driver_messages.h"
+#include "haptex/nodes/common/driver_messages.h"
 
 namespace haptex::nodes {
 namespace {
 
-using exoskeleton::Finger;
+using base::Finger;
+using base::kFingers;
+using base::PerFinger;
 using exoskeleton::FingerKinematics;
 using exoskeleton::FingerMeasurement;
 using exoskeleton::JointVector;
-using exoskeleton::kFingers;
-using exoskeleton::PerFinger;
 
 const ros::Time kStamp(1234, 5678);
 

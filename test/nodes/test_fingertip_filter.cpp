@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "haptex/nodes/fingertip_filter.h"
+#include "haptex/nodes/force_renderer/fingertip_filter.h"
 
 namespace haptex::nodes {
 namespace {
 
-using exoskeleton::Time;
+using base::Time;
 using namespace std::chrono_literals;
 
 const ros::Time kNow(1000, 0);

@@ -4,12 +4,12 @@
 #include <limits>
 #include <set>
 
-#include "haptex/nodes/hand_markers.h"
+#include "haptex/nodes/common/hand_markers.h"
 
 namespace haptex::nodes {
 namespace {
 
-using exoskeleton::Finger;
+using base::Finger;
 using visualization_msgs::InteractiveMarker;
 using visualization_msgs::InteractiveMarkerControl;
 
@@ -53,7 +53,7 @@ TEST(TargetMarkers, ShowTheTargetsInTheFrameOfTheHand) {
   const exoskeleton::HandPlace place = somePlace();
   const visualization_msgs::MarkerArray markers = targetMarkers(place);
   ASSERT_EQ(markers.markers.size(), 2u);
-  for (const Finger finger : exoskeleton::kFingers) {
+  for (const Finger finger : base::kFingers) {
     const auto& marker = markers.markers[static_cast<std::size_t>(finger)];
     EXPECT_EQ(marker.ns, exoskeleton::name(finger));
     EXPECT_EQ(marker.header.frame_id, "hand_base");
@@ -64,7 +64,7 @@ TEST(TargetMarkers, ShowTheTargetsInTheFrameOfTheHand) {
 }
 
 TEST(ForceMarkers, PointFromTheSkinAlongTheForce) {
-  exoskeleton::PerFinger<exoskeleton::FingerMeasurement> measured;
+  base::PerFinger<exoskeleton::FingerMeasurement> measured;
   measured[Finger::kIndex].pose.translation() = Eigen::Vector3d(0.1, 0.0, -0.05);
   measured[Finger::kIndex].force = Eigen::Vector3d(0.0, 0.03, -0.04);  // 0.05 N
   const visualization_msgs::MarkerArray markers = forceMarkers(measured, ros::Time(3.0));
@@ -84,7 +84,7 @@ TEST(ForceMarkers, PointFromTheSkinAlongTheForce) {
 }
 
 TEST(ForceMarkers, HaveNoArrowForNoForce) {
-  exoskeleton::PerFinger<exoskeleton::FingerMeasurement> measured;
+  base::PerFinger<exoskeleton::FingerMeasurement> measured;
   measured[Finger::kIndex].force = Eigen::Vector3d(0.5 * kLeastForce, 0.0, 0.0);
   measured[Finger::kThumb].force.setConstant(std::numeric_limits<double>::quiet_NaN());
   for (const auto& marker : forceMarkers(measured, ros::Time(3.0)).markers) {
@@ -94,7 +94,7 @@ TEST(ForceMarkers, HaveNoArrowForNoForce) {
 
 TEST(TargetMarkers, FingertipsCanBeDraggedButNotTurned) {
   const exoskeleton::HandPlace place = somePlace();
-  for (const Finger finger : exoskeleton::kFingers) {
+  for (const Finger finger : base::kFingers) {
     const InteractiveMarker marker = fingertipMarker(finger, place);
     expectSound(marker);
     EXPECT_EQ(marker.name, exoskeleton::name(finger));

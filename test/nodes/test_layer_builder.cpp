@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "haptex/cloth/scene.h"
-#include "haptex/nodes/layer_builder.h"
+#include "haptex/nodes/force_renderer/layer_builder.h"
+#include "haptex/scene/scene.h"
 
 namespace haptex::nodes {
 namespace {
@@ -11,8 +11,8 @@ namespace {
 const std::string kScene = std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/scenes/wool_sample.yaml";
 
 haptex::ClothMesh message(const std::string& fabric, int cells = 4) {
-  const cloth::ClothMesh mesh =
-      cloth::makeRectangle(0.2, 0.2, cells, cells, cloth::Triangulation::kOneWay);
+  const mesh::ClothMesh mesh =
+      mesh::makeRectangle(0.2, 0.2, cells, cells, mesh::Triangulation::kOneWay);
   haptex::ClothMesh message;
   message.fabric = fabric;
   for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {

@@ -4,14 +4,14 @@
 #include <limits>
 #include <string>
 
-#include "haptex/nodes/cloth_messages.h"
-#include "haptex/nodes/point_load_messages.h"
-#include "small_scene.h"
+#include "../simulation/small_scene.h"
+#include "haptex/nodes/cloth_simulation/point_load_messages.h"
+#include "haptex/nodes/common/cloth_messages.h"
 
 namespace haptex::nodes {
 namespace {
 
-constexpr std::size_t kTriangles = 32;  // of smallSimulation()
+constexpr std::size_t kTriangles = 32;  // of simulation::smallSimulation()
 
 haptex::ContactForces twoForces() {
   haptex::ContactForces message;
@@ -87,8 +87,8 @@ TEST(PointLoadMessages, AreRefusedForWhatIsWrongWithThem) {
 }
 
 TEST(PointLoadMessages, WhatIsAcceptedTheClothAccepts) {
-  SimulatedCloth simulation = smallSimulation();
-  SimulatedCloth untouched = smallSimulation();
+  simulation::SimulatedCloth simulation = simulation::smallSimulation();
+  simulation::SimulatedCloth untouched = simulation::smallSimulation();
   simulation.setPointLoads(pointLoads(twoForces(), simulation.cloth().mesh().triangles.size()));
   ASSERT_TRUE(simulation.step());
   ASSERT_TRUE(untouched.step());
@@ -98,8 +98,8 @@ TEST(PointLoadMessages, WhatIsAcceptedTheClothAccepts) {
 }
 
 TEST(StateMessage, NamesTheAttachedParticles) {
-  SimulatedCloth simulation = smallSimulation();
-  simulation.release({kSmallTop + 1});
+  simulation::SimulatedCloth simulation = simulation::smallSimulation();
+  simulation.release({simulation::kSmallTop + 1});
   simulation.attach({2});
   std::vector<Eigen::Vector3d> forces;
   haptex::ClothState message;

@@ -4,10 +4,10 @@
 #include <set>
 #include <string>
 
-#include "haptex/nodes/cloth_messages.h"
-#include "haptex/nodes/colour_map.h"
-#include "haptex/nodes/marker_shapes.h"
-#include "haptex/nodes/proximity_markers.h"
+#include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/colour_map.h"
+#include "haptex/nodes/common/marker_shapes.h"
+#include "haptex/nodes/proximity/proximity_markers.h"
 
 namespace haptex::nodes {
 namespace {
@@ -36,15 +36,15 @@ ProximityScene someScene() {
   return scene;
 }
 
-std::vector<cloth::Obstacle> oneOfEachKind() {
+std::vector<mesh::Obstacle> oneOfEachKind() {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translate(Eigen::Vector3d(0.1, 0.2, 0.3));
   pose.rotate(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()));
-  return {{"ball", cloth::ObstacleSphere{0.05}, pose},
-          {"table", cloth::ObstacleBox{{0.1, 0.2, 0.3}}, pose},
-          {"post", cloth::ObstacleCapsule{0.01, 0.1}, pose},
-          {"sheet", cloth::ObstacleMesh{{kTriangle[0], kTriangle[1], kTriangle[2]}, {{0, 1, 2}}},
-           pose}};
+  return {
+      {"ball", mesh::ObstacleSphere{0.05}, pose},
+      {"table", mesh::ObstacleBox{{0.1, 0.2, 0.3}}, pose},
+      {"post", mesh::ObstacleCapsule{0.01, 0.1}, pose},
+      {"sheet", mesh::ObstacleMesh{{kTriangle[0], kTriangle[1], kTriangle[2]}, {{0, 1, 2}}}, pose}};
 }
 
 const Marker& find(const visualization_msgs::MarkerArray& markers, const std::string& name,

@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-#include "haptex/nodes/cloth_proximity.h"
+#include "haptex/nodes/proximity/cloth_proximity.h"
 #include "proximity_fixtures.h"
 
 namespace haptex::nodes {
@@ -19,7 +19,7 @@ constexpr std::uint32_t kSteps = 300;
 constexpr int kAskers = 3;
 
 /// Every particle at the same x, which tells the step.
-haptex::ClothStatePtr stateOf(const cloth::ClothMesh& mesh, std::uint32_t step) {
+haptex::ClothStatePtr stateOf(const mesh::ClothMesh& mesh, std::uint32_t step) {
   return testState(step, translated(mesh.initial_positions, {step * kPerStep, 0.0, 0.0}));
 }
 
@@ -61,7 +61,7 @@ bool keepAsking(ClothProximity& proximity, std::size_t triangles, const std::ato
 }
 
 TEST(ProximityThreads, EveryAnswerIsOfOneStateWhileStatesArrive) {
-  const cloth::ClothMesh mesh = testMesh();
+  const mesh::ClothMesh mesh = testMesh();
   const haptex::ClothMesh message = testMeshMessage(mesh);
   ClothProximity proximity(1e6, ball());
   proximity.setMesh(message);
@@ -97,7 +97,7 @@ TEST(ProximityThreads, EveryAnswerIsOfOneStateWhileStatesArrive) {
 }
 
 TEST(ProximityThreads, SurvivesMeshesThatChangeDuringQueries) {
-  const std::array<cloth::ClothMesh, 2> meshes = {testMesh(4), testMesh(6)};
+  const std::array<mesh::ClothMesh, 2> meshes = {testMesh(4), testMesh(6)};
   ClothProximity proximity(1e6, {});
   std::atomic<bool> stop{false};
   std::atomic<int> wrong{0};
@@ -116,7 +116,7 @@ TEST(ProximityThreads, SurvivesMeshesThatChangeDuringQueries) {
     });
   }
   for (std::uint32_t step = 0; step < 100; ++step) {
-    const cloth::ClothMesh& mesh = meshes[step % 2];
+    const mesh::ClothMesh& mesh = meshes[step % 2];
     proximity.setMesh(testMeshMessage(mesh));
     proximity.setState(stateOf(mesh, step), Clock::now());
     const int before = answered;

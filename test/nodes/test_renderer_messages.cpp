@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "haptex/nodes/renderer_messages.h"
+#include "haptex/nodes/force_renderer/renderer_messages.h"
 
 namespace haptex::nodes {
 namespace {
@@ -63,8 +63,8 @@ tactile::ArrayPlacement someArray() {
   return array;
 }
 
-FrameMotion movingHand() {
-  FrameMotion hand;
+simulation::FrameMotion movingHand() {
+  simulation::FrameMotion hand;
   hand.pose = Eigen::Translation3d(0.5, -0.4, 0.3) *
               Eigen::AngleAxisd(0.8, Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0);
   hand.velocity = {0.1, 0.2, -0.1};
@@ -80,7 +80,7 @@ Eigen::Matrix3d matrix(const Nine& nine) {
 }
 
 TEST(RendererMessages, MeshOfAMessage) {
-  const cloth::ClothMesh mesh = clothMesh(someMesh());
+  const mesh::ClothMesh mesh = clothMesh(someMesh());
   EXPECT_EQ(mesh.triangles.size(), 2u);
   EXPECT_EQ(mesh.rest_coordinates[2], Eigen::Vector2d(0.1, 0.1));
   EXPECT_EQ(mesh.initial_positions.size(), 4u);
@@ -95,7 +95,7 @@ TEST(RendererMessages, RefusesAMeshWithDefects) {
 }
 
 TEST(RendererMessages, StateOfAMessage) {
-  LargeScaleState state;
+  simulation::LargeScaleState state;
   readState(someState(), state);
   EXPECT_EQ(state.simulated_time, 2.5);
   ASSERT_EQ(state.positions.size(), 4u);
@@ -117,7 +117,7 @@ TEST(RendererMessages, RefusesABadStateAndSaysWhy) {
       {"attached has 4", [](Message& m) { m.attached.push_back(4); }},
       {"simulated_time", [](Message& m) { m.simulated_time = kNaN; }},
   };
-  LargeScaleState state;
+  simulation::LargeScaleState state;
   for (const auto& [why, spoil] : flaws) {
     Message message = someState();
     spoil(message);
@@ -134,7 +134,7 @@ TEST(RendererMessages, RefusesABadStateAndSaysWhy) {
 // moves differently, it gives the force of the contact there in the world frame.
 TEST(RendererMessages, CommandIsTheSameForceInTheFrameOfAMovingHand) {
   const contact::FingertipContact contact = someContact();
-  const FrameMotion hand = movingHand();
+  const simulation::FrameMotion hand = movingHand();
   haptex::ServoForce message;
   fillServoForce(contact, 1.0, hand, kStamp, message);
   EXPECT_EQ(message.header.frame_id, "hand_base");

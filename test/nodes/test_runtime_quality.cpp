@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/cloth/quality_file.h"
-#include "haptex/nodes/runtime_quality.h"
+#include "haptex/nodes/cloth_simulation/runtime_quality.h"
+#include "haptex/scene/quality_file.h"
 
 namespace haptex::nodes {
 namespace {
@@ -36,9 +36,9 @@ class RuntimeQualityOfAScene : public testing::Test {
 };
 
 TEST_F(RuntimeQualityOfAScene, APresetRunsOnItsCellsAndStays) {
-  const cloth::Quality fast = cloth::loadQualities(kFast).front();
+  const scene::Quality fast = scene::loadQualities(kFast).front();
   const RuntimeQuality quality(scene("top"), {kFast, 0.0});
-  SimulatedCloth simulation = quality.simulate();
+  simulation::SimulatedCloth simulation = quality.simulate();
   const auto cells = static_cast<std::size_t>(std::ceil(0.05 / fast.cell_size - 1e-6));
   EXPECT_EQ(simulation.cloth().mesh().triangles.size(), 2 * cells * cells);
   for (int i = 0; i < 200; ++i) ASSERT_TRUE(simulation.step());
@@ -54,7 +54,7 @@ TEST_F(RuntimeQualityOfAScene, APresetRunsOnItsCellsAndStays) {
 
 TEST_F(RuntimeQualityOfAScene, AMeshWithParticlesByIndexStaysAsItIs) {
   const RuntimeQuality quality(scene("{particles: [12, 15]}"), {"", 5e-3});
-  const SimulatedCloth simulation = quality.simulate();
+  const simulation::SimulatedCloth simulation = quality.simulate();
   EXPECT_EQ(simulation.cloth().mesh().triangles.size(), 2u * 3u * 3u);
   const haptex::ClothQuality message = quality.message(simulation, ros::Time(1.0));
   EXPECT_FALSE(message.quality.cells_as_measured);
@@ -67,7 +67,7 @@ TEST_F(RuntimeQualityOfAScene, AMeshWithParticlesByIndexStaysAsItIs) {
 
 TEST_F(RuntimeQualityOfAScene, ABudgetThatNothingKeepsRunsByTheCheapest) {
   const RuntimeQuality quality(scene("top"), {"", 1e-9});
-  SimulatedCloth simulation = quality.simulate();
+  simulation::SimulatedCloth simulation = quality.simulate();
   EXPECT_EQ(simulation.plan(), 0u);
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(simulation.step());
   EXPECT_EQ(simulation.plan(), 0u);
@@ -82,7 +82,7 @@ TEST_F(RuntimeQualityOfAScene, RefusesFilesWithSeveralQualitiesAndBudgetsThatAre
   const std::string path = scene("top");
   EXPECT_THROW(RuntimeQuality(path, {kConfig + "presets/front.yaml", 0.0}), std::invalid_argument);
   const RuntimeQuality quality(path, {kFast, 0.0});
-  const SimulatedCloth simulation = quality.simulate();
+  const simulation::SimulatedCloth simulation = quality.simulate();
   haptex::QueryBudget::Response response;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double budget : {0.0, -1.0, kInfinity, std::nan("")}) {
@@ -92,7 +92,7 @@ TEST_F(RuntimeQualityOfAScene, RefusesFilesWithSeveralQualitiesAndBudgetsThatAre
 
 TEST_F(RuntimeQualityOfAScene, ABudgetForTheScenesOwnSettingsKeepsItsMeshAndStartsWithThem) {
   const RuntimeQuality quality(scene("top"), {"", 5e-3, true});
-  SimulatedCloth simulation = quality.simulate();
+  simulation::SimulatedCloth simulation = quality.simulate();
   EXPECT_EQ(simulation.cloth().mesh().triangles.size(), 2u * 3u * 3u);
   haptex::ClothQuality message = quality.message(simulation, ros::Time(1.0));
   EXPECT_EQ(message.quality.name, "scene");
@@ -102,7 +102,7 @@ TEST_F(RuntimeQualityOfAScene, ABudgetForTheScenesOwnSettingsKeepsItsMeshAndStar
   EXPECT_TRUE(message.quality.motion.empty());
   EXPECT_FALSE(quality.reduced(message));
   EXPECT_EQ(quality.wanted(), "scene");
-  SimulatedCloth alone(cloth::loadScene(path_.string()), simulation.cloth().fabric());
+  simulation::SimulatedCloth alone(scene::loadScene(path_.string()), simulation.cloth().fabric());
   ASSERT_TRUE(simulation.step());
   ASSERT_TRUE(alone.step());
   EXPECT_EQ(simulation.state().positions, alone.state().positions);
@@ -115,9 +115,9 @@ TEST_F(RuntimeQualityOfAScene, ABudgetForTheScenesOwnSettingsKeepsItsMeshAndStar
 }
 
 TEST_F(RuntimeQualityOfAScene, APresetMayBeReducedForABudgetOfAtMostFourFifthsOfACycle) {
-  const cloth::Quality fast = cloth::loadQualities(kFast).front();
+  const scene::Quality fast = scene::loadQualities(kFast).front();
   const RuntimeQuality quality(scene("top"), {kFast, 1.0});
-  const SimulatedCloth simulation = quality.simulate();
+  const simulation::SimulatedCloth simulation = quality.simulate();
   const haptex::ClothQuality message = quality.message(simulation, ros::Time(1.0));
   EXPECT_EQ(message.quality.name, "fast");
   EXPECT_TRUE(message.quality.cells_as_measured);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "haptex/nodes/scheduling.h"
+#include "haptex/realtime/scheduling.h"
 
 namespace haptex::nodes {
 namespace {
@@ -22,11 +22,11 @@ void inAThread(Work work) {
 
 TEST(ForceProcessor, ThreadsOfTheForcePathShareOne) {
   inAThread([] {
-    keepOnForceProcessor(pthread_self());
+    realtime::keepOnForceProcessor(pthread_self());
     const cpu_set_t processors = processorsOf(pthread_self());
     EXPECT_EQ(CPU_COUNT(&processors), 1);
     inAThread([&] {
-      keepOnForceProcessor(pthread_self());
+      realtime::keepOnForceProcessor(pthread_self());
       const cpu_set_t others = processorsOf(pthread_self());
       EXPECT_TRUE(CPU_EQUAL(&processors, &others));
     });
@@ -36,11 +36,11 @@ TEST(ForceProcessor, ThreadsOfTheForcePathShareOne) {
 TEST(ForceProcessor, WhatComputesForLongHasTheOthers) {
   const cpu_set_t all = processorsOf(pthread_self());
   inAThread([&] {
-    keepOffForceProcessor(pthread_self());
+    realtime::keepOffForceProcessor(pthread_self());
     const cpu_set_t processors = processorsOf(pthread_self());
     EXPECT_EQ(CPU_COUNT(&processors), std::max(1, CPU_COUNT(&all) - 1));
     if (CPU_COUNT(&all) == 1) return;
-    keepOnForceProcessor(pthread_self());
+    realtime::keepOnForceProcessor(pthread_self());
     const cpu_set_t force = processorsOf(pthread_self());
     cpu_set_t both;
     CPU_AND(&both, &processors, &force);
@@ -50,16 +50,17 @@ TEST(ForceProcessor, WhatComputesForLongHasTheOthers) {
 
 TEST(OrdinaryScope, GivesThePriorityBackAtItsEnd) {
   inAThread([] {
-    if (!askForFifo(pthread_self(), kMessagePriority).empty()) GTEST_SKIP() << "no right to FIFO";
+    if (!realtime::askForFifo(pthread_self(), realtime::kMessagePriority).empty())
+      GTEST_SKIP() << "no right to FIFO";
     {
-      const OrdinaryScope ordinary;
+      const realtime::OrdinaryScope ordinary;
       EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
     }
     sched_param parameters{};
     int policy = 0;
     ASSERT_EQ(pthread_getschedparam(pthread_self(), &policy, &parameters), 0);
     EXPECT_EQ(policy, SCHED_FIFO);
-    EXPECT_EQ(parameters.sched_priority, kMessagePriority);
+    EXPECT_EQ(parameters.sched_priority, realtime::kMessagePriority);
   });
 }
 

@@ -2,13 +2,13 @@
 
 #include <limits>
 
-#include "haptex/nodes/servo_force_filter.h"
+#include "haptex/nodes/exoskeleton_driver/servo_force_filter.h"
 
 namespace haptex::nodes {
 namespace {
 
+using base::Time;
 using exoskeleton::ForceCommand;
-using exoskeleton::Time;
 using namespace std::chrono_literals;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

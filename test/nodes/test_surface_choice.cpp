@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "haptex/nodes/surface_choice.h"
+#include "haptex/nodes/tactile_renderer/surface_choice.h"
 
 namespace haptex::nodes {
 namespace {

@@ -2,13 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "../malloc_counter.h"
-#include "haptex/nodes/tactile_loop.h"
+#include "haptex/nodes/tactile_renderer/tactile_loop.h"
 #include "tactile_fixtures.h"
 
 namespace haptex::nodes {
 namespace {
 
-using exoskeleton::Finger;
+using base::Finger;
 
 TEST(TactileAllocation, StepsDoNotAllocateWhileAFingertipComesSlidesAndGoes) {
 #ifdef __SANITIZE_ADDRESS__
@@ -20,9 +20,9 @@ TEST(TactileAllocation, StepsDoNotAllocateWhileAFingertipComesSlidesAndGoes) {
   const long before = allocations;
   double largest = 0.0;
   for (int i = 0; i < 100; ++i) {
-    const exoskeleton::Time time = i * std::chrono::milliseconds(25);
+    const base::Time time = i * std::chrono::milliseconds(25);
     const bool slides = i > 20 && i < 80;
-    for (const Finger finger : exoskeleton::kFingers) {
+    for (const Finger finger : base::kFingers) {
       for (int j = 0; j < 25; ++j) loop.take(finger, slides ? sliding : none, time);
     }
     loop.step(&surface, time, ros::Time(1, 0));

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "haptex/nodes/tactile_input.h"
+#include "haptex/nodes/tactile_renderer/tactile_input.h"
 #include "tactile_fixtures.h"
 
 namespace haptex::nodes {

@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
 
-#include "haptex/nodes/tactile_loop.h"
+#include "haptex/nodes/tactile_renderer/tactile_loop.h"
 #include "tactile_fixtures.h"
 
 namespace haptex::nodes {
 namespace {
 
 using namespace std::chrono_literals;
-using exoskeleton::Finger;
+using base::Finger;
 
 const ros::Time kStamp(1234, 5678);
 

@@ -4,17 +4,17 @@
 #include <cmath>
 #include <string>
 
-#include "haptex/nodes/colour_map.h"
-#include "haptex/nodes/marker_shapes.h"
-#include "haptex/nodes/tactile_markers.h"
-#include "haptex/nodes/tactile_messages.h"
+#include "haptex/nodes/common/colour_map.h"
+#include "haptex/nodes/common/marker_shapes.h"
+#include "haptex/nodes/tactile_renderer/tactile_markers.h"
+#include "haptex/nodes/tactile_renderer/tactile_messages.h"
 #include "haptex/tactile/contactor_array.h"
 
 namespace haptex::nodes {
 namespace {
 
-using exoskeleton::Finger;
-using exoskeleton::PerFinger;
+using base::Finger;
+using base::PerFinger;
 using visualization_msgs::Marker;
 
 const ros::Time kStamp(1234, 5678);

@@ -10,7 +10,7 @@
 namespace haptex::nodes {
 namespace {
 
-using exoskeleton::Finger;
+using base::Finger;
 using tactile::kContactors;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -11,8 +11,8 @@
 #include <fstream>
 #include <limits>
 
-#include "haptex/nodes/sound_request.h"
-#include "haptex/nodes/tactile_recording.h"
+#include "haptex/nodes/tactile_renderer/sound_request.h"
+#include "haptex/nodes/tactile_renderer/tactile_recording.h"
 
 namespace haptex::nodes {
 namespace {
@@ -44,7 +44,8 @@ std::vector<double> readSound(const std::string& path) {
   EXPECT_EQ(sf_read_short(file, samples.data(), info.frames), info.frames);
   sf_close(file);
   std::vector<double> displacements;
-  for (const short sample : samples) displacements.push_back(kFullScale * sample / 32767.0);
+  for (const short sample : samples)
+    displacements.push_back(tactile::kFullScale * sample / 32767.0);
   return displacements;
 }
 
@@ -59,12 +60,13 @@ double amplitudeAt(double frequency, const std::vector<double>& samples, std::si
 }
 
 /// Rounding to whole numbers is half of this at most, and so is any line of its spectrum.
-constexpr double kBit = kFullScale / 32767.0;  // m
+constexpr double kBit = tactile::kFullScale / 32767.0;  // m
 
 TEST(WriteSound, HoldsBothVibrationsInMetresOfFullScale) {
   const Directory directory;
   const std::string path = directory.file("a.wav");
-  const WrittenSound written = writeSound(path, ContactorSteps(41, {2e-5, 5e-6}));
+  const tactile::WrittenSound written =
+      tactile::writeSound(path, tactile::ContactorSteps(41, {2e-5, 5e-6}));
   const std::vector<double> samples = readSound(path);
   // 41 steps, and one to come to rest.
   EXPECT_EQ(samples.size(), 46305u);
@@ -83,30 +85,31 @@ TEST(WriteSound, HoldsBothVibrationsInMetresOfFullScale) {
 
 TEST(WriteSound, CountsWhatItClips) {
   const Directory directory;
-  const WrittenSound written =
-      writeSound(directory.file("a.wav"), ContactorSteps(20, {2.0 * kFullScale, 0.0}));
+  const tactile::WrittenSound written = tactile::writeSound(
+      directory.file("a.wav"), tactile::ContactorSteps(20, {2.0 * tactile::kFullScale, 0.0}));
   // A sine is beyond half of its amplitude for two thirds of the time.
   const double settled = 19.0 / 21.0;
   EXPECT_GT(written.clipped, 0.66 * settled * written.samples);
   EXPECT_LT(written.clipped, 0.67 * written.samples);
-  EXPECT_NEAR(written.largest, 2.0 * kFullScale, 1e-3 * kFullScale);
+  EXPECT_NEAR(written.largest, 2.0 * tactile::kFullScale, 1e-3 * tactile::kFullScale);
   double largest = 0.0;
   for (const double sample : readSound(directory.file("a.wav"))) {
     largest = std::max(largest, std::abs(sample));
   }
-  EXPECT_DOUBLE_EQ(largest, kFullScale);
+  EXPECT_DOUBLE_EQ(largest, tactile::kFullScale);
 }
 
 TEST(WriteSound, RefusesBadStepsAndPaths) {
   const Directory directory;
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), -1e-6}) {
-    EXPECT_THROW(writeSound(directory.file("a.wav"), {{1e-6, 1e-6}, {0.0, bad}}),
+    EXPECT_THROW(tactile::writeSound(directory.file("a.wav"), {{1e-6, 1e-6}, {0.0, bad}}),
                  std::invalid_argument);
   }
   EXPECT_FALSE(fs::exists(directory.file("a.wav")));
-  EXPECT_THROW(writeSound(directory.file("a.wav"), ContactorSteps(144001)), std::invalid_argument);
+  EXPECT_THROW(tactile::writeSound(directory.file("a.wav"), tactile::ContactorSteps(144001)),
+               std::invalid_argument);
   try {
-    writeSound(directory.file("no/a.wav"), {{1e-6, 1e-6}});
+    tactile::writeSound(directory.file("no/a.wav"), {{1e-6, 1e-6}});
     FAIL() << "written";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("no/a.wav: cannot be written"), std::string::npos);
@@ -116,10 +119,10 @@ TEST(WriteSound, RefusesBadStepsAndPaths) {
 TEST(RubbedSteps, FollowTheStrokeAndRestAtItsEnds) {
   tactile::Surface surface;
   surface.small_scale.waves = {{2.0 * M_PI / 5e-4}, {0.0}, {0.5e-10}};  // 10 um, every 0.5 mm
-  Rubbing rubbing;
+  tactile::Rubbing rubbing;
   rubbing.speed = 0.02;  // 40 Hz
   rubbing.seconds = 2.0;
-  const ContactorSteps steps = rubbedSteps(surface, rubbing);
+  const tactile::ContactorSteps steps = tactile::rubbedSteps(surface, rubbing);
   ASSERT_EQ(steps.size(), 80u);
   const double force = 0.5 / tactile::kContactors;
   const double exact = 1e-5 * force / (force + tactile::kHalfForce);
@@ -130,21 +133,22 @@ TEST(RubbedSteps, FollowTheStrokeAndRestAtItsEnds) {
   }
   for (const int end : {0, 39, 40, 79}) EXPECT_LT(steps[end][tactile::k40], 0.2 * exact);
   rubbing.angle = 0.5 * M_PI;  // along the grooves
-  for (const auto& step : rubbedSteps(surface, rubbing)) EXPECT_LT(step[tactile::k40], 1e-15);
+  for (const auto& step : tactile::rubbedSteps(surface, rubbing))
+    EXPECT_LT(step[tactile::k40], 1e-15);
 }
 
 TEST(RubbedSteps, RefuseWhatNoFingerDoes) {
-  const auto refuse = [](double Rubbing::*member, double value) {
-    Rubbing rubbing;
+  const auto refuse = [](double tactile::Rubbing::*member, double value) {
+    tactile::Rubbing rubbing;
     rubbing.*member = value;
-    EXPECT_THROW(rubbedSteps(tactile::Surface(), rubbing), std::invalid_argument) << value;
+    EXPECT_THROW(tactile::rubbedSteps(tactile::Surface(), rubbing), std::invalid_argument) << value;
   };
   for (const double bad : {0.0, -1.0, 1e6, std::nan("")}) {
-    refuse(&Rubbing::speed, bad);
-    refuse(&Rubbing::force, bad);
-    refuse(&Rubbing::seconds, bad);
+    refuse(&tactile::Rubbing::speed, bad);
+    refuse(&tactile::Rubbing::force, bad);
+    refuse(&tactile::Rubbing::seconds, bad);
   }
-  refuse(&Rubbing::angle, std::numeric_limits<double>::infinity());
+  refuse(&tactile::Rubbing::angle, std::numeric_limits<double>::infinity());
 }
 
 /// Writes a bag of messages whose amplitudes are 1 um plus their number, at the given times.
@@ -166,20 +170,20 @@ TEST(RecordedSteps, AreTheMessagesInMetres) {
   const Directory directory;
   const std::string bag = directory.file("a.bag");
   record(bag, "/haptex/index/tactile", {0.0, 0.026, 0.049, 0.075});
-  const ContactorSteps steps = recordedSteps(bag, "index", 5);
+  const tactile::ContactorSteps steps = recordedSteps(bag, "index", 5);
   ASSERT_EQ(steps.size(), 4u);
   for (int i = 0; i < 4; ++i) {
     EXPECT_DOUBLE_EQ(steps[i][tactile::k40], 1e-6 * (1 + i));
     EXPECT_DOUBLE_EQ(steps[i][tactile::k320], 0.5e-6);
   }
-  EXPECT_EQ(recordedSteps(bag, "index", 6), ContactorSteps(4));
+  EXPECT_EQ(recordedSteps(bag, "index", 6), tactile::ContactorSteps(4));
 }
 
 TEST(RecordedSteps, AreSilentWhereMessagesWereMissing) {
   const Directory directory;
   const std::string bag = directory.file("a.bag");
   record(bag, "index/tactile", {0.0, 0.025, 0.2, 0.225});
-  const ContactorSteps steps = recordedSteps(bag, "index", 5);
+  const tactile::ContactorSteps steps = recordedSteps(bag, "index", 5);
   ASSERT_EQ(steps.size(), 10u);
   for (int i = 0; i < 10; ++i) {
     // A message holds for the step that follows it, as long as it is not older than that.

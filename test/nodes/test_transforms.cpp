@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/nodes/transforms.h"
+#include "haptex/nodes/common/transforms.h"
 
 namespace haptex::nodes {
 namespace {

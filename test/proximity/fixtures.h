@@ -5,18 +5,18 @@
 #include <random>
 #include <vector>
 
-#include "haptex/cloth/mesh.h"
-#include "haptex/evaluation/deformed_sheets.h"
+#include "haptex/mesh/mesh.h"
+#include "haptex/oracles/experiments/deformed_sheets.h"
 #include "haptex/proximity/cursor.h"
 
 namespace haptex::proximity {
 
-inline cloth::ClothMesh sheet(int cells, double size = 0.2) {
-  return cloth::makeRectangle(size, size, cells, cells, cloth::Triangulation::kAlternating);
+inline mesh::ClothMesh sheet(int cells, double size = 0.2) {
+  return mesh::makeRectangle(size, size, cells, cells, mesh::Triangulation::kAlternating);
 }
 
-inline std::vector<Eigen::Vector3d> restPositions(const cloth::ClothMesh& mesh) {
-  return evaluation::deformedSheet(mesh, "flat");
+inline std::vector<Eigen::Vector3d> restPositions(const mesh::ClothMesh& mesh) {
+  return oracles::deformedSheet(mesh, "flat");
 }
 
 /// Cursors of every shape near the particles of a state, as large as a few of its triangles.

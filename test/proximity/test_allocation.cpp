@@ -13,8 +13,8 @@ TEST(ProximityAllocation, NeitherRefitNorQueryAllocatesAfterTheFirst) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer brings its own malloc";
 #endif
-  const cloth::ClothMesh mesh = sheet(20);
-  const auto states = evaluation::deformedSheets(mesh);
+  const mesh::ClothMesh mesh = sheet(20);
+  const auto states = oracles::deformedSheets(mesh);
   KdopHierarchy hierarchy(mesh.triangles, restPositions(mesh));
   const Sphere sphere{{0.1, 0.1, 0.0}, 0.02};
   const Cursor cursors[] = {Cursor::point(sphere.centre), Cursor::spheres({sphere, sphere, sphere}),
@@ -38,7 +38,7 @@ TEST(ProximityAllocation, ClosestPointOfAnObstacleDoesNotAllocate) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer brings its own malloc";
 #endif
-  const cloth::ClothMesh mesh = sheet(20);
+  const mesh::ClothMesh mesh = sheet(20);
   const std::vector<RigidObstacle> obstacles = {
       RigidObstacle::sphere(1.0), RigidObstacle::box({1.0, 1.0, 1.0}),
       RigidObstacle::capsule(1.0, 1.0), RigidObstacle::mesh(restPositions(mesh), mesh.triangles)};

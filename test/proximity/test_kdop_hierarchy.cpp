@@ -22,7 +22,7 @@ std::vector<InstructionSet> instructionSets() {
   return {InstructionSet::kBaseline, bestInstructionSet()};
 }
 
-KdopHierarchy hierarchyOver(const cloth::ClothMesh& mesh, const HierarchySettings& settings = {}) {
+KdopHierarchy hierarchyOver(const mesh::ClothMesh& mesh, const HierarchySettings& settings = {}) {
   return KdopHierarchy(mesh.triangles, restPositions(mesh), settings);
 }
 
@@ -50,12 +50,12 @@ std::string message(const std::function<void()>& refused) {
 }
 
 TEST(KdopHierarchy, AnswersAreThoseOfBruteForceInEveryState) {
-  const cloth::ClothMesh mesh = sheet(14);
+  const mesh::ClothMesh mesh = sheet(14);
   for (const InstructionSet set : instructionSets()) {
     for (const KdopKind kind : kKinds) {
       HierarchySettings settings{kind, 1 + static_cast<int>(kind) * 3, set};
       KdopHierarchy hierarchy = hierarchyOver(mesh, settings);
-      for (const auto& state : evaluation::deformedSheets(mesh)) {
+      for (const auto& state : oracles::deformedSheets(mesh)) {
         hierarchy.refit(state.positions);
         const double size = (hierarchy.triangle(0)[0] - hierarchy.triangle(0)[1]).norm() + 1e-9;
         RandomCursors cursors(state.positions, 2.0 * size, 11);
@@ -76,11 +76,11 @@ TEST(KdopHierarchy, AnswersAreThoseOfBruteForceInEveryState) {
 }
 
 TEST(KdopHierarchy, VolumesHoldTheTrianglesOfTheirHalves) {
-  const cloth::ClothMesh mesh = sheet(9);
+  const mesh::ClothMesh mesh = sheet(9);
   for (const KdopKind kind : kKinds) {
     KdopHierarchy hierarchy = hierarchyOver(mesh, {kind, 3, bestInstructionSet()});
     ASSERT_EQ(hierarchy.levels(), 7);  // 162 triangles, 64 leaves
-    for (const auto& state : evaluation::deformedSheets(mesh)) {
+    for (const auto& state : oracles::deformedSheets(mesh)) {
       hierarchy.refit(state.positions);
       double largest = 0.0;
       for (const Vector3d& p : state.positions) largest = std::max(largest, p.norm());
@@ -104,11 +104,11 @@ TEST(KdopHierarchy, VolumesHoldTheTrianglesOfTheirHalves) {
 }
 
 TEST(KdopHierarchy, EveryInstructionSetMakesTheSameVolumes) {
-  const cloth::ClothMesh mesh = sheet(20);
+  const mesh::ClothMesh mesh = sheet(20);
   for (const KdopKind kind : kKinds) {
     KdopHierarchy plain = hierarchyOver(mesh, {kind, 8, InstructionSet::kBaseline});
     KdopHierarchy best = hierarchyOver(mesh, {kind, 8, bestInstructionSet()});
-    for (const auto& state : evaluation::deformedSheets(mesh)) {
+    for (const auto& state : oracles::deformedSheets(mesh)) {
       plain.refit(state.positions);
       best.refit(state.positions);
       for (int level = 0; level < plain.levels(); ++level) {
@@ -122,8 +122,8 @@ TEST(KdopHierarchy, EveryInstructionSetMakesTheSameVolumes) {
 }
 
 TEST(KdopHierarchy, EveryInstructionSetVisitsTheSameVolumes) {
-  const cloth::ClothMesh mesh = sheet(20);
-  const auto state = evaluation::deformedSheets(mesh)[12];
+  const mesh::ClothMesh mesh = sheet(20);
+  const auto state = oracles::deformedSheets(mesh)[12];
   for (const KdopKind kind : kKinds) {
     KdopHierarchy plain = hierarchyOver(mesh, {kind, 8, InstructionSet::kBaseline});
     KdopHierarchy best = hierarchyOver(mesh, {kind, 8, bestInstructionSet()});
@@ -145,7 +145,7 @@ TEST(KdopHierarchy, EveryInstructionSetVisitsTheSameVolumes) {
 }
 
 TEST(KdopHierarchy, AQueryNearOnePlaceLeavesMostVolumesAlone) {
-  const cloth::ClothMesh mesh = sheet(71);
+  const mesh::ClothMesh mesh = sheet(71);
   KdopHierarchy hierarchy = hierarchyOver(mesh);
   std::vector<NearElement> found;
   QueryCost cost;
@@ -156,7 +156,7 @@ TEST(KdopHierarchy, AQueryNearOnePlaceLeavesMostVolumesAlone) {
 }
 
 TEST(KdopHierarchy, ElementsAtExactlyTheDistanceAreNear) {
-  const cloth::ClothMesh mesh = sheet(4, 0.5);
+  const mesh::ClothMesh mesh = sheet(4, 0.5);
   KdopHierarchy hierarchy = hierarchyOver(mesh);
   std::vector<NearElement> found;
   const Cursor above = Cursor::point({0.25, 0.25, 0.125});  // a particle below it in six triangles
@@ -186,7 +186,7 @@ TEST(KdopHierarchy, SignedDistanceTellsHowDeepAnElementIsInTheCursor) {
 }
 
 TEST(KdopHierarchy, NothingInRangeIsAnEmptyAnswer) {
-  const cloth::ClothMesh mesh = sheet(8);
+  const mesh::ClothMesh mesh = sheet(8);
   const KdopHierarchy hierarchy = hierarchyOver(mesh);
   std::vector<NearElement> found(3);
   hierarchy.query(Cursor::point({0.1, 0.1, 0.1}), {0.05}, found);
@@ -211,7 +211,7 @@ TEST(KdopHierarchy, TrianglesWithoutAreaAreFoundLikeOthers) {
 }
 
 TEST(KdopHierarchy, LeafHoldsEverythingIfItMay) {
-  const cloth::ClothMesh mesh = sheet(2);
+  const mesh::ClothMesh mesh = sheet(2);
   HierarchySettings settings;
   settings.triangles_per_leaf = 1000;
   const KdopHierarchy hierarchy = hierarchyOver(mesh, settings);
@@ -241,7 +241,7 @@ TEST(KdopHierarchy, RefusesMeshesThatAreNone) {
 }
 
 TEST(KdopHierarchy, RefusedPositionsLeaveItAsItWas) {
-  const cloth::ClothMesh mesh = sheet(8);
+  const mesh::ClothMesh mesh = sheet(8);
   KdopHierarchy hierarchy = hierarchyOver(mesh);
   const std::vector<Vector3d> good = restPositions(mesh);
   EXPECT_EQ(message([&] {

@@ -42,11 +42,11 @@ void expectSame(const std::vector<NearElement>& found,
 }
 
 TEST(ObstacleQuery, AnswersAreThoseOfBruteForceInEveryState) {
-  const cloth::ClothMesh mesh = sheet(10);
+  const mesh::ClothMesh mesh = sheet(10);
   KdopHierarchy hierarchy(mesh.triangles, restPositions(mesh));
   std::vector<NearElement> found;
   int some = 0;
-  for (const auto& state : evaluation::deformedSheets(mesh)) {
+  for (const auto& state : oracles::deformedSheets(mesh)) {
     hierarchy.refit(state.positions);
     const double size = (hierarchy.triangle(0)[0] - hierarchy.triangle(0)[1]).norm() + 1e-9;
     RandomCursors places(state.positions, 3.0 * size, 5);

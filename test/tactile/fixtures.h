@@ -3,16 +3,16 @@
 
 #include <string>
 
-#include "haptex/evaluation/known_surfaces.h"
+#include "haptex/oracles/experiments/known_surfaces.h"
 #include "haptex/tactile/stroke.h"
 
 namespace haptex::tactile {
 
-using evaluation::addGrating;
-using evaluation::direction;
-using evaluation::flatField;
-using evaluation::variance;
-using evaluation::whiteNoise;
+using oracles::addGrating;
+using oracles::direction;
+using oracles::flatField;
+using oracles::variance;
+using oracles::whiteNoise;
 
 /// One wave of amplitude `amplitude` (m) and wave vector `k` (rad/m).
 inline SmallScale singleWave(const Eigen::Vector2d& k, double amplitude,

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/contact/condensed_stiffness.h"
 #include "haptex/contact/contact_law.h"
 #include "haptex/contact/fingertip.h"
@@ -66,7 +66,7 @@ class HapticLayer {
 
   /// @param mesh, fabric, effects those of the large-scale layer
   /// @throws std::invalid_argument what requireTouchable() or cloth::Cloth throws
-  HapticLayer(cloth::ClothMesh mesh, material::Fabric fabric, const cloth::ModelledEffects& effects,
+  HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric, const cloth::ModelledEffects& effects,
               const HapticSettings& settings);
 
   const HapticSettings& settings() const { return settings_; }
@@ -121,7 +121,7 @@ class HapticLayer {
   Eigen::Vector3d aheadOf(const FingertipContact& contact, const Eigen::Matrix3d& stiffness) const;
 
   HapticSettings settings_;
-  cloth::ClothMesh mesh_;
+  mesh::ClothMesh mesh_;
   material::Fabric fabric_;
   cloth::ModelledEffects effects_;
   ContactLaw law_;

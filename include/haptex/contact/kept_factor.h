@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "haptex/cloth/block_matrix.h"
-#include "haptex/cloth/elimination.h"
+#include "haptex/linear/block_matrix.h"
+#include "haptex/linear/elimination.h"
 
 namespace haptex::contact {
 
@@ -20,20 +20,20 @@ namespace haptex::contact {
 class KeptFactor {
  public:
   /// @param pattern of the leading part
-  explicit KeptFactor(const cloth::SymmetricBlockMatrix& pattern);
+  explicit KeptFactor(const linear::SymmetricBlockMatrix& pattern);
 
   /// Renews all panels.
   /// @param matrix has the constructor's pattern in its leading part
   /// @returns false if that is not positive definite to rounding in single precision, or has a
   ///   number that is not finite; the factor is then unusable
-  bool factorise(const cloth::SymmetricBlockMatrix& matrix);
+  bool factorise(const linear::SymmetricBlockMatrix& matrix);
 
   /// Renews the next panels: about `share` of the work, 0 to 1, after a factorise().
   /// @returns false if one was not positive definite: it stays as it was
-  bool renew(const cloth::SymmetricBlockMatrix& matrix, double share);
+  bool renew(const linear::SymmetricBlockMatrix& matrix, double share);
 
   /// z = (L L^T)^-1 r, of the leading columns.
-  void solve(const cloth::BlockVector& r, cloth::BlockVector& z);
+  void solve(const linear::BlockVector& r, linear::BlockVector& z);
 
  private:
   struct Node {                // consecutive columns, in the order of elimination
@@ -56,12 +56,12 @@ class KeptFactor {
     int begin, end;   // of its rows: those that are columns here
     int first_place;  // in places_: where its rows from `begin` on are here
   };
-  void makeNodes(const cloth::Elimination& elimination);
-  void makeEntries(const cloth::SymmetricBlockMatrix& pattern);
+  void makeNodes(const linear::Elimination& elimination);
+  void makeEntries(const linear::SymmetricBlockMatrix& pattern);
   void makeSources();
   int placeOf(const Node& node, int row) const;
-  bool renewNode(int index, const cloth::SymmetricBlockMatrix& matrix);
-  void load(const Node& node, const cloth::SymmetricBlockMatrix& matrix);
+  bool renewNode(int index, const linear::SymmetricBlockMatrix& matrix);
+  void load(const Node& node, const linear::SymmetricBlockMatrix& matrix);
   void subtractSource(const Source& source, const Node& node);
   bool factorisePanel(const Node& node);
   void invertPanel(const Node& node);

@@ -4,9 +4,9 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "haptex/cloth/cloth.h"
-#include "haptex/cloth/integrator.h"
-#include "haptex/cloth/obstacle.h"
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/mesh/obstacle.h"
 #include "haptex/proximity/rigid_obstacle.h"
 
 namespace haptex::contact {
@@ -33,7 +33,7 @@ class ObstacleCollision {
   /// @param cloth the one that is stepped, with contacts among its effects
   /// @throws std::invalid_argument what makeObstacle() says, or if an obstacle has no friction of
   ///   its own and the fabric has none
-  ObstacleCollision(const cloth::Cloth& cloth, std::vector<cloth::Obstacle> obstacles);
+  ObstacleCollision(const cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles);
 
   /// Takes a step as cloth::Integrator::step(), from the obstacles' poses at the state's time to
   /// those at its end, and keeps the particles out of them.
@@ -46,7 +46,7 @@ class ObstacleCollision {
   /// none
   void requireFriction(const material::Fabric& fabric) const;
 
-  const std::vector<cloth::Obstacle>& obstacles() const { return obstacles_; }
+  const std::vector<mesh::Obstacle>& obstacles() const { return obstacles_; }
 
  private:
   /// An obstacle in its own frame, and where it is at both ends of the step.
@@ -61,7 +61,7 @@ class ObstacleCollision {
   void findContacts(const cloth::Cloth& cloth, const cloth::ClothState& state, double h);
   void resolve(const cloth::Cloth& cloth, cloth::ClothState& state, double h) const;
 
-  std::vector<cloth::Obstacle> obstacles_;
+  std::vector<mesh::Obstacle> obstacles_;
   std::vector<Body> bodies_;
   std::vector<Eigen::Vector3d> positions_;  // m, at the beginning of the step
   std::vector<cloth::ParticleContact> contacts_;

@@ -5,15 +5,15 @@
 #include <array>
 #include <vector>
 
-#include "haptex/cloth/bending.h"
-#include "haptex/cloth/block_matrix.h"
-#include "haptex/cloth/cloth.h"
-#include "haptex/cloth/membrane.h"
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/forces/bending.h"
+#include "haptex/cloth/forces/membrane.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
 #include "haptex/contact/patch_solver.h"
 #include "haptex/contact/refined_cut.h"
 #include "haptex/contact/sphere_contact.h"
+#include "haptex/linear/block_matrix.h"
 
 namespace haptex::contact {
 
@@ -27,7 +27,7 @@ class Patch {
  public:
   /// @param coarse  the mesh that was cut
   /// @param fabric  with bending
-  Patch(const cloth::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
+  Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
         const cloth::ModelledEffects& effects, const ContactLaw& law);
 
   std::size_t particleCount() const { return state_.positions.size(); }
@@ -71,7 +71,7 @@ class Patch {
   /// of the particles at a fingertip, e the unit vector of a direction (0 to 2).
   /// One iteration better than the last time, if that was for a matrix and contact close to these.
   /// @returns 3 x freeCount(), until the next call
-  const cloth::BlockVector& respond(int fingertip, int direction);
+  const linear::BlockVector& respond(int fingertip, int direction);
 
  private:
   void assemble(const LargeScaleMotion& motion, double h);
@@ -83,7 +83,7 @@ class Patch {
   cloth::ModelledEffects effects_;
   cloth::Membrane membrane_;
   cloth::Bending bending_;
-  cloth::SymmetricBlockMatrix matrix_;
+  linear::SymmetricBlockMatrix matrix_;
   PatchSolver solver_;
   std::vector<double> areas_;   // m^2, per particle
   std::vector<double> masses_;  // kg
@@ -95,9 +95,9 @@ class Patch {
   PerFingertip<SphereContact> contacts_;
   PerFingertip<std::vector<TouchedParticle>> linearised_;
   std::vector<double> contact_forces_;
-  cloth::BlockVector rhs_;
-  cloth::BlockVector solution_;
-  PerFingertip<std::array<cloth::BlockVector, 3>> responses_;  // by direction
+  linear::BlockVector rhs_;
+  linear::BlockVector solution_;
+  PerFingertip<std::array<linear::BlockVector, 3>> responses_;  // by direction
 };
 
 }  // namespace haptex::contact

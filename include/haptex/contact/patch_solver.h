@@ -1,9 +1,9 @@
 // The linear systems of a patch, one per millisecond, of which each is close to the one before.
 #pragma once
 
-#include "haptex/cloth/block_cholesky.h"
-#include "haptex/cloth/block_matrix.h"
 #include "haptex/contact/kept_factor.h"
+#include "haptex/linear/block_cholesky.h"
+#include "haptex/linear/block_matrix.h"
 
 namespace haptex::contact {
 
@@ -16,41 +16,41 @@ namespace haptex::contact {
 class PatchSolver {
  public:
   /// @param pattern of the leading part of the matrices
-  explicit PatchSolver(const cloth::SymmetricBlockMatrix& pattern);
+  explicit PatchSolver(const linear::SymmetricBlockMatrix& pattern);
 
   /// Solves A x = b, where A is the leading part of the matrix.
   /// @param rhs leading columns: b
   /// @param guess a direction, in which the solution is sought first, the same for all particles:
   ///   that in which a cloth falls freely, exactly; zero: none
   /// @returns false if A is not positive definite to rounding, or a number is not finite
-  bool solve(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
-             const Eigen::Vector3d& guess, cloth::BlockVector& solution);
+  bool solve(const linear::SymmetricBlockMatrix& matrix, const linear::BlockVector& rhs,
+             const Eigen::Vector3d& guess, linear::BlockVector& solution);
 
   /// The same by a factor in double precision, made for this system alone.
-  bool solveDirectly(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
-                     cloth::BlockVector& solution);
+  bool solveDirectly(const linear::SymmetricBlockMatrix& matrix, const linear::BlockVector& rhs,
+                     linear::BlockVector& solution);
 
   /// One iteration towards the solution of another system with the matrix of the last solve(), from
   /// where `solution` is. The error never grows.
-  void improve(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs,
-               cloth::BlockVector& solution);
+  void improve(const linear::SymmetricBlockMatrix& matrix, const linear::BlockVector& rhs,
+               linear::BlockVector& solution);
 
   /// Of the last solve().
   int iterations() const { return iterations_; }
 
  private:
-  bool iterate(const cloth::SymmetricBlockMatrix& matrix, const cloth::BlockVector& rhs, int most,
-               cloth::BlockVector& solution);
-  double addDirection(const cloth::SymmetricBlockMatrix& matrix, double slope,
-                      cloth::BlockVector& solution);
+  bool iterate(const linear::SymmetricBlockMatrix& matrix, const linear::BlockVector& rhs, int most,
+               linear::BlockVector& solution);
+  double addDirection(const linear::SymmetricBlockMatrix& matrix, double slope,
+                      linear::BlockVector& solution);
 
   KeptFactor kept_;
-  cloth::BlockCholesky direct_;
+  linear::BlockCholesky direct_;
   bool has_kept_ = false;
   bool has_direct_ = false;  // of the last system
   int iterations_ = 0;
   Eigen::Vector3d guess_ = Eigen::Vector3d::Zero();
-  cloth::BlockVector residual_, preconditioned_, direction_, product_;
+  linear::BlockVector residual_, preconditioned_, direction_, product_;
 };
 
 }  // namespace haptex::contact

@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptex/cloth/mesh.h"
+#include "haptex/mesh/mesh.h"
 
 namespace haptex::contact {
 
 /// Which triangles of a mesh share its edges and particles.
 class MeshTopology {
  public:
-  explicit MeshTopology(const cloth::ClothMesh& mesh);
+  explicit MeshTopology(const mesh::ClothMesh& mesh);
 
   /// The triangle beyond the edge opposite to a corner (0 to 2), -1 on the border of the mesh.
   int neighbour(int triangle, int corner) const { return neighbours_[triangle][corner]; }
@@ -43,8 +43,8 @@ struct Support {
 /// first, then those of the rim, which follow the mesh: they lie on an edge or corner that the cut
 /// shares with triangles outside of it, or are attached.
 struct RefinedCut {
-  cloth::ClothMesh mesh;  ///< initial positions are zero
-  int free_count = 0;     ///< particles before the rim
+  mesh::ClothMesh mesh;  ///< initial positions are zero
+  int free_count = 0;    ///< particles before the rim
   int refinement = 0;
   std::vector<Support> supports;         ///< per particle
   std::vector<int> owners;               ///< per particle, a triangle of the original mesh
@@ -55,7 +55,7 @@ struct RefinedCut {
 /// @param triangles of the mesh, at least one, each once
 /// @param attached  per particle of the mesh, nonzero where it is held
 /// @param refinement 0 to 4
-RefinedCut cutAndRefine(const cloth::ClothMesh& mesh, const MeshTopology& topology,
+RefinedCut cutAndRefine(const mesh::ClothMesh& mesh, const MeshTopology& topology,
                         const std::vector<int>& triangles, const std::vector<char>& attached,
                         int refinement);
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "haptex/cloth/cloth.h"
+#include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/sphere_contact.h"
 
@@ -13,7 +13,7 @@ namespace haptex::contact {
 /// The particles of a large-scale state, moved on by their velocities until now.
 class WholeClothContact {
  public:
-  WholeClothContact(const cloth::ClothMesh& mesh, const material::Fabric& fabric,
+  WholeClothContact(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
                     const ContactLaw& law);
 
   /// Sizes are those of the mesh.

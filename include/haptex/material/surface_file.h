@@ -1,8 +1,8 @@
 // The section `surface` of a fabric file.
 #pragma once
 
+#include "haptex/base/yaml_reader.h"
 #include "haptex/material/surface.h"
-#include "haptex/material/yaml_reader.h"
 
 namespace haptex::material {
 
@@ -11,6 +11,6 @@ namespace haptex::material {
 /// @param friction KES MIU of the fabric, > 0: MMD is the deviation from it
 /// @throws std::invalid_argument naming file, key, value and what is allowed: one relief, numbers
 ///   finite and in the ranges of haptex/material/surface.h
-Surface readSurface(const YamlValue& value, double friction);
+Surface readSurface(const base::YamlValue& value, double friction);
 
 }  // namespace haptex::material

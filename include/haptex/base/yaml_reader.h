@@ -1,0 +1,63 @@
+// Strict reading of YAML files: every refusal names file, key, value and what is allowed.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace haptex::base {
+
+/// A value in a YAML file together with the path of keys that leads to it, for example
+/// "warp.elastic.points[3]". All member functions throw std::invalid_argument with a message of the
+/// form "<file>: <key path>: <value> <what is allowed>" if the value is not as asked for.
+class YamlValue {
+ public:
+  /// The top-level value of a file with exactly one YAML document.
+  /// @throws std::runtime_error naming the path, and the line of a syntax error, if the file cannot
+  ///   be read or is not YAML
+  static YamlValue load(const std::string& path);
+
+  const std::string& file() const { return *file_; }
+  const std::string& keyPath() const { return key_path_; }
+
+  bool isMap() const { return node_.IsMap(); }
+
+  /// Refuses anything but a map with all the required keys and no others than the optional ones,
+  /// each once. Call it before at() and has().
+  void requireKeys(const std::vector<std::string>& required,
+                   const std::vector<std::string>& optional = {}) const;
+  bool has(const std::string& key) const;
+  YamlValue at(const std::string& key) const;
+
+  /// The items of a list.
+  std::vector<YamlValue> items() const;
+  /// The items of a list of exactly `size`.
+  std::vector<YamlValue> items(std::size_t size) const;
+
+  /// A finite number.
+  double number() const;
+  int integer() const;
+  /// A text that is not empty or blank.
+  std::string text() const;
+  /// One of the given words.
+  std::string oneOf(std::initializer_list<const char*> words) const;
+
+  /// Throws the refusal of this value: "<file>: <key path>: <value> <reason>".
+  [[noreturn]] void refuse(const std::string& reason) const;
+  /// The same without the value, for a reason that states it.
+  [[noreturn]] void refuseBecause(const std::string& reason) const;
+
+ private:
+  YamlValue(std::shared_ptr<const std::string> file, std::string key_path, const YAML::Node& node);
+
+  std::string describeValue() const;
+
+  std::shared_ptr<const std::string> file_;
+  std::string key_path_;
+  YAML::Node node_;
+};
+
+}  // namespace haptex::base

@@ -1,0 +1,112 @@
+// The implicit stage that all implicit integrators are made of.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/contact_step.h"
+#include "haptex/cloth/dynamics/stage.h"
+#include "haptex/cloth/dynamics/step.h"
+#include "haptex/linear/block_matrix.h"
+#include "haptex/linear/linear_solver.h"
+#include "haptex/linear/thread_pool.h"
+
+namespace haptex::cloth {
+
+/// Solves stages. The first linear solve of a stage linearises the forces about a guess (xg, vg),
+///   (M - a D - a^2 K) (v - vg) = M (v* - vg) + a [F(xg, vg) + ahead K vg],
+/// with K and D projected to be negative semidefinite, so that the matrix is positive definite for
+/// every state and a (Baraff and Witkin 1998). With more than one Newton iteration it goes on from
+/// there to the minimum of the incremental potential
+///   |M^(1/2) (v - v*)|^2 / 2 + Membrane::incrementalPotential(x) - external forces . x
+///   + pointLoadEnergy(x) + Aerodynamics::incrementalPotential(v),
+/// by Newton iterations with a backtracking line search. They use the projected Hessian as long as
+/// the residual is large, and then the exact one where it is positive definite. The air's normals,
+/// areas and lift are those of the first solve, right to the second order.
+///
+/// With xg and vg right to the first order in time the first solve is right to the second where
+/// nothing had to be projected. It linearises about a state that has been reached, not about
+/// xg + ahead vg: what turns is stretched there, and stiff fabrics that do not resist compression
+/// then gain energy without bounds.
+///
+/// Contacts of the cloth hold as ContactStep says; the linear solve of a stage is then repeated
+/// until they are found. Newton iterations look for them anew by their own residual.
+///
+/// Allocates nothing after construction.
+class StageSolver {
+ public:
+  /// @param settings sound (Integrator)
+  StageSolver(const Cloth& cloth, const StepSettings& settings);
+
+  int particleCount() const { return matrix_.size(); }
+
+  /// @param result positions and velocities of the stage. May be what the guess refers to, not the
+  ///   base.
+  /// @param report adds to its counts and times; convergence stays false where it was
+  void solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess, ClothState& result,
+             StepReport& report);
+
+  /// The linearised stage alone.
+  void solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                       ClothState& result, StepReport& report);
+
+  /// Newton iterations whatever the settings say, from the result of the last solve() or
+  /// solveLinearised(), which was of this stage; or, if rest has a lower incremental potential,
+  /// from where the straight way there first has: so that of the result is at most that of rest.
+  /// The air's areas are those of the base, and it does not lift: a lift that is held fixed for
+  /// long does work, which the true one in still air does not. Where contacts hold, rest is none of
+  /// their states, and is not looked at.
+  /// @param enough of a result: it needs no more iterations
+  /// @return whether that ended them, so that `enough` was last asked of the result
+  bool descend(const Cloth& cloth, const Stage& stage, const std::function<bool()>& enough,
+               ClothState& result, StepReport& report);
+
+  /// The next solve starts from zero, not from the solution of the last.
+  void forget() { solution_.setZero(); }
+
+  /// Null if the cloth has been modelled without contacts.
+  const ContactStep* contacts() const { return contacts_ ? &*contacts_ : nullptr; }
+
+ private:
+  enum class Descent { kFound, kBelowRounding, kNone };
+
+  void fixPast(const Cloth& cloth, const Stage& stage, const ClothState& at);
+  double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result);
+  void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
+  void prescribe(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
+  void eliminate();
+  bool solveFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                  StepReport& report);
+  bool solveLinear(StepReport& report, linear::LinearSolver::Definiteness definiteness =
+                                           linear::LinearSolver::Definiteness::kPositive);
+  bool touching() const { return contacts_ && !contacts_->empty(); }
+  bool iterateNewton(const Cloth& cloth, const Stage& stage, double potential, int most_solves,
+                     const std::function<bool()>& enough, ClothState& result, StepReport& report);
+  void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at,
+                      Membrane::Hessian hessian, StepReport& report);
+  Descent searchLine(const Cloth& cloth, const Stage& stage, ClothState& result, double& potential);
+  void addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities);
+  double incrementalPotential(const Cloth& cloth, const Stage& stage, const ClothState& at) const;
+
+  StepSettings settings_;
+  std::unique_ptr<linear::ThreadPool> pool_;  // null with one thread
+  linear::SymmetricBlockMatrix matrix_;
+  linear::LinearSolver solver_;
+  linear::BlockVector rhs_;
+  linear::BlockVector solution_;    // of the last linear system, with the prescribed values
+  linear::BlockVector prescribed_;  // velocity changes of the attached particles
+  double linearised_norm_ = 0.0;    // N s, of the right-hand side of the linearised stage
+  std::vector<char> fixed_;
+  bool any_fixed_ = false;
+  std::optional<ContactStep> contacts_;
+  bool contacts_change_ = false;  // in this Newton iteration
+  ClothState trial_;              // of a line search; empty where there is none
+  std::vector<MembraneStrain> base_strains_;
+  FixedAir fixed_air_;
+};
+
+}  // namespace haptex::cloth

@@ -1,0 +1,60 @@
+// Keeps a serial port open: what may take long happens on a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "haptex/exoskeleton/finger.h"
+#include "haptex/exoskeleton/protocol/serial_port.h"
+#include "haptex/realtime/semaphore.h"
+
+namespace haptex::exoskeleton {
+
+/// Opens the port, and again every kRetryPeriod after it was found closed or absent. Opening and
+/// closing a port may take long, so its user, the loop, does neither.
+class PortKeeper {
+ public:
+  static constexpr Time kRetryPeriod = std::chrono::milliseconds(500);
+
+  /// Starts trying at once.
+  explicit PortKeeper(const std::string& path);
+  ~PortKeeper();
+  PortKeeper(const PortKeeper&) = delete;
+  PortKeeper& operator=(const PortKeeper&) = delete;
+
+  /// By the loop only. Takes over a port that has been opened. @returns whether there is a new one
+  bool takeNew();
+  /// By the loop only: the open port, or nullptr.
+  SerialPort* port() { return port_.get(); }
+  /// By the loop only: the port was found closed.
+  void discard();
+
+  /// By any thread: why there is no port, naming it; empty while there is one.
+  std::string trouble() const;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  void run();
+  void open();
+  void setTrouble(const std::string& trouble);
+
+  const std::string path_;
+  std::unique_ptr<SerialPort> port_;  // the loop's
+
+  // Between the loop and the thread, each owned by whoever takes it out.
+  std::atomic<SerialPort*> opened_{nullptr};
+  std::atomic<SerialPort*> discarded_{nullptr};
+  std::atomic<bool> wanted_{true};
+
+  mutable std::mutex trouble_mutex_;  // guards the next; never taken by the loop
+  std::string trouble_;
+
+  realtime::Semaphore stopped_;
+  std::thread thread_;
+};
+
+}  // namespace haptex::exoskeleton

@@ -1,0 +1,100 @@
+// One interface to the linear solvers, and the choice between them.
+#pragma once
+
+#include <memory>
+
+#include "haptex/linear/block_cholesky.h"
+#include "haptex/linear/block_matrix.h"
+#include "haptex/linear/conjugate_gradient.h"
+
+namespace haptex::linear {
+
+/// How a linear system is solved.
+enum class LinearSolverMethod {
+  kConjugateGradient,
+  kCholesky,   ///< a factor in double precision of every system; in StepReport: any factor
+  kAutomatic,  ///< the cheaper way for the system at hand, see LinearSolver
+};
+
+/// Solves the systems of successive steps to a stated relative residual.
+///
+/// The automatic choice is between conjugate gradients with the diagonal blocks as preconditioner
+/// and conjugate gradients with a kept factor: a factor in single precision of a system that may
+/// lie several solves back. It is made anew when the last solve has cost more than the mean of all
+/// since the factor was made, its making included. An old factor that has not sufficed within the
+/// cost of a new one is not tried again for 4 solves, and for twice as many after each further
+/// failure up to 64: in cloth that turns by degrees per step every system needs its own.
+///
+/// Diagonal blocks get as many iterations as cost what a solve by the kept factor costs. When they
+/// do not suffice, the factor solves this system and the next ones, at first 8 and twice as many
+/// after each further failure up to 512, before they are tried again.
+///
+/// A system that is not positive definite to single precision, or that the factor does not solve,
+/// is factorised in double precision; in patterns of more than 500 rows the first such one, and no
+/// other solve, allocates memory. Folded cloth does not need it: what costs there is that every
+/// system needs a factor of its own.
+///
+/// A system that need not be positive definite, and is not, is given up once a factor has said so,
+/// instead of being iterated on.
+///
+/// All costs are counts of operations times the times of one that scripts/bench linear_solver
+/// measured, so that the choices depend on the systems alone and a run repeats exactly.
+class LinearSolver {
+ public:
+  /// @param pool shares the work of a factor if it is given; has to outlive this
+  LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMethod method,
+               ThreadPool* pool = nullptr);
+
+  /// What is known of a system. Matters for kAutomatic and kCholesky.
+  enum class Definiteness {
+    kPositive,  ///< but for rounding
+    kUnknown,   ///< without a solution that is worth a search where it is not positive definite
+  };
+
+  /// Solves A x = b until |b - A x| <= tolerance |b|.
+  /// @param x initial guess of the conjugate gradients, overwritten by the solution
+  SolveResult solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs, double tolerance,
+                    BlockVector& x, Definiteness definiteness = Definiteness::kPositive);
+
+  /// What gave the last solution: kConjugateGradient, or kCholesky for any factor.
+  LinearSolverMethod lastMethod() const { return last_method_; }
+  /// Iterations with the diagonal blocks that cost as much as a solve by a factor; 0 without one.
+  int iterationBudget() const;
+  /// Factors made so far.
+  long factorisations() const { return factorisations_; }
+
+ private:
+  SolveResult solveDirectly(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                            double tolerance, BlockVector& x);
+  SolveResult solveByKeptFactor(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                                double tolerance, BlockVector& x);
+  SolveResult solveIteratively(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                               double tolerance, int max_iterations, BlockVector& x);
+  int lastTry() const;  // iterations
+  bool makeFactor(const SymmetricBlockMatrix& matrix);
+
+  LinearSolverMethod method_;
+  LinearSolverMethod last_method_ = LinearSolverMethod::kConjugateGradient;
+  ThreadPool* pool_;
+  ConjugateGradient conjugate_gradient_;
+  std::unique_ptr<BlockCholesky> cholesky_;            // of kCholesky, or once it is needed
+  std::unique_ptr<BasicBlockCholesky<float>> factor_;  // of kAutomatic
+  // Costs, in those of one 3x3 block in an iteration of conjugate gradients.
+  double factorisation_cost_ = 0.0;
+  double factor_iteration_cost_ = 0.0;
+  double block_iteration_cost_;
+  bool factor_kept_ = false;
+  int fresh_solves_left_ = 0;  // before an old factor is tried again
+  int fresh_solves_next_;
+  int fresh_iterations_ = 0;  // of the last solve by a new factor
+  int solves_with_factor_ = 0;
+  double cost_with_factor_ = 0.0;
+  double mean_cost_ = 0.0;  // of the last factor's solves
+  long factorisations_ = 0;
+  int direct_solves_left_ = 0;
+  int direct_solves_next_;
+  BlockVector residual_;  // of solves in double precision
+  BlockVector product_;
+};
+
+}  // namespace haptex::linear

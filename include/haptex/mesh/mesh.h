@@ -1,0 +1,71 @@
+// Triangle meshes of cloth with rest coordinates in the fabric's own weft and warp directions.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace haptex::mesh {
+
+/// A piece of cloth as triangles between particles.
+struct ClothMesh {
+  std::vector<Eigen::Vector2d> rest_coordinates;   ///< (u along weft, v along warp), m
+  std::vector<Eigen::Vector3d> initial_positions;  ///< m, world frame
+  std::vector<std::array<int, 3>> triangles;       ///< particle indices
+};
+
+/// How makeRectangle() splits its cells into two triangles.
+enum class Triangulation {
+  kOneWay,       ///< every diagonal from (u, v) to (u + du, v + dv)
+  kAlternating,  ///< the diagonal turns from each cell to the next, like a chess board
+};
+
+/// A rectangular sample [0, width] x [0, height] in rest coordinates (u, v), cells_u x cells_v
+/// cells of two triangles. Particle row j, column i has index j (cells_u + 1) + i.
+/// Initial positions lie in the plane x = 0 of the world frame with weft along +y and warp along
+/// +z: (u, v) -> (0, u - width/2, v - height), so that the middle of the top edge (v = height) is
+/// the world origin and the sample hangs below it.
+/// @param width, height m, finite and > 0
+/// @param cells_u, cells_v >= 1
+/// @throws std::invalid_argument naming the parameter and its value
+ClothMesh makeRectangle(double width, double height, int cells_u, int cells_v,
+                        Triangulation triangulation);
+
+/// A disc of `rings` rings of triangles that are nearly equilateral and equal, about 11 rings^2
+/// / 2. It has no rotational symmetry that folds could keep to: the particles of each circle are
+/// turned against those of the next by the golden angle. Particle 0 is the middle, the others
+/// follow from circle to circle. Rest coordinates are (x, y) of the initial positions, which lie in
+/// the plane z = 0 of the world frame around the origin.
+/// @param radius m, finite and > 0
+/// @param rings  >= 1
+/// @throws std::invalid_argument naming the parameter and its value
+ClothMesh makeDisc(double radius, int rings);
+
+/// The particles on one side of the bounding rectangle of the rest coordinates, in ascending order:
+/// those within 1e-9 of its diagonal.
+enum class Side { kBottom, kTop, kLeft, kRight };  // v min, v max, u min, u max
+std::vector<int> sideParticles(const ClothMesh& mesh, Side side);
+
+/// What is wrong with a mesh, by index.
+struct MeshDefects {
+  std::vector<int> invalid_triangles;     ///< an index outside of the particles
+  std::vector<int> degenerate_triangles;  ///< a repeated particle, or an altitude in rest
+                                          ///< coordinates below 1e-9 of the longest edge
+  std::vector<int> duplicate_triangles;   ///< same three particles as an earlier triangle
+  std::vector<int> unreferenced_particles;
+  std::vector<int> non_finite_particles;  ///< rest coordinate or position
+  bool size_mismatch = false;  ///< rest_coordinates and initial_positions differ in length
+  bool empty = false;          ///< no triangle
+
+  bool none() const;
+  /// One line that names every kind of defect found and the first ten indices of each.
+  std::string description() const;
+};
+
+MeshDefects findDefects(const ClothMesh& mesh);
+
+/// @throws std::invalid_argument with MeshDefects::description() unless the mesh has no defect
+void requireSound(const ClothMesh& mesh);
+
+}  // namespace haptex::mesh

@@ -1,0 +1,27 @@
+// Triangle meshes from Wavefront OBJ files.
+#pragma once
+
+#include <string>
+
+#include "haptex/mesh/mesh.h"
+#include "haptex/mesh/obstacle.h"
+
+namespace haptex::mesh {
+
+/// Reads triangles ("f"), positions ("v", metres, world frame) and texture coordinates ("vt"),
+/// which are the rest coordinates (u weft, v warp) in metres. Every particle needs exactly one
+/// texture coordinate; a position that faces give two of different value (a seam) is an error, as
+/// is a face that is not a triangle. Indices count from 1, or backwards if negative, over what
+/// stands before the face in the file. Other statements are ignored.
+/// @throws std::runtime_error if the file cannot be read
+/// @throws std::invalid_argument naming file, line and what is wrong, or the mesh defects by index
+ClothMesh loadObj(const std::string& path);
+
+/// Reads triangles and positions (metres, the obstacle's own frame) only: everything else, texture
+/// coordinates too, is ignored. Faces and indices are as for loadObj(); triangles without area and
+/// positions in no face are allowed.
+/// @throws std::runtime_error if the file cannot be read
+/// @throws std::invalid_argument naming file, line and what is wrong, or that there is no triangle
+ObstacleMesh loadObjSurface(const std::string& path);
+
+}  // namespace haptex::mesh

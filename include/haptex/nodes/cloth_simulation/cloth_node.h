@@ -1,0 +1,142 @@
+// The node cloth_simulation: parameters, topics, services and diagnostics of a simulated cloth.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <haptex/AttachParticles.h>
+#include <haptex/ClothState.h>
+#include <haptex/GetJacobian.h>
+#include <haptex/MoveParticles.h>
+#include <haptex/QueryBudget.h>
+#include <haptex/ReleaseParticles.h>
+#include <haptex/SetFabric.h>
+#include <haptex/StepCloth.h>
+#include <ros/ros.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptex/nodes/cloth_simulation/cloth_markers.h"
+#include "haptex/nodes/cloth_simulation/contact_input.h"
+#include "haptex/nodes/cloth_simulation/heartbeat.h"
+#include "haptex/nodes/cloth_simulation/runtime_quality.h"
+#include "haptex/scene/scene.h"
+#include "haptex/simulation/real_time_loop.h"
+
+namespace haptex::nodes {
+
+/// Parameters of the node, read once at the start.
+struct ClothNodeParameters {
+  std::string scene_path;     ///< ~scene: path of a scene file, or a name in config/scenes
+  double state_rate = 0.0;    ///< ~state_rate: Hz of simulated time; 0, the default: every step
+  double marker_rate = 0.0;   ///< ~marker_rate: Hz of simulated time, default 25
+  double strain_scale = 0.0;  ///< ~strain_scale: strain with the last colour, default 0.01
+  QualityRequest quality;     ///< ~quality, ~budget_ms; by default the scene's own settings,
+                              ///< which ~quality = scene with a budget lets be reduced
+
+  /// Rates are rounded to whole numbers of steps between two messages.
+  /// @throws std::invalid_argument naming the parameter, its value and what is allowed
+  static ClothNodeParameters read(const ros::NodeHandle& private_node);
+};
+
+/// Advertises, below the namespace of `node`:
+///   cloth/mesh (ClothMesh, latched), cloth/state (ClothState),
+///   cloth/markers (visualization_msgs/MarkerArray), each filled only for subscribers, and while
+///   the simulation is paused or its steps are rejected ten times a second;
+///   cloth/heartbeat (std_msgs/Header, 200 Hz), whether it is paused or not;
+///   cloth/quality (ClothQuality, latched), with ~quality or ~budget_ms;
+///   services cloth/reset (std_srvs/Trigger), cloth/pause (std_srvs/SetBool), cloth/step,
+///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian,
+///   cloth/query_budget (srv/).
+/// In a scene with fingers it subscribes to cloth/contact_forces (ContactForces), which act for
+/// NewestLoads::kLifetime.
+/// A refused request is answered with success = false and changes nothing. The services may be
+/// called from several threads at once.
+class ClothNode {
+ public:
+  /// Starts simulating.
+  /// @throws std::exception with a message naming what was wrong with a parameter or a file
+  ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
+
+  /// Ends the simulation; services that wait for it return. Afterwards only to be destroyed.
+  void stop() { loop_.stop(); }
+
+ private:
+  ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+            const ClothNodeParameters& parameters);
+  ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+            const ClothNodeParameters& parameters, const std::optional<RuntimeQuality>& quality);
+  ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+            const ClothNodeParameters& parameters, const std::optional<RuntimeQuality>& quality,
+            const scene::Scene& scene);
+
+  void advertiseTopics();
+  void advertiseServices();
+  void publishMesh(const cloth::Cloth& cloth);
+  void publishStep(const simulation::SimulatedCloth& simulation, bool rests);
+  void publishState(const simulation::SimulatedCloth& simulation);
+  void republishIfResting();
+  void publishQuality(const simulation::SimulatedCloth& simulation);
+  void publishQualityIfDue(const simulation::SimulatedCloth& simulation);
+  void takeContactForces(simulation::SimulatedCloth& simulation);
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  bool reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
+  bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  bool step(StepCloth::Request& request, StepCloth::Response& response);
+  bool setFabric(SetFabric::Request& request, SetFabric::Response& response);
+  bool attach(AttachParticles::Request& request, AttachParticles::Response& response);
+  bool move(MoveParticles::Request& request, MoveParticles::Response& response);
+  bool release(ReleaseParticles::Request& request, ReleaseParticles::Response& response);
+  bool getJacobian(GetJacobian::Request& request, GetJacobian::Response& response);
+  bool queryBudget(QueryBudget::Request& request, QueryBudget::Response& response);
+
+  ros::NodeHandle node_;
+  std::vector<ros::ServiceServer> services_;
+  ros::Publisher mesh_publisher_;
+  ros::Publisher state_publisher_;
+  ros::Publisher marker_publisher_;
+  ros::Publisher quality_publisher_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::Timer diagnostics_timer_;
+  ros::SteadyTimer rest_timer_;
+  double diagnosed_drop_ = 0.0;  // s of simulated time, at the last diagnostics
+
+  // Used by the loop's thread only.
+  std::uint64_t steps_per_state_;
+  std::uint64_t steps_per_markers_;
+  ClothMarkers markers_;
+  haptex::ClothState state_message_;
+  std::vector<Eigen::Vector3d> forces_;
+  ros::Time state_stamp_;
+  std::uint64_t stamped_step_ = 0;
+  std::uint64_t filled_step_ = 0;  // SimulatedCloth::computedSteps() in state_message_
+  std::vector<cloth::PointLoad> loads_;
+  std::size_t published_changes_ = 0;  // of the quality
+  base::Time quality_due_{0};          // when its message is published without a change
+
+  mutable std::mutex quality_mutex_;
+  haptex::ClothQuality quality_message_;  // the last; guarded by quality_mutex_
+
+  // Constant.
+  std::optional<RuntimeQuality> quality_;
+  double time_step_;  // s
+  double tolerance_;
+  std::size_t particle_count_;
+  std::size_t triangle_count_;
+
+  std::unique_ptr<ContactInput> contact_input_;  // null in a scene without fingers
+  Heartbeat heartbeat_;
+
+  simulation::RealTimeLoop loop_;  // last: its thread uses the members above
+};
+
+}  // namespace haptex::nodes

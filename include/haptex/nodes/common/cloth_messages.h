@@ -1,0 +1,45 @@
+// Conversions between the cloth room and the messages of msg/ and srv/.
+#pragma once
+
+#include <geometry_msgs/Point.h>
+#include <haptex/ClothMesh.h>
+#include <haptex/ClothState.h>
+#include <haptex/GetJacobian.h>
+#include <ros/time.h>
+#include <std_msgs/Header.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/simulation/simulated_cloth.h"
+
+namespace haptex::nodes {
+
+/// The one frame of everything this package sends and takes; its origin is that of the scene.
+constexpr char kFixedFrame[] = "world";
+
+/// @param stamp when the fabric became this one
+haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, const ros::Time& stamp);
+
+/// Fills a state message in place, without allocation once its arrays have their size.
+/// @param stamp  when the state was computed
+/// @param forces buffer for Cloth::computeForces()
+void fillStateMessage(const simulation::SimulatedCloth& simulation, const ros::Time& stamp,
+                      std::vector<Eigen::Vector3d>& forces, haptex::ClothState& message);
+
+/// Only what changes while the cloth sleeps: stamp, step and simulated time.
+/// @param message filled with the same state before
+void restampStateMessage(const simulation::SimulatedCloth& simulation, const ros::Time& stamp,
+                         haptex::ClothState& message);
+
+/// Writes blocks into the arrays of a response.
+void fillJacobianResponse(const std::vector<cloth::JacobianBlock>& blocks,
+                          haptex::GetJacobian::Response& response);
+
+/// @throws std::invalid_argument unless frame_id is kFixedFrame
+void requireFixedFrame(const std_msgs::Header& header);
+
+std::vector<Eigen::Vector3d> fromMessage(const std::vector<geometry_msgs::Point>& points);
+
+}  // namespace haptex::nodes

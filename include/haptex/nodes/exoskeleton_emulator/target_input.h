@@ -1,0 +1,69 @@
+// Where the emulated person's hand and fingers are to be, from topics and from rviz.
+#pragma once
+
+#include <geometry_msgs/PointStamped.h>
+#include <geometry_msgs/PoseStamped.h>
+#include <interactive_markers/interactive_marker_server.h>
+#include <ros/ros.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "haptex/base/finger.h"
+#include "haptex/exoskeleton/emulator/hand_motion.h"
+
+namespace haptex::nodes {
+
+/// Since the construction.
+struct TargetInputStatus {
+  std::uint64_t taken = 0;    ///< messages and movements of markers, no unit
+  std::uint64_t refused = 0;  ///< likewise
+  std::string refused_why;    ///< the last one
+};
+
+/// Below the namespace of `node`: subscribes to <finger>/target (geometry_msgs/PointStamped in
+/// hand_base or a frame that tf connects with it; the point stays where it is in hand_base) and
+/// hand_base/target (geometry_msgs/PoseStamped in world); publishes the fingers' targets as spheres
+/// on emulator/target_markers (visualization_msgs/MarkerArray), for subscribers only. With markers,
+/// serves interactive ones of both fingertips and of the hand at emulator/interactive_markers.
+/// What is refused is counted and changes nothing. The callbacks may run on several threads.
+class TargetInput {
+ public:
+  /// @param motion outlives this
+  TargetInput(const ros::NodeHandle& node, exoskeleton::HandMotion& motion, bool markers);
+
+  /// Shows where hand and fingers are to be. By one thread.
+  void show(const exoskeleton::HandPlace& place);
+
+  TargetInputStatus status() const;
+
+ private:
+  using Feedback = visualization_msgs::InteractiveMarkerFeedbackConstPtr;
+
+  void takePoint(base::Finger finger, const geometry_msgs::PointStamped& message);
+  void takePose(const geometry_msgs::PoseStamped& message);
+  void takeFeedback(const Feedback& feedback);
+  template <typename Take>
+  void take(const std::string& from, const Take& take);
+  void moveInteractiveMarkers(const exoskeleton::HandPlace& place);
+
+  ros::NodeHandle node_;
+  exoskeleton::HandMotion& motion_;
+  tf2_ros::Buffer transforms_;
+  tf2_ros::TransformListener transform_listener_;
+
+  mutable std::mutex mutex_;  // guards the following
+  TargetInputStatus status_;
+  std::string dragged_;  // name of the interactive marker that is held now, or empty
+
+  std::unique_ptr<interactive_markers::InteractiveMarkerServer> interactive_;  // or none
+  ros::Publisher marker_publisher_;
+  base::PerFinger<ros::Subscriber> point_subscribers_;
+  ros::Subscriber pose_subscriber_;
+};
+
+}  // namespace haptex::nodes

@@ -1,0 +1,34 @@
+// Makes the small-scale layer for what cloth/mesh says.
+#pragma once
+
+#include <haptex/ClothMesh.h>
+
+#include <memory>
+#include <string>
+
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/contact/haptic_layer.h"
+#include "haptex/contact/haptic_settings.h"
+
+namespace haptex::nodes {
+
+class LayerBuilder {
+ public:
+  /// @param scene_path the scene of the large-scale layer, for its effects, its fabric, and how the
+  ///   small-scale layer is computed
+  /// @throws std::exception what cloth::loadScene() and contact::loadHapticSettings() throw
+  explicit LayerBuilder(const std::string& scene_path);
+
+  const contact::HapticSettings& settings() const { return settings_; }
+
+  /// The fabric is that of fabricOfCloth().
+  /// @throws std::exception naming what was wrong with the mesh or the fabric
+  std::unique_ptr<contact::HapticLayer> build(const haptex::ClothMesh& message) const;
+
+ private:
+  contact::HapticSettings settings_;
+  cloth::ModelledEffects effects_;
+  std::string fabric_path_;
+};
+
+}  // namespace haptex::nodes

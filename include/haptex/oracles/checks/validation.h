@@ -1,0 +1,54 @@
+// What scripts/validate prints: the oracles of each room.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "haptex/base/quantity.h"
+#include "haptex/material/strain_stress_curve.h"
+
+namespace haptex::oracles {
+
+using Sink = std::function<void(const base::Quantity&)>;
+
+/// A room and its oracles, which read fabrics from a configuration directory (config/ of the
+/// package, beside which urdf/ lies) and hand each quantity to the sink as soon as it is known.
+struct Validation {
+  std::string room;
+  std::function<void(const std::string& config_directory, const Sink& sink)> run;
+};
+
+/// All rooms with oracles, in the order in which they build on each other.
+const std::vector<Validation>& validations();
+
+/// Conversions of strain and stress, and the shipped fabrics' curves against their samples.
+void validateMaterial(const std::string& config_directory, const Sink& sink);
+
+/// Virtual tensile and shear tests, hanging strip, patch test, Jacobian, integrators.
+void validateCloth(const std::string& config_directory, const Sink& sink);
+
+/// Answers of proximity queries on deformed sheets against brute force and FCL: how many differ.
+void validateProximity(const std::string& config_directory, const Sink& sink);
+
+/// Two fingertips on the wool sample, both layers in one loop without clocks: equilibrium, contact
+/// cases, friction, refinement, and what disturbs the feel. Takes minutes.
+void validateContact(const std::string& config_directory, const Sink& sink);
+
+/// Kinematics of the fingers of urdf/hand_exoskeleton.urdf: against differences, closed forms and
+/// what its comment says, and whether the fingertips meet.
+/// @throws std::invalid_argument naming the file if it cannot be read, and as FingerKinematics
+void validateExoskeleton(const std::string& config_directory, const Sink& sink);
+
+/// Gratings, symmetries, k-space against the spectra of heights along strokes, and the fabrics with
+/// a surface: whether they feel as rough as they are, and whether weaves differ.
+/// @throws what loadFabric() and buildSurface() throw
+void validateTactile(const std::string& config_directory, const Sink& sink);
+
+/// The [strain, stress] samples of a fabric file as they stand in it, as Green-Lagrange strain and
+/// second Piola-Kirchhoff stress. @param curve for example "warp.elastic"
+/// @throws what loadFabric() throws for a bad file, std::invalid_argument if the curve has no
+/// points
+std::vector<material::CurvePoint> fabricSamples(const std::string& path, const std::string& curve);
+
+}  // namespace haptex::oracles

@@ -1,0 +1,69 @@
+// The samples and fingertips of the oracles of contact.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+
+#include "haptex/contact/patch.h"
+#include "haptex/kes/virtual_test.h"
+#include "haptex/oracles/experiments/haptic_loop.h"
+
+namespace haptex::oracles {
+
+using Fingertips = contact::PerFingertip<std::optional<contact::Fingertip>>;
+
+constexpr double kSampleSide = 0.2;      ///< m
+constexpr double kIndexRadius = 7.5e-3;  ///< m
+constexpr double kThumbRadius = 9e-3;    ///< m
+
+/// The 200 mm sample in the plane x = 0, 32 x 32 cells, hanging from the bar at the world's origin
+/// with the given direction of the fabric along +z. Patches of refinement 2.
+HapticLoopSettings hangingSample(const material::Fabric& fabric, kes::Direction up,
+                                 double large_scale_rate);
+/// The same sample held at all four sides, 1 + `strain` times as wide and as high, without gravity;
+/// its middle is at (0, 0, -0.1 m).
+HapticLoopSettings tautSample(const material::Fabric& fabric, double strain,
+                              double large_scale_rate);
+/// kg times gravity (N).
+double weight(const HapticLoopSettings& sample);
+
+/// Fingertips that meet face to face along x, the index finger on the +x side.
+struct Hand {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();    ///< m, between the two
+  double gap = 0.0;                                    ///< m, between the spheres; negative: deep
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
+  double opening = 0.0;                                ///< m/s, of the gap
+  double index_radius = kIndexRadius;                  ///< m
+  double thumb_radius = kThumbRadius;                  ///< m
+
+  Fingertips fingertips() const;
+};
+
+/// Moves the hand evenly by `displacement` while it opens by `opening` (m), in whole steps of h,
+/// and stops it there: after_step(fingertips) at every step.
+void move(Hand& hand, const Eigen::Vector3d& displacement, double opening, double seconds, double h,
+          const std::function<void(const Fingertips&)>& step);
+
+/// The force on both fingertips together (N).
+Eigen::Vector3d forceOnFingertips(const contact::HapticLayer& layer);
+
+/// The whole cloth with the resolution of a patch, in contact with the fingertips: what the two
+/// layers are to agree with. Large steps of backward Euler go to static equilibrium.
+class RefinedCloth {
+ public:
+  /// @param sample whose attached particles stay where they are
+  explicit RefinedCloth(const HapticLoopSettings& sample);
+
+  /// @param h s
+  /// @throws std::runtime_error if the step cannot be solved
+  void step(const Fingertips& fingertips, double h);
+  /// The cloth's force on a fingertip (N).
+  Eigen::Vector3d force(int fingertip) const;
+
+ private:
+  contact::ContactLaw law_;
+  contact::LargeScaleMotion motion_;
+  std::unique_ptr<contact::Patch> patch_;
+};
+
+}  // namespace haptex::oracles

@@ -1,0 +1,61 @@
+// Strips of cloth under their own weight, at rest: exact and simulated.
+#pragma once
+
+#include "haptex/cloth/forces/bending.h"
+#include "haptex/kes/virtual_test.h"
+#include "haptex/mesh/mesh.h"
+
+namespace haptex::oracles {
+
+enum class StripMesh { kOneWay, kAlternating, kIrregular };
+
+/// A strip that is clamped level at one end. Gamma = w g L^3 / B with the weight w g per area, the
+/// length L and the bending rigidity B along it; that across it is seven times as much.
+struct Cantilever {
+  double gamma;  ///< no unit, > 0
+  StripMesh mesh = StripMesh::kAlternating;
+  kes::Direction along = kes::Direction::kWeft;
+  int cells = 60;  ///< along the strip, >= 4
+  cloth::BendingModel model = cloth::BendingModel::kLinear;
+};
+
+/// Drop of the tip over its horizontal distance from the clamp, of the elastica
+///   theta'' = -gamma (1 - s) cos(theta), theta(0) = theta'(1) = 0,
+/// solved from the tip by shooting.
+/// @param gamma > 0, <= 1000
+double exactDropOverReach(double gamma);
+/// The same of a simulated strip, mean of the tip's particles.
+/// @throws std::runtime_error if the equilibrium is not reached
+double simulatedDropOverReach(const Cantilever& cantilever);
+
+/// A strip on edge, clamped at one end, tips over sideways under a weight of w g L^3 / D = 18.18
+/// (12.85 sqrt(B C) = w g width L^3 with the bending and torsional rigidities B = D width and
+/// C = 2 D width of a strip without transverse contraction: Timoshenko and Gere 1961, 6.3).
+constexpr double kLateralBucklingLoad = 18.18;
+/// The same load of a simulated strip: the one at which the exact Jacobian of the cloth at rest
+/// becomes singular.
+/// @throws std::runtime_error if the equilibrium is not reached
+double simulatedLateralBucklingLoad(StripMesh mesh, int cells);
+
+/// Curvature (1/m) of the circle nearest to a strip that lies free, without weight, whose fabric
+/// rests at `curvature` along the strip; less than 0 if it is curved away from its normal. A strip
+/// 0.1 m long.
+/// @param curvature 1/m, not 0
+/// @throws std::runtime_error if the equilibrium is not reached
+double simulatedRestCurvature(StripMesh mesh, kes::Direction along, cloth::BendingModel model,
+                              double curvature);
+
+/// The same of a strip 0.1 m long without rest curvature that was bent to three times `held` and is
+/// let go, whose friction is as much as that of the elastic moment at the curvature `held`.
+/// @param held 1/m, > 0: what friction holds
+/// @throws std::runtime_error if the equilibrium is not reached
+double simulatedResidualCurvature(StripMesh mesh, kes::Direction along, cloth::BendingModel model,
+                                  double held);
+
+/// Sag over span of a strip 5/3 as long as its span, which hangs from both ends without bending
+/// rigidity: that of the catenary, and of the simulated strip.
+double exactSagOverSpan();
+/// @throws std::runtime_error if the equilibrium is not reached
+double simulatedSagOverSpan(StripMesh mesh, int cells);
+
+}  // namespace haptex::oracles

@@ -1,0 +1,48 @@
+// Scene files: what is simulated, how finely, what is modelled and what is attached. YAML.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/step.h"
+#include "haptex/mesh/mesh.h"
+#include "haptex/mesh/obstacle.h"
+
+namespace haptex::scene {
+
+struct Scene {
+  std::string fabric_path;  ///< absolute, or relative to the working directory
+  mesh::ClothMesh mesh;
+  cloth::ModelledEffects effects;
+  std::vector<int> attached_particles;  ///< at their initial positions
+  double time_step = 0.0;               ///< s
+  cloth::StepSettings step;
+  std::vector<mesh::Obstacle> obstacles;  ///< names unique; the cloth collides with them if
+                                          ///< effects has contacts
+  /// A sheet that is attached by nothing but its sides: it may have any cells.
+  bool any_cells = false;
+  // What is modelled beside the cloth.
+  bool fingers = false;    ///< touch the cloth; effects has point loads then
+  bool tactile = false;    ///< the surface under the fingertips, only with fingers
+  bool recording = false;  ///< a bag is recorded without being asked for
+};
+
+/// Reads a scene file; docs/scene_files.md describes the format. A fabric or mesh name without a
+/// path separator is looked up in the directory of its kind beside the scene's directory
+/// (config/fabrics for config/scenes); one with a separator is a path from the scene's directory.
+/// @throws std::runtime_error if the scene file or its mesh cannot be read, or the scene is not
+/// YAML
+/// @throws std::invalid_argument naming file, key, value and what is allowed, or what loadObj()
+/// says
+Scene loadScene(const std::string& path);
+
+/// The same, but a sheet of a scene with any_cells has as few cells as make no edge along weft or
+/// warp longer than `cell_size` (m). Other scenes keep their mesh.
+/// @throws std::invalid_argument also if the cell size is not finite and > 0, or so small that
+/// there
+///   would be too many triangles
+Scene loadScene(const std::string& path, double cell_size);
+
+}  // namespace haptex::scene

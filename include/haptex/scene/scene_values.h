@@ -1,0 +1,26 @@
+// Values that several parts of a scene file have in common.
+#pragma once
+
+#include <string>
+
+#include "haptex/base/yaml_reader.h"
+
+namespace haptex::scene {
+
+constexpr double kLargestSize = 100.0;  ///< m, of what a scene file describes
+
+/// The path of a file that a scene names. A name without a separator lies in the directory `kind`
+/// beside the scene's, a path is relative to the scene's directory.
+/// @param extension with the dot; added if the name does not end with it
+/// @throws std::invalid_argument naming the files that there are if there is no such file
+std::string resolveFile(const base::YamlValue& value, const std::string& kind,
+                        const std::string& extension);
+
+/// A length (m), > 0 and at most kLargestSize.
+/// @throws std::invalid_argument naming file, key, value and what is allowed
+double readSize(const base::YamlValue& value);
+
+/// @throws std::invalid_argument naming file, key, number and the most that are allowed
+void requireTriangleCount(const base::YamlValue& value, long long triangles);
+
+}  // namespace haptex::scene

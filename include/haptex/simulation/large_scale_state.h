@@ -1,0 +1,17 @@
+// What the force loop is told of the whole cloth.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace haptex::simulation {
+
+/// A state of the large-scale layer.
+struct LargeScaleState {
+  std::vector<Eigen::Vector3d> positions;   ///< m, world frame
+  std::vector<Eigen::Vector3d> velocities;  ///< m/s, world frame
+  std::vector<char> attached;               ///< one per particle, nonzero where it is held
+  double simulated_time = 0.0;              ///< s
+};
+
+}  // namespace haptex::simulation

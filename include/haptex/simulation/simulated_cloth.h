@@ -1,0 +1,155 @@
+// A scene being simulated: the cloth, its state, its integrator, and how far it has come.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/cloth/dynamics/rest_detector.h"
+#include "haptex/contact/obstacle_collision.h"
+#include "haptex/material/fabric.h"
+#include "haptex/scene/scene.h"
+#include "haptex/simulation/quality_controller.h"
+
+namespace haptex::simulation {
+
+/// Attached particles may not be sent farther from the world origin than this (m, per axis): far
+/// beyond any workspace, but near enough to keep the numbers of a step finite.
+constexpr double kLargestCoordinate = 100.0;
+
+/// How a step of the scene is taken: in equal substeps, each by these settings.
+struct StepPlan {
+  cloth::StepSettings step;
+  int substeps = 1;  ///< > 0
+  int cycles = 1;    ///< > 0, how many steps of the scene stepInRealTime() takes as one; 1 with
+                     ///< several substeps
+};
+
+/// Steps a scene and changes it between two steps. Every change checks its whole request first and
+/// throws without having changed anything. Units SI, places in the world frame.
+///
+/// Cloth that has come to rest (cloth::RestDetector) sleeps: its steps only let the time pass.
+/// Every change wakes it, and it goes on from the state in which it fell asleep. It does not fall
+/// asleep as long as something outside moves: an attachment on its way, wind that changes, or an
+/// obstacle that moves.
+class SimulatedCloth {
+ public:
+  /// @throws std::invalid_argument what cloth::Cloth throws for the scene, and
+  ///   contact::ObstacleCollision if the cloth collides with its obstacles
+  SimulatedCloth(scene::Scene scene, material::Fabric fabric);
+
+  /// Can take its steps by any of these plans, at first by number 0, instead of by the scene's
+  /// settings.
+  /// @throws std::invalid_argument also if there is no plan or one has no substep, and what
+  ///   cloth::Integrator throws for their settings
+  SimulatedCloth(scene::Scene scene, material::Fabric fabric, std::vector<StepPlan> plans);
+
+  const cloth::Cloth& cloth() const { return cloth_; }
+  const cloth::ClothState& state() const { return state_; }
+  double timeStep() const { return time_step_; }  ///< s, of the scene: of all substeps together
+  std::uint64_t steps() const { return steps_; }  ///< accepted since the start or reset()
+  /// Of the last step: sums of counts and times over its substeps, the rest of the last of them.
+  const cloth::StepReport& lastReport() const { return report_; }
+  /// False again after reset().
+  bool lastStepRejected() const { return last_step_rejected_; }
+
+  /// Takes one step, with all its substeps. @returns false if one was rejected and the state is as
+  /// before the first
+  bool step();
+  /// As step(), but as many steps of the scene at once as the plan says.
+  /// @param waited s, how long the step has waited for its turn; counts as computing time for the
+  ///   controller
+  bool stepInRealTime(double waited);
+  double lastStepDuration() const { return last_cycles_ * time_step_; }  ///< s of simulated time
+  bool asleep() const { return asleep_; }
+  /// Accepted since the construction, without those that were slept through.
+  std::uint64_t computedSteps() const { return computed_steps_; }
+
+  /// The next steps are taken by this plan. Positions, velocities and all else stay; a method that
+  /// needs more than one state of the past starts anew. Allocates nothing.
+  /// @throws std::invalid_argument if there is no such plan
+  void use(std::size_t plan);
+  std::size_t plan() const { return plan_; }  ///< of the next step
+
+  /// From now on every step is timed and told to the controller, which chooses the plan of the
+  /// next.
+  /// @throws std::invalid_argument unless it chooses among as many qualities as there are plans
+  void setController(QualityController controller);
+  /// Whether no plan is left that is cheaper than the next step's and that the controller may take.
+  bool runsCheapest() const { return !controller_ || controller_->runsCheapest(); }
+  /// For a loop that else had to give up time: the next steps are by the cheapest of those.
+  void relieve();
+  /// Null without one.
+  const QualityController* controller() const { return controller_ ? &*controller_ : nullptr; }
+
+  /// Positions, velocities, attachments and time as at the start, without loads. The fabric stays.
+  void reset();
+
+  /// Takes effect in the next step; positions and velocities stay.
+  /// @throws std::invalid_argument if the cloth cannot be made of it; nothing has changed then
+  void setFabric(material::Fabric fabric);
+
+  /// Act until replaced. @throws std::invalid_argument what Cloth::setPointLoads() throws
+  void setPointLoads(const std::vector<cloth::PointLoad>& loads);
+
+  /// Attaches particles where they are now.
+  /// @throws std::invalid_argument if there is none, one does not exist or is named twice
+  void attach(const std::vector<std::uint32_t>& particles);
+
+  /// Attaches particles to places, reached at the end of the next step.
+  /// @throws std::invalid_argument also if there is not one finite place within
+  ///   kLargestCoordinate for each
+  void attach(const std::vector<std::uint32_t>& particles,
+              const std::vector<Eigen::Vector3d>& places);
+
+  /// Sends attached particles along straight minimum-jerk paths from where their attachments are
+  /// now, which they reach exactly. An earlier path ends here.
+  /// @param duration s of simulated time; 0: within the next step
+  /// @throws std::invalid_argument also if one is not attached, the displacement or the duration
+  ///   is not finite, the duration negative, or an end beyond kLargestCoordinate
+  void move(const std::vector<std::uint32_t>& particles, const Eigen::Vector3d& displacement,
+            double duration);
+
+  /// @throws std::invalid_argument also if one is not attached
+  void release(const std::vector<std::uint32_t>& particles);
+
+  /// Exact Jacobian blocks of the rows of some particles, in the present state.
+  /// @throws std::invalid_argument if there is none, one does not exist or is named twice
+  std::vector<cloth::JacobianBlock> jacobian(const std::vector<std::uint32_t>& particles) const;
+
+ private:
+  std::vector<int> requireParticles(const std::vector<std::uint32_t>& particles) const;
+  std::vector<int> requireAttached(const std::vector<std::uint32_t>& particles) const;
+  void attachInitially();
+  void makeIntegrators();
+  bool take(int cycles, double waited);
+  void takeSubsteps(double duration);
+  cloth::StepReport takeSubstep(double duration);
+  void wake();
+  void sleepIfResting();
+
+  cloth::Cloth cloth_;
+  cloth::ClothState state_;
+  cloth::ClothState before_;  // the step, if a plan has several substeps
+  std::vector<StepPlan> plans_;
+  std::vector<cloth::Integrator> integrators_;  // one per plan
+  std::size_t plan_ = 0;
+  std::optional<QualityController> controller_;
+  std::optional<contact::ObstacleCollision> collision_;
+  std::vector<int> initially_attached_;
+  double time_step_;
+  int last_cycles_ = 1;
+  cloth::StepReport report_;
+  bool last_step_rejected_ = false;
+  std::uint64_t steps_ = 0;
+  std::uint64_t computed_steps_ = 0;
+  bool disturbed_;  // for ever, by an obstacle that moves
+  cloth::RestDetector rest_;
+  bool asleep_ = false;
+};
+
+}  // namespace haptex::simulation

@@ -1,0 +1,69 @@
+// The cloth of an extreme case, at rest, disturbed and at rest again.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/studies/extreme_case.h"
+#include "haptex/studies/extreme_outcome.h"
+
+namespace haptex::studies {
+
+/// Particles of the sheet of a case that are attached: its top edge, or all sides.
+std::vector<int> attachedParticles(const ExtremeCase& extreme, const mesh::ClothMesh& mesh);
+
+/// A cloth that is held where it is as the case says.
+cloth::Cloth clothOf(const ExtremeCase& extreme, const mesh::ClothMesh& mesh,
+                     const std::optional<cloth::Air>& air);
+
+/// Kinetic energy of the free particles and potential energy (J).
+double energyOf(const cloth::Cloth& cloth, const cloth::ClothState& state);
+bool isFinite(const cloth::ClothState& state);
+
+/// Watches that steps in which nothing does work gain no energy beyond what EnergyBalance allows.
+class EnergyWatch {
+ public:
+  /// @param unwatched steps at first that may gain what was lost while work was done
+  explicit EnergyWatch(int unwatched) : unwatched_(unwatched) {}
+
+  /// By how much the energy after a step is above what it may be, over the scale of the energies;
+  /// 0 if it is not, or the step is not watched.
+  double growth(const cloth::Cloth& cloth, const cloth::ClothState& before,
+                const cloth::ClothState& after);
+
+ private:
+  int unwatched_;
+  std::deque<double> energies_;  // J, before the last steps
+};
+
+/// The cloth's rest state, from its initial positions.
+/// @throws std::runtime_error if it does not come to rest
+cloth::ClothState restOf(const cloth::Cloth& cloth);
+
+/// Largest distance of a particle of the state from that of the other, over the largest extent of
+/// the other.
+double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& other);
+
+/// Lets the state come to rest by backward Euler, in steps that grow up to a sixth of the cloth's
+/// slowest period: with the solves per step of the case, and if that is too slow with as many as a
+/// step needs. What a linearised step stretches while it turns resists the turning, so stiff light
+/// cloth creeps.
+struct Settling {
+  double error = 0.0;   ///< distanceBetween() state and rest at the end
+  double growth = 0.0;  ///< largest of EnergyWatch
+  int steps = 0;
+  int rejected = 0;
+  bool slow = false;  ///< the case's own solves did not suffice
+  /// Largest force on a free particle at the end, over the largest on an attached one.
+  double unbalanced = 0.0;
+};
+Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
+                const cloth::ClothState& rest, cloth::ClothState& state);
+/// Lets it settle and tells what came out.
+void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
+                    const cloth::ClothState& rest, cloth::ClothState& state,
+                    ExtremeOutcome& outcome);
+
+}  // namespace haptex::studies

@@ -1,0 +1,18 @@
+// Makes a failing case small.
+#pragma once
+
+#include <functional>
+
+#include "haptex/studies/extreme_case.h"
+
+namespace haptex::studies {
+
+/// The case with fewer cells and steps, without what is modelled, held and disturbed beside the
+/// point, and with milder numbers, as far as it still fails: one change after the other is kept if
+/// `fails` says so, until none of them is.
+/// @param fails of the case given: true; in the same way as that one, if the caller tells ways
+/// apart
+ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
+                              const std::function<bool(const ExtremeCase&)>& fails);
+
+}  // namespace haptex::studies

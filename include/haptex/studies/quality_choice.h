@@ -1,0 +1,55 @@
+// The front of all motions together, its presets, and the files that hold them.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "haptex/scene/quality.h"
+#include "haptex/studies/pareto.h"
+#include "haptex/studies/trade_off_study.h"
+
+namespace haptex::studies {
+
+/// All that was measured.
+struct TradeOffTable {
+  std::vector<TradeOffCase> cases;
+  std::vector<Reference> references;  ///< by case
+  std::vector<TradeOffPoint> points;
+  std::vector<std::vector<TradeOffResult>> results;  ///< by point, then by case
+};
+
+/// Largest cost of a point in all cases, and the geometric mean of its relative errors: what halves
+/// one of them counts alike whichever it is. Infinite if it was not stable or not followed in one.
+CostAndError overall(const std::vector<TradeOffResult>& results);
+
+/// Points of the front that a scene may ask for, by rising cost and falling error (overall()): with
+/// Green-Lagrange elements and an implicit method, cells of at most kLargestCell, stable in all
+/// cases, and each more accurate than the one before by kLeastGain at least. Three of them have the
+/// names of presets, by rule:
+///   accurate: the least error of those whose cost is at most kMostCost
+///   fast:     the least cost of those whose error in position is at most kMostPositionError of the
+///             sample's size in every case
+///   balanced: kneeOf() those between both
+/// the others are called point_1, point_2, ... by their place.
+std::vector<scene::Quality> chooseQualities(const TradeOffTable& table);
+
+constexpr double kLargestCell = 0.017;  ///< m, the width of a fingertip
+constexpr double kLeastGain = 1.05;
+constexpr double kMostCost = 1.0;  ///< computing time of one core over simulated time
+constexpr double kMostPositionError = 0.2;
+
+/// CSV, a line per point and case that was followed, and one per reference with its own errors. In
+/// the columns position_limited, force_limited, energy_limited 1 stands for an error that is the
+/// reference's own, because the distance from it is smaller. Of the column front, 1: on the front
+/// of cost and relative error of its case; preset: the point's name among `qualities`, if it is
+/// there.
+void writeTable(std::ostream& out, const TradeOffTable& table,
+                const std::vector<scene::Quality>& qualities);
+
+/// YAML: docs/trade_off.md describes the format.
+/// @param machine of the study, for people
+void writeQualities(std::ostream& out, const std::vector<scene::Quality>& qualities,
+                    const std::string& machine);
+
+}  // namespace haptex::studies

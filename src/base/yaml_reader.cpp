@@ -1,0 +1,150 @@
+#include "haptex/base/yaml_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace haptex::base {
+namespace {
+
+std::string join(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string readText(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    throw std::runtime_error(path + ": there is no such file");
+  }
+  if (std::filesystem::is_directory(path, error)) {
+    throw std::runtime_error(path + ": is a directory, not a file");
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
+  if (!stream.is_open() || stream.bad()) throw std::runtime_error(path + ": cannot be read");
+  return text.str();
+}
+
+}  // namespace
+
+YamlValue::YamlValue(std::shared_ptr<const std::string> file, std::string key_path,
+                     const YAML::Node& node)
+    : file_(std::move(file)), key_path_(std::move(key_path)), node_(node) {}
+
+YamlValue YamlValue::load(const std::string& path) {
+  const std::string text = readText(path);
+  std::vector<YAML::Node> documents;
+  try {
+    documents = YAML::LoadAll(text);
+  } catch (const YAML::Exception& error) {
+    throw std::runtime_error(path + ": line " + std::to_string(error.mark.line + 1) +
+                             ": is not YAML: " + error.msg);
+  }
+  if (documents.size() != 1) {
+    throw std::runtime_error(path + ": has " + std::to_string(documents.size()) +
+                             " YAML documents, must have one");
+  }
+  return YamlValue(std::make_shared<const std::string>(path), "", documents.front());
+}
+
+void YamlValue::requireKeys(const std::vector<std::string>& required,
+                            const std::vector<std::string>& optional) const {
+  std::vector<std::string> allowed = required;
+  allowed.insert(allowed.end(), optional.begin(), optional.end());
+  if (!node_.IsMap()) refuse("must be a map with the keys " + join(allowed));
+  std::vector<std::string> seen;
+  for (const auto& entry : node_) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "(not a text)";
+    const YamlValue value(file_, key_path_.empty() ? key : key_path_ + "." + key, entry.second);
+    if (!contains(allowed, key)) value.refuseBecause("unknown key, allowed here: " + join(allowed));
+    if (contains(seen, key)) value.refuseBecause("the key is given twice");
+    seen.push_back(key);
+  }
+  for (const std::string& key : required) {
+    if (!contains(seen, key)) {
+      refuseBecause("the key '" + key + "' is missing, required here: " + join(required));
+    }
+  }
+}
+
+bool YamlValue::has(const std::string& key) const { return node_[key].IsDefined(); }
+
+YamlValue YamlValue::at(const std::string& key) const {
+  return YamlValue(file_, key_path_.empty() ? key : key_path_ + "." + key, node_[key]);
+}
+
+std::vector<YamlValue> YamlValue::items() const {
+  if (!node_.IsSequence()) refuse("must be a list");
+  std::vector<YamlValue> items;
+  for (const YAML::Node& node : node_) {
+    items.push_back(YamlValue(file_, key_path_ + "[" + std::to_string(items.size()) + "]", node));
+  }
+  return items;
+}
+
+std::vector<YamlValue> YamlValue::items(std::size_t size) const {
+  const std::string reason = "must be a list of " + std::to_string(size);
+  if (!node_.IsSequence() || node_.size() != size) refuse(reason);
+  return items();
+}
+
+// yaml-cpp marks a quoted scalar with the tag "!": '5' is a text, not a number.
+double YamlValue::number() const {
+  double number = 0.0;
+  if (!node_.IsScalar() || node_.Tag() == "!" || !YAML::convert<double>::decode(node_, number) ||
+      !std::isfinite(number)) {
+    refuse("must be a finite number");
+  }
+  return number;
+}
+
+int YamlValue::integer() const {
+  int number = 0;
+  if (!node_.IsScalar() || node_.Tag() == "!" || !YAML::convert<int>::decode(node_, number)) {
+    refuse("must be an integer");
+  }
+  return number;
+}
+
+std::string YamlValue::text() const {
+  if (!node_.IsScalar() || node_.Scalar().find_first_not_of(" \t\r\n") == std::string::npos) {
+    refuse("must be a text that is not empty");
+  }
+  return node_.Scalar();
+}
+
+std::string YamlValue::oneOf(std::initializer_list<const char*> words) const {
+  const std::vector<std::string> allowed(words.begin(), words.end());
+  if (!node_.IsScalar() || !contains(allowed, node_.Scalar())) {
+    refuse(allowed.size() == 1 ? "must be " + allowed.front() : "must be one of " + join(allowed));
+  }
+  return node_.Scalar();
+}
+
+std::string YamlValue::describeValue() const {
+  if (node_.IsScalar()) return "'" + node_.Scalar() + "'";
+  if (node_.IsMap()) return "a map";
+  if (node_.IsSequence()) return "a list of " + std::to_string(node_.size());
+  return "nothing";
+}
+
+void YamlValue::refuse(const std::string& reason) const {
+  refuseBecause(describeValue() + " " + reason);
+}
+
+void YamlValue::refuseBecause(const std::string& reason) const {
+  throw std::invalid_argument(*file_ + ": " + (key_path_.empty() ? "" : key_path_ + ": ") + reason);
+}
+
+}  // namespace haptex::base

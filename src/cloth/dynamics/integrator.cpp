@@ -1,0 +1,321 @@
+#include "haptex/cloth/dynamics/integrator.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <sstream>
+#include <stdexcept>
+
+namespace haptex::cloth {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Eigen::Vector3d;
+
+constexpr double kMostStepGrowth = 2.0;  // of BDF-2 from step to step
+
+void requireFraction(const char* name, double value) {
+  if (!std::isfinite(value) || value <= 0.0 || value >= 1.0) {
+    std::ostringstream message;
+    message << name << " is " << value << "; it must lie between 0 and 1, both excluded";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+const StepSettings& requireSound(const StepSettings& settings) {
+  requireFraction("tolerance", settings.tolerance);
+  requireFraction("newton_tolerance", settings.newton_tolerance);
+  if (settings.newton_iterations < 1) {
+    std::ostringstream message;
+    message << "newton_iterations is " << settings.newton_iterations << "; it must be at least 1";
+    throw std::invalid_argument(message.str());
+  }
+  if (settings.threads < 1 || settings.threads > kMostThreads) {
+    std::ostringstream message;
+    message << "threads is " << settings.threads << "; it must lie from 1 to " << kMostThreads;
+    throw std::invalid_argument(message.str());
+  }
+  return settings;
+}
+
+bool allFinite(const std::vector<Vector3d>& vectors) {
+  return std::all_of(vectors.begin(), vectors.end(),
+                     [](const Vector3d& vector) { return vector.allFinite(); });
+}
+
+std::size_t couplingCount(const Cloth& cloth) {
+  if (cloth.springs()) return cloth.springs()->springs().size();
+  return cloth.bending() ? cloth.bending()->couplings().size() : 0;
+}
+
+std::size_t frictionCount(const Cloth& cloth) {
+  return cloth.bendingFriction() ? cloth.bendingFriction()->size() : 0;
+}
+
+}  // namespace
+
+Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
+    : settings_(requireSound(settings)),
+      element_count_(cloth.membrane().elements().size()),
+      coupling_count_(couplingCount(cloth)),
+      end_(cloth.initialState()) {
+  const IntegrationMethod method = settings.method;
+  if (!isImplicit(method)) {
+    explicit_step_.emplace(cloth, method);
+    return;
+  }
+  stages_.emplace(cloth, settings);
+  balance_.emplace(cloth);
+  if (method == IntegrationMethod::kBackwardEuler) return;
+  forces_.resize(cloth.particleCount());
+  if (method != IntegrationMethod::kBackwardMidpoint) base_ = end_;
+  if (method == IntegrationMethod::kBdf2) history_ = History{end_, end_};
+}
+
+StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_step) {
+  if (!std::isfinite(time_step) || time_step <= 0.0) {
+    std::ostringstream message;
+    message << "the time step is " << time_step << " s; it must be finite and greater than 0";
+    throw std::invalid_argument(message.str());
+  }
+  if (state.positions.size() != cloth.particleCount() ||
+      state.velocities.size() != cloth.particleCount() ||
+      end_.positions.size() != cloth.particleCount() ||
+      cloth.membrane().elements().size() != element_count_ ||
+      couplingCount(cloth) != coupling_count_ ||
+      state.plastic_bends.size() != frictionCount(cloth) ||
+      end_.plastic_bends.size() != frictionCount(cloth)) {
+    throw std::invalid_argument("the state, the cloth and the integrator differ in size");
+  }
+  StepReport report;
+  const Clock::time_point start = Clock::now();
+  end_.time = state.time + time_step;
+  end_.plastic_bends = state.plastic_bends;  // until the step is accepted
+  advance(cloth, state, time_step, report);
+  settle(end_.velocities);
+  if (balance_) keepEnergy(cloth, state, time_step, report);
+  report.accepted = std::isfinite(report.linear_residual) && std::isfinite(end_.time) &&
+                    allFinite(end_.positions) && allFinite(end_.velocities);
+  if (report.accepted) {
+    cloth.yieldBending(end_);
+    keep(cloth, state, time_step, touches() || report.taken_anew, report.energy_taken);
+  } else if (stages_) {
+    stages_->forget();
+  }
+  report.total_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return report;
+}
+
+void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double h,
+                            StepReport& report) {
+  // Of the kinetic energy. It doubles with every solve of a step taken anew but the first, up to
+  // all that can be taken: what the next solve would still save is worth less and less.
+  double most_taken = 0.1;
+  balance_->begin(cloth, begin);
+  double gained = 0.0;
+  const auto isSmall = [&] {
+    gained = balance_->excess(cloth, begin, end_, contactReactions());
+    return gained <= 0.0 || gained <= most_taken * balance_->kineticAtEnd();
+  };
+  const auto isSmallEnough = [&] {
+    const bool small = isSmall();
+    most_taken = std::min(1.0, 2.0 * most_taken);
+    return small;
+  };
+  if (!isSmall()) {
+    report.taken_anew = true;
+    const Stage stage{begin, h, end_.time, 1.0, Stage::Rates::kSinceBase};
+    if (settings_.method != IntegrationMethod::kBackwardEuler) {
+      stages_->forget();
+      stages_->solveLinearised(cloth, stage, {begin.positions, begin.velocities, h}, end_, report);
+    }
+    const bool judged = stages_->descend(cloth, stage, std::ref(isSmallEnough), end_, report);
+    stages_->forget();
+    settle(end_.velocities);
+    if (!judged || touches()) isSmall();
+  }
+  if (gained > 0.0) slowDown(cloth, gained, report);
+}
+
+/// Takes energy (J) out of the velocities at the end, as far as there is any.
+void Integrator::slowDown(const Cloth& cloth, double energy, StepReport& report) {
+  const double kinetic = balance_->kineticAtEnd();
+  if (!(kinetic > 0.0)) return;
+  report.energy_taken = std::min(energy, kinetic);
+  const double factor = std::sqrt(1.0 - report.energy_taken / kinetic);
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (!cloth.attachments()[i]) end_.velocities[i] *= factor;
+  }
+  settle(end_.velocities);
+}
+
+void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
+                         StepReport& report) {
+  if (explicit_step_) return explicit_step_->advance(cloth, begin, h, end_);
+  switch (settings_.method) {
+    case IntegrationMethod::kBackwardMidpoint:
+      return takeMidpoint(cloth, begin, h, report);
+    case IntegrationMethod::kTrBdf2:
+      return takeTrBdf2(cloth, begin, h, report);
+    case IntegrationMethod::kBdf2:
+      if (!continuesHistory(begin, h)) return takeTrBdf2(cloth, begin, h, report);
+      base_.plastic_bends = begin.plastic_bends;
+      return takeBdf2(cloth, history_->before, begin, history_->time_step, h, report);
+    default:
+      return stages_->solve(cloth, {begin, h, end_.time, 1.0, Stage::Rates::kSinceBase},
+                            {begin.positions, begin.velocities, h}, end_, report);
+  }
+}
+
+/// Takes the state over from end_. @param anew the next step of BDF-2 is to start anew
+void Integrator::keep(const Cloth& cloth, ClothState& state, double h, bool anew,
+                      double energy_taken) {
+  if (balance_) balance_->keep(cloth, end_, energy_taken);
+  if (history_) std::swap(history_->before, state);
+  std::swap(state.positions, end_.positions);
+  std::swap(state.velocities, end_.velocities);
+  std::swap(state.plastic_bends, end_.plastic_bends);
+  state.time = end_.time;
+  if (!history_) return;
+  history_->last = state;
+  history_->time_step = anew ? 0.0 : h;
+}
+
+bool Integrator::touches() const {
+  return stages_ && stages_->contacts() && stages_->contacts()->holding();
+}
+
+void Integrator::settle(Velocities& velocities) const {
+  if (touches()) stages_->contacts()->settle(velocities);
+}
+
+const std::vector<ContactReaction>& Integrator::contactReactions() const {
+  static const std::vector<ContactReaction> kNone;
+  return stages_ && stages_->contacts() ? stages_->contacts()->reactions() : kNone;
+}
+
+bool Integrator::continuesHistory(const ClothState& begin, double h) const {
+  return history_->time_step > 0.0 && h <= kMostStepGrowth * history_->time_step &&
+         begin.time == history_->last.time && begin.positions == history_->last.positions &&
+         begin.velocities == history_->last.velocities;
+}
+
+/// A stage at theta = 1/2 + blend of the step, and on from there in a straight line:
+///   x1 = x0 + (x - x0) / theta,  v1 = v0 + (v - v0) / theta.
+/// For linear forces the energy then changes by what attachments and wind do minus
+///   blend (|v1 - v0|_M^2 + |x1 - x0|_K^2),
+/// so the first term tells how much blend takes away what nonlinear forces have added; where that
+/// does not suffice it is doubled. What they add at the midpoint is of the third order in h, so
+/// the blend is of the first, and the step still of the second order.
+void Integrator::takeMidpoint(const Cloth& cloth, const ClothState& begin, double h,
+                              StepReport& report) {
+  constexpr double kMostBlend = 0.5;
+  const double potential = cloth.potentialEnergy(begin);
+  while (true) {
+    const double theta = 0.5 + report.blend;
+    stages_->solve(cloth, {begin, theta * h, end_.time, theta, Stage::Rates::kOfVelocities},
+                   {begin.positions, begin.velocities, theta * h}, end_, report);
+    const double work = outerWork(cloth, begin, h, theta);
+    extrapolate(cloth, begin, theta);
+    if (report.blend >= kMostBlend) return;
+    const double enough = blendAgainstGrowth(cloth, begin, potential + work);
+    if (!(enough > 0.0)) return;
+    report.blend = std::min(kMostBlend, std::max(2.0 * report.blend, report.blend + enough));
+  }
+}
+
+/// @param allowed potential energy (J) at the end, if the velocities stay as they are
+/// @return 0 if the step to end_ has not gained energy beyond what solves and rounding leave open
+double Integrator::blendAgainstGrowth(const Cloth& cloth, const ClothState& begin,
+                                      double allowed) const {
+  constexpr double kRounding = 1e-13;
+  const double potential = cloth.potentialEnergy(end_);
+  double growth = potential - allowed;
+  double kinetic = 0.0, change_squared = 0.0;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (cloth.attachments()[i]) continue;
+    const double mass = cloth.masses()[i];
+    const Vector3d change = end_.velocities[i] - begin.velocities[i];
+    const Vector3d sum = end_.velocities[i] + begin.velocities[i];
+    growth += 0.5 * mass * change.dot(sum);
+    kinetic += 0.5 * mass * sum.squaredNorm();
+    change_squared += mass * change.squaredNorm();
+  }
+  const double open = settings_.tolerance * change_squared +
+                      kRounding * (kinetic + std::abs(potential) + std::abs(allowed));
+  return growth > open ? growth / change_squared : 0.0;
+}
+
+/// What attachments and wind do over the step (J) by the forces in the stage at theta that end_
+/// holds. What the air takes from motion relative to it is not work that may come back.
+double Integrator::outerWork(const Cloth& cloth, const ClothState& begin, double h, double theta) {
+  const double end = end_.time;
+  end_.time = begin.time + theta * h;
+  double work = h * cloth.windPower(end_);
+  bool known = false;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    const auto& attachment = cloth.attachments()[i];
+    if (!attachment) continue;
+    const Vector3d way = attachment->position(end) - begin.positions[i];
+    if (way.isZero(0.0)) continue;
+    if (!known) cloth.computeForces(end_, forces_);
+    known = true;
+    work -= forces_[i].dot(way);
+  }
+  end_.time = end;
+  return work;
+}
+
+void Integrator::extrapolate(const Cloth& cloth, const ClothState& begin, double theta) {
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (const auto& attachment = cloth.attachments()[i]) {
+      end_.positions[i] = attachment->position(end_.time);
+      end_.velocities[i] = attachment->velocity(end_.time);
+      continue;
+    }
+    end_.positions[i] = begin.positions[i] + (end_.positions[i] - begin.positions[i]) / theta;
+    end_.velocities[i] = begin.velocities[i] + (end_.velocities[i] - begin.velocities[i]) / theta;
+  }
+}
+
+/// The trapezoidal rule over gamma h, then BDF-2 over its beginning and end; with
+/// gamma = 2 - sqrt 2 both stages have the same a (Bank et al. 1985).
+void Integrator::takeTrBdf2(const Cloth& cloth, const ClothState& begin, double h,
+                            StepReport& report) {
+  const double first = (2.0 - std::sqrt(2.0)) * h;
+  const double a = 0.5 * first;
+  base_.plastic_bends = begin.plastic_bends;
+  cloth.computeForces(begin, forces_);
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    base_.positions[i] = begin.positions[i] + a * begin.velocities[i];
+    base_.velocities[i] = begin.velocities[i] + a / cloth.masses()[i] * forces_[i];
+  }
+  stages_->solve(cloth, {base_, a, begin.time + first, 1.0, Stage::Rates::kOfVelocities},
+                 {begin.positions, begin.velocities, first}, end_, report);
+  settle(end_.velocities);
+  takeBdf2(cloth, begin, end_, first, h - first, report);
+}
+
+/// From `before` by `first` seconds to `middle`, which may be end_, and by `second` to the end. The
+/// velocities of the guess are the mean ones between `before` and `middle`.
+void Integrator::takeBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,
+                          double first, double second, StepReport& report) {
+  const double ratio = second / first;
+  const double divisor = 1.0 + 2.0 * ratio;
+  const double of_before = ratio * ratio / divisor;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    const Vector3d way = middle.positions[i] - before.positions[i];
+    base_.positions[i] = middle.positions[i] + of_before * way;
+    base_.velocities[i] =
+        middle.velocities[i] + of_before * (middle.velocities[i] - before.velocities[i]);
+    end_.velocities[i] = way / first;
+  }
+  // A velocity from before an impact would make what touches rebound.
+  settle(base_.velocities);
+  const double a = second * (1.0 + ratio) / divisor;
+  stages_->solve(cloth, {base_, a, end_.time, 1.0, Stage::Rates::kOfVelocities},
+                 {middle.positions, end_.velocities, second}, end_, report);
+}
+
+}  // namespace haptex::cloth

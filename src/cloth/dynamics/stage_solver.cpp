@@ -1,0 +1,296 @@
+#include "haptex/cloth/dynamics/stage_solver.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace haptex::cloth {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Eigen::Vector3d;
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+/// Where the attached particle is in the stage.
+Vector3d placeIn(const Stage& stage, const AttachmentPath& path, int particle) {
+  return (1.0 - stage.share) * stage.base.positions[particle] +
+         stage.share * path.position(stage.end);
+}
+
+/// When the forces of the stage act (s, simulated).
+double timeOf(const Stage& stage) {
+  return (1.0 - stage.share) * stage.base.time + stage.share * stage.end;
+}
+
+}  // namespace
+
+StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
+    : settings_(settings),
+      pool_(settings.threads > 1 ? std::make_unique<linear::ThreadPool>(settings.threads)
+                                 : nullptr),
+      matrix_(cloth.pattern()),
+      solver_(matrix_, settings.solver, pool_.get()),
+      rhs_(3, cloth.particleCount()),
+      solution_(linear::BlockVector::Zero(3, cloth.particleCount())),
+      prescribed_(linear::BlockVector::Zero(3, cloth.particleCount())),
+      fixed_(cloth.particleCount(), 0) {
+  if (cloth.effects().contacts) contacts_.emplace(matrix_);
+  trial_ = cloth.initialState();
+  base_strains_.resize(cloth.strainCount());
+  if (cloth.air()) fixed_air_.panels.resize(cloth.membrane().elements().size());
+}
+
+void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                        ClothState& result, StepReport& report) {
+  solveLinearised(cloth, stage, guess, result, report);
+  if (settings_.newton_iterations == 1) return;
+  fixPast(cloth, stage, result);
+  iterateNewton(cloth, stage, incrementalPotential(cloth, stage, result),
+                settings_.newton_iterations - 1, {}, result, report);
+}
+
+bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
+                          const std::function<bool()>& enough, ClothState& result,
+                          StepReport& report) {
+  constexpr int kLeastSolves = 20;
+  fixPast(cloth, stage, stage.base);
+  for (AirPanel& panel : fixed_air_.panels) panel.lift.setZero();
+  const double potential = touching() ? incrementalPotential(cloth, stage, result)
+                                      : retreatTowardsRest(cloth, stage, result);
+  return iterateNewton(cloth, stage, potential, std::max(kLeastSolves, settings_.newton_iterations),
+                       enough, result, report);
+}
+
+void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                                  ClothState& result, StepReport& report) {
+  const Clock::time_point start = Clock::now();
+  linearise(cloth, stage, guess);
+  report.assembly_seconds += seconds(Clock::now() - start);
+  report.linear_converged = solveFirst(cloth, stage, guess, report) && report.linear_converged;
+  linearised_norm_ = rhs_.norm();
+  for (int i = 0; i < matrix_.size(); ++i) {
+    const auto& attachment = cloth.attachments()[i];
+    result.velocities[i] = guess.velocities[i] + solution_.col(i);
+    result.positions[i] = attachment ? placeIn(stage, *attachment, i)
+                                     : stage.base.positions[i] + stage.a * result.velocities[i];
+  }
+}
+
+/// What Newton iterations hold fixed: the strains before, and the air of a state near the end.
+void StageSolver::fixPast(const Cloth& cloth, const Stage& stage, const ClothState& at) {
+  if (stage.rates == Stage::Rates::kSinceBase) {
+    cloth.computeStrains(stage.base.positions, base_strains_);
+  } else {
+    cloth.computeStrainsBefore(at.positions, at.velocities, stage.a, base_strains_);
+  }
+  cloth.fixAir(at.positions, at.velocities, timeOf(stage), fixed_air_);
+}
+
+/// If the potential of the free particles at x*, without velocity, is lower, halves their way from
+/// there until it is not.
+/// @return the incremental potential of the result
+double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
+  constexpr double kLeastShare = 1e-9;
+  const auto placeAt = [&](double share) {
+    for (int i = 0; i < matrix_.size(); ++i) {
+      const Vector3d velocity = result.velocities[i];
+      trial_.velocities[i] = fixed_[i] ? velocity : Vector3d::Zero();
+      if (!fixed_[i] && share > 0.0) trial_.velocities[i] = share * velocity;
+      trial_.positions[i] = fixed_[i] ? result.positions[i]
+                                      : stage.base.positions[i] + stage.a * trial_.velocities[i];
+    }
+    return incrementalPotential(cloth, stage, trial_);
+  };
+  const double at_rest = placeAt(0.0);
+  double potential = incrementalPotential(cloth, stage, result);
+  if (potential <= at_rest) return potential;
+  double share = 1.0;
+  do {
+    share = share > kLeastShare ? 0.5 * share : 0.0;
+    potential = placeAt(share);
+  } while (!(potential <= at_rest) && share > 0.0);
+  std::swap(result.positions, trial_.positions);
+  std::swap(result.velocities, trial_.velocities);
+  return potential;
+}
+
+void StageSolver::addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities) {
+  matrix_.setZero();
+  for (int i = 0; i < matrix_.size(); ++i) {
+    const double mass = cloth.masses()[i];
+    matrix_.diagonal(i).diagonal().setConstant(mass);
+    rhs_.col(i) = -mass * (velocities[i] - stage.base.velocities[i]);
+  }
+}
+
+void StageSolver::linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
+  addInertia(cloth, stage, guess.velocities);
+  cloth.addStep(guess.positions, guess.velocities, stage.base.plastic_bends,
+                {stage.a, guess.ahead, timeOf(stage)}, matrix_, rhs_);
+  prescribe(cloth, stage, guess);
+}
+
+void StageSolver::prescribe(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
+  any_fixed_ = false;
+  for (int i = 0; i < matrix_.size(); ++i) {
+    const auto& attachment = cloth.attachments()[i];
+    fixed_[i] = attachment.has_value();
+    if (!attachment) continue;
+    any_fixed_ = true;
+    const Vector3d place = placeIn(stage, *attachment, i);
+    prescribed_.col(i) = (place - stage.base.positions[i]) / stage.a - guess.velocities[i];
+  }
+}
+
+void StageSolver::eliminate() {
+  if (any_fixed_) matrix_.eliminate(fixed_, prescribed_, rhs_);
+  if (touching()) contacts_->confine(matrix_, rhs_);
+}
+
+/// The linear solve of the linearised stage, as often as the contacts ask for it.
+bool StageSolver::solveFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                             StepReport& report) {
+  constexpr int kMostRounds = 10;
+  if (contacts_) contacts_->begin(cloth, stage, guess.velocities, fixed_, matrix_, rhs_);
+  if (!touching()) {
+    eliminate();
+    return solveLinear(report);
+  }
+  bool solved = false;
+  for (int round = 1; round <= kMostRounds; ++round) {
+    any_fixed_ = contacts_->prepareRound(matrix_, rhs_, fixed_, prescribed_);
+    eliminate();
+    solved = solveLinear(report);
+    ++report.contact_rounds;
+    if (!contacts_->update(solution_, round == kMostRounds)) break;
+  }
+  return solved;
+}
+
+/// Solves matrix_ solution_ = rhs_ from the guess in solution_; false if that did not converge.
+bool StageSolver::solveLinear(StepReport& report, linear::LinearSolver::Definiteness definiteness) {
+  const Clock::time_point start = Clock::now();
+  for (int i = 0; any_fixed_ && i < matrix_.size(); ++i) {
+    if (fixed_[i]) solution_.col(i).setZero();
+  }
+  if (touching()) contacts_->removeNormal(solution_);
+  const linear::SolveResult result =
+      solver_.solve(matrix_, rhs_, settings_.tolerance, solution_, definiteness);
+  for (int i = 0; any_fixed_ && i < matrix_.size(); ++i) {
+    if (fixed_[i]) solution_.col(i) = prescribed_.col(i);
+  }
+  if (touching()) contacts_->putNormal(solution_);
+  report.solver = solver_.lastMethod();
+  report.linear_iterations += result.iterations;
+  report.linear_residual = result.residual;
+  ++report.newton_iterations;
+  report.solve_seconds += seconds(Clock::now() - start);
+  return result.converged;
+}
+
+double StageSolver::incrementalPotential(const Cloth& cloth, const Stage& stage,
+                                         const ClothState& at) const {
+  double potential = cloth.incrementalPotential(
+      at.positions, at.velocities, stage.base.plastic_bends, base_strains_, fixed_air_, stage.a);
+  for (int i = 0; i < matrix_.size(); ++i) {
+    if (fixed_[i]) continue;
+    const double mass = cloth.masses()[i];
+    potential += 0.5 * mass * (at.velocities[i] - stage.base.velocities[i]).squaredNorm();
+    potential -= (cloth.externalForces()[i] + mass * cloth.effects().gravity)
+                     .dot(at.positions[i] - stage.base.positions[i]);
+  }
+  if (touching()) potential += contacts_->frictionPotential(at.velocities);
+  return potential;
+}
+
+void StageSolver::assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at,
+                                 Membrane::Hessian hessian, StepReport& report) {
+  const Clock::time_point start = Clock::now();
+  addInertia(cloth, stage, at.velocities);
+  cloth.addNewton(at.positions, at.velocities, stage.base.plastic_bends, base_strains_, fixed_air_,
+                  stage.a, hessian, matrix_, rhs_);
+  contacts_change_ =
+      touching() && contacts_->addNewton(at.velocities, matrix_, rhs_, fixed_, prescribed_);
+  any_fixed_ = any_fixed_ || touching();
+  eliminate();
+  report.assembly_seconds += seconds(Clock::now() - start);
+}
+
+/// @param potential incremental one of the result
+/// @param most_solves linear ones
+/// @param enough may be empty
+/// @return whether the result is enough
+bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double potential,
+                                int most_solves, const std::function<bool()>& enough,
+                                ClothState& result, StepReport& report) {
+  constexpr double kNearMinimum = 1e-2;  // relative residual from which the exact Hessian is tried
+  constexpr double kNearer = 0.1;        // of the residual where it was not positive definite
+  const double reference = linearised_norm_;
+  double near = kNearMinimum * reference;
+  const int last_solve = report.newton_iterations + most_solves;
+  prescribed_.setZero();  // the fixed particles have reached their places
+  bool converged = false, is_enough = false;
+  auto hessian = Membrane::Hessian::kProjected;
+  while (true) {
+    assembleNewton(cloth, stage, result, hessian, report);
+    if (touching()) potential = incrementalPotential(cloth, stage, result);  // of this friction
+    const double norm = rhs_.norm();
+    report.newton_residual = reference > 0.0 ? norm / reference : norm;
+    converged = norm <= settings_.newton_tolerance * reference && !contacts_change_;
+    if (converged || report.newton_iterations >= last_solve) break;
+    solution_.setZero();
+    const bool exact = hessian == Membrane::Hessian::kExact;
+    const bool solved = solveLinear(report, exact ? linear::LinearSolver::Definiteness::kUnknown
+                                                  : linear::LinearSolver::Definiteness::kPositive);
+    if (!exact) report.linear_converged = report.linear_converged && solved;
+    // Of the projected Hessian an inexact solution will do: the line search judges it.
+    const Descent descent =
+        solved || !exact ? searchLine(cloth, stage, result, potential) : Descent::kNone;
+    if (descent == Descent::kFound) {
+      const bool enters = touching() && contacts_->enter(result.velocities);
+      is_enough = enough && !enters && enough();
+      if (is_enough) break;
+      hessian = norm <= near ? Membrane::Hessian::kExact : Membrane::Hessian::kProjected;
+    } else if (descent == Descent::kNone && exact) {  // not positive definite here
+      hessian = Membrane::Hessian::kProjected;
+      near = kNearer * norm;
+    } else {
+      converged = descent == Descent::kBelowRounding;
+      break;
+    }
+  }
+  report.newton_converged = report.newton_converged && converged;
+  return is_enough;
+}
+
+/// Moves the result along solution_ to a lower potential.
+StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& stage,
+                                             ClothState& result, double& potential) {
+  constexpr double kSufficientDecrease = 1e-4;
+  constexpr double kRounding = 1e-14;
+  constexpr int kMostHalvings = 40;
+  const double descent = rhs_.cwiseProduct(solution_).sum();
+  const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
+  if (!(descent > 0.0) && !contacts_change_)
+    return below_rounding ? Descent::kBelowRounding : Descent::kNone;
+  double step = 1.0;
+  for (int halving = 0; halving < kMostHalvings; ++halving, step *= 0.5) {
+    for (int i = 0; i < matrix_.size(); ++i) {
+      const Vector3d change = step * solution_.col(i);
+      trial_.velocities[i] = result.velocities[i] + change;
+      trial_.positions[i] = result.positions[i] + stage.a * change;
+    }
+    const double trial = incrementalPotential(cloth, stage, trial_);
+    if (contacts_change_ || trial <= potential - kSufficientDecrease * step * descent ||
+        below_rounding) {
+      std::swap(result.positions, trial_.positions);
+      std::swap(result.velocities, trial_.velocities);
+      potential = trial;
+      return below_rounding ? Descent::kBelowRounding : Descent::kFound;
+    }
+  }
+  return Descent::kNone;
+}
+
+}  // namespace haptex::cloth

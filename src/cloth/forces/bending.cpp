@@ -1,0 +1,179 @@
+#include "haptex/cloth/forces/bending.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "haptex/cloth/forces/bending_moments.h"
+
+namespace haptex::cloth {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+void requireRigidity(const char* name, double value) {
+  if (!std::isfinite(value) || value < 0.0) {
+    std::ostringstream message;
+    message << "the bending rigidity along " << name << " is " << value
+            << " N.m; it must be finite and at least 0";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+void requireHysteresis(const char* name, double value, double rigidity) {
+  if (!std::isfinite(value) || value < 0.0 || (value > 0.0 && rigidity == 0.0)) {
+    std::ostringstream message;
+    message << "the hysteresis of bending along " << name << " is " << value
+            << " N; it must be finite and at least 0, and 0 where the rigidity is";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+}  // namespace
+
+Bending::Bending(const mesh::ClothMesh& mesh, const material::BendingRigidity& rigidity,
+                 const BendingSettings& settings,
+                 const std::optional<material::BendingHysteresis>& hysteresis)
+    : diagonal_(mesh.rest_coordinates.size(), 0.0) {
+  requireRigidity("weft", rigidity.weft);
+  requireRigidity("warp", rigidity.warp);
+  if (hysteresis) {
+    requireHysteresis("weft", hysteresis->weft, rigidity.weft);
+    requireHysteresis("warp", hysteresis->warp, rigidity.warp);
+  }
+  if (!settings.rest_curvature.allFinite()) {
+    throw std::invalid_argument("the rest curvature has a component that is not finite");
+  }
+  if (rigidity.weft == 0.0 && rigidity.warp == 0.0) return;
+  const PlateRigidity plate(rigidity);
+  std::optional<std::vector<double>> stiffnesses;
+  if (settings.model == BendingModel::kLinear) {
+    const BendingStencils found = findBendingStencils(mesh);
+    stiffnesses = fitStiffnesses(found, plate);
+    if (stiffnesses) addFittedHinges(found, *stiffnesses);
+  }
+  if (!stiffnesses) addCurvatureHinges(mesh, plate);
+  couple(mesh);
+  if (!settings.rest_curvature.isZero(0.0)) {
+    rest_.emplace(mesh, hinges_, corners_, settings.rest_curvature);
+  }
+  if (hysteresis && (hysteresis->weft > 0.0 || hysteresis->warp > 0.0)) {
+    friction_.emplace(mesh, hinges_, corners_, rigidity, *hysteresis);
+  }
+}
+
+void Bending::addFittedHinges(const BendingStencils& found,
+                              const std::vector<double>& stiffnesses) {
+  for (std::size_t s = 0; s < stiffnesses.size(); ++s) {
+    if (stiffnesses[s] <= 0.0) continue;
+    const BendingStencil& stencil = found.stencils[s];
+    const int begin = static_cast<int>(corners_.size());
+    for (int i = 0; i < 4; ++i) corners_.push_back({stencil.particles[i], stencil.weights[i]});
+    hinges_.push_back({begin, begin + 4, stiffnesses[s], stencil.resists});
+  }
+}
+
+/// The target of every triangle is a sum of squares: each becomes a hinge. Its weights are those of
+/// the curvature times the triangle's area.
+void Bending::addCurvatureHinges(const mesh::ClothMesh& mesh, const PlateRigidity& rigidity) {
+  constexpr double kLeast = 1e-12;  // of an isotropic fabric's target, which is 1
+  for (const CurvatureStencil& stencil : findCurvatureStencils(mesh)) {
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(rigidity.target(stencil.free_normals));
+    for (int i = 0; i < 3; ++i) {
+      const double part = parts.eigenvalues()[i];
+      if (part < kLeast) continue;
+      const Vector3d resists = stencil.area *
+                               rigidity.scale().cwiseProduct(parts.eigenvectors().col(i)) /
+                               rigidity.scale().maxCoeff();
+      const Eigen::RowVectorXd weights = resists.transpose() * stencil.weights;
+      const int begin = static_cast<int>(corners_.size());
+      for (std::size_t j = 0; j < stencil.particles.size(); ++j) {
+        corners_.push_back({stencil.particles[j], weights[static_cast<Eigen::Index>(j)]});
+      }
+      const double stiffness = part * std::pow(rigidity.scale().maxCoeff(), 2) / stencil.area;
+      hinges_.push_back({begin, static_cast<int>(corners_.size()), stiffness, resists});
+    }
+  }
+}
+
+/// Sums up what the hinges do between each two particles.
+void Bending::couple(const mesh::ClothMesh& mesh) {
+  std::map<std::array<int, 2>, double> couplings;
+  for (const Hinge& hinge : hinges_) {
+    for (int i = hinge.begin; i < hinge.end; ++i) {
+      for (int j = hinge.begin; j < i; ++j) {
+        const double product = hinge.stiffness * corners_[i].weight * corners_[j].weight;
+        const auto [first, second] = std::minmax(corners_[i].particle, corners_[j].particle);
+        if (product != 0.0) couplings[{first, second}] += product;
+      }
+    }
+  }
+  std::set<std::array<int, 2>> edges;
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const auto [first, second] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
+      edges.insert({first, second});
+    }
+  }
+  for (const auto& [pair, stiffness] : couplings) {
+    couplings_.push_back({pair[1], pair[0], -1, stiffness});
+    diagonal_[pair[0]] -= stiffness;
+    diagonal_[pair[1]] -= stiffness;
+    if (edges.count(pair) == 0) pairs_.push_back(pair);
+  }
+}
+
+void Bending::bind(const linear::SymmetricBlockMatrix& matrix) {
+  for (Coupling& coupling : couplings_) coupling.slot = matrix.slot(coupling.row, coupling.column);
+  if (friction_) friction_->bind(matrix);
+}
+
+void Bending::addForces(const Positions& positions, std::vector<Vector3d>& forces) const {
+  for (const Coupling& coupling : couplings_) {
+    const Vector3d force =
+        coupling.stiffness * (positions[coupling.row] - positions[coupling.column]);
+    forces[coupling.row] += force;
+    forces[coupling.column] -= force;
+  }
+  if (rest_) rest_->addForces(positions, forces);
+}
+
+double Bending::energy(const Positions& positions) const {
+  double energy = 0.0;
+  for (const Hinge& hinge : hinges_) {
+    const Vector3d& origin = positions[corners_[hinge.begin].particle];
+    Vector3d bending = Vector3d::Zero();
+    for (int i = hinge.begin + 1; i < hinge.end; ++i) {
+      bending += corners_[i].weight * (positions[corners_[i].particle] - origin);
+    }
+    energy += 0.5 * hinge.stiffness * bending.squaredNorm();
+  }
+  if (rest_) energy += rest_->energy(positions);
+  return energy;
+}
+
+void Bending::addStep(const Positions& positions, const Velocities& velocities,
+                      const StageTimes& times, linear::SymmetricBlockMatrix& matrix,
+                      linear::BlockVector& rhs) const {
+  // F(x) + ahead K v = F(x + ahead v), because the forces are linear.
+  for (const Coupling& coupling : couplings_) {
+    const Vector3d difference =
+        positions[coupling.row] - positions[coupling.column] +
+        times.ahead * (velocities[coupling.row] - velocities[coupling.column]);
+    const Vector3d impulse = times.a * coupling.stiffness * difference;
+    rhs.col(coupling.row) += impulse;
+    rhs.col(coupling.column) -= impulse;
+    matrix.lower(coupling.slot).diagonal().array() += times.a * times.a * coupling.stiffness;
+  }
+  for (int i = 0; i < matrix.size(); ++i) {
+    matrix.diagonal(i).diagonal().array() += times.a * times.a * diagonal_[i];
+  }
+  if (rest_) rest_->addStep(positions, velocities, times, rhs);
+}
+
+}  // namespace haptex::cloth

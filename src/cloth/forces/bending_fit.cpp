@@ -1,0 +1,111 @@
+#include "haptex/cloth/forces/bending_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptex::cloth {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// A direction in which a fabric does not resist bending at all is fitted as if it had this part of
+/// the other's rigidity, to compare errors with something.
+constexpr double kLeastRatio = 1e-6;
+/// How much more an error of the weft's and warp's rigidity counts than one of twist or coupling.
+constexpr double kEmphasis = 30.0;
+/// Rounding leaves 1e-12 of the target on grids; the least irregular meshes leave 1e-2.
+constexpr double kExact = 1e-6;
+
+/// The entries of a symmetric matrix, so that their squares sum to the Frobenius norm's but for the
+/// emphasis.
+Eigen::VectorXd entriesOf(const Matrix3d& matrix) {
+  Eigen::VectorXd entries(6);
+  entries << kEmphasis * matrix(0, 0), kEmphasis * matrix(1, 1), matrix(2, 2),
+      M_SQRT2 * matrix(0, 1), M_SQRT2 * matrix(0, 2), M_SQRT2 * matrix(1, 2);
+  return entries;
+}
+
+/// Stencils that resist the same.
+struct Group {
+  Vector3d resists;
+  std::vector<int> members;
+};
+
+/// Lines through the particle, which come first, leave no part to edges beside them: else rigidity
+/// would be smeared from one particle to the next.
+std::vector<Group> groupsOf(const BendingStencils& found, const BendingNeighbourhood& around,
+                            const Vector3d& scale) {
+  std::vector<Group> groups;
+  for (int index : around.stencils) {
+    const BendingStencil& stencil = found.stencils[index];
+    const Vector3d resists = stencil.resists.cwiseQuotient(scale).normalized();
+    const bool line = stencil.centre >= 0;
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
+      return std::abs(std::abs(group.resists.dot(resists)) - 1.0) < 1e-12;
+    });
+    if (same == groups.end()) {
+      groups.push_back({resists, {index}});
+    } else if (found.stencils[same->members.front()].centre < 0 || line) {
+      same->members.push_back(index);
+    }
+  }
+  return groups;
+}
+
+/// Adds what one particle asks for; false if it is not delivered exactly.
+bool addFitted(const BendingStencils& found, const BendingNeighbourhood& around,
+               const PlateRigidity& rigidity, std::vector<double>& stiffnesses) {
+  const std::vector<Group> groups = groupsOf(found, around, rigidity.scale());
+  Eigen::MatrixXd columns(6, groups.size());
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    columns.col(i) = entriesOf(groups[i].resists * groups[i].resists.transpose());
+  }
+  const Eigen::VectorXd target = entriesOf(rigidity.target(around.free_normals));
+  const Eigen::VectorXd fitted = nonNegativeLeastSquares(columns, target);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const double share = around.area * fitted[i] / groups[i].members.size();
+    for (int index : groups[i].members) {
+      stiffnesses[index] +=
+          share / found.stencils[index].resists.cwiseQuotient(rigidity.scale()).squaredNorm();
+    }
+  }
+  return (columns * fitted - target).norm() <= kExact * target.norm();
+}
+
+}  // namespace
+
+PlateRigidity::PlateRigidity(const material::BendingRigidity& rigidity) {
+  const double largest = std::max(rigidity.weft, rigidity.warp);
+  const double weft = std::max(rigidity.weft, kLeastRatio * largest);
+  const double warp = std::max(rigidity.warp, kLeastRatio * largest);
+  scale_ = Vector3d(std::sqrt(weft), std::sqrt(warp), std::sqrt(2.0 * std::sqrt(weft * warp)));
+  wanted_ = Vector3d(rigidity.weft, rigidity.warp, 2.0 * std::sqrt(rigidity.weft * rigidity.warp))
+                .cwiseQuotient(scale_.cwiseAbs2());
+}
+
+Matrix3d PlateRigidity::target(const std::vector<Eigen::Vector2d>& free_normals) const {
+  Matrix3d result = wanted_.asDiagonal();
+  for (const Eigen::Vector2d& n : free_normals) {
+    const Vector3d across =
+        Vector3d(n.x() * n.x(), n.y() * n.y(), n.x() * n.y()).cwiseProduct(scale_);
+    const Vector3d resisted = result * across;
+    const double energy = across.dot(resisted);
+    if (energy > 1e-9 * across.squaredNorm()) {
+      result -= resisted * resisted.transpose() / energy;
+    }
+  }
+  return result;
+}
+
+std::optional<std::vector<double>> fitStiffnesses(const BendingStencils& found,
+                                                  const PlateRigidity& rigidity) {
+  std::vector<double> stiffnesses(found.stencils.size(), 0.0);
+  for (const BendingNeighbourhood& around : found.neighbourhoods) {
+    const bool exact = addFitted(found, around, rigidity, stiffnesses);
+    if (!exact && around.free_normals.empty()) return std::nullopt;
+  }
+  return stiffnesses;
+}
+
+}  // namespace haptex::cloth

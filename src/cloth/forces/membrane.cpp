@@ -1,0 +1,372 @@
+#include "haptex/cloth/forces/membrane.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "haptex/cloth/forces/element_assembly.h"
+#include "haptex/material/contraction.h"
+
+namespace haptex::cloth {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+struct Membrane::Frame : ElementFrame {
+  MembraneStrain strain() const {
+    return {0.5 * (weft.squaredNorm() - 1.0), 0.5 * (warp.squaredNorm() - 1.0), weft.dot(warp)};
+  }
+  MembraneStrain rate(const Frame& derivative) const {
+    return {weft.dot(derivative.weft), warp.dot(derivative.warp),
+            derivative.weft.dot(warp) + weft.dot(derivative.warp)};
+  }
+};
+
+struct Membrane::Response {
+  Vector3d stress;
+  Vector3d slope;
+  double coupling = 0.0;  // of the weft's stress and the warp's strain, and the other way round
+};
+
+namespace {
+
+MembraneElement restElement(const mesh::ClothMesh& mesh, std::array<int, 3> particles) {
+  std::sort(particles.begin(), particles.end());
+  const Eigen::Vector2d& a = mesh.rest_coordinates[particles[0]];
+  const Eigen::Vector2d& b = mesh.rest_coordinates[particles[1]];
+  const Eigen::Vector2d& c = mesh.rest_coordinates[particles[2]];
+  const double ua = a.x(), va = a.y(), ub = b.x(), vb = b.y(), uc = c.x(), vc = c.y();
+  const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
+  MembraneElement element{};
+  element.particles = particles;
+  element.weft_weights = {(vb - vc) / d, (vc - va) / d, (va - vb) / d};
+  element.warp_weights = {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d};
+  element.area = 0.5 * std::abs(d);
+  return element;
+}
+
+kernels::MembraneBatch batchOf(const MembraneElement* elements) {
+  kernels::MembraneBatch batch;
+  for (int lane = 0; lane < kernels::kBatch; ++lane) {
+    const MembraneElement& element = elements[lane];
+    batch.area[lane] = element.area;
+    for (int i = 0; i < 3; ++i) {
+      batch.particles[i][lane] = element.particles[i];
+      batch.slots[i][lane] = element.slots[i];
+    }
+    for (int i = 1; i < 3; ++i) {
+      batch.weft_weights[i - 1][lane] = element.weft_weights[i];
+      batch.warp_weights[i - 1][lane] = element.warp_weights[i];
+    }
+  }
+  return batch;
+}
+
+/// Adds factor * (tangent blocks of one element) to the matrix: the sum over the three strains of
+/// slope g_i g_j^T, plus that of weft and warp by their coupling, plus the geometric part, both
+/// positive semidefinite.
+void addTangent(const MembraneElement& element, const Vector3d& weft, const Vector3d& warp,
+                const Vector3d& slope, double coupling, const Vector3d& stress, double factor,
+                linear::SymmetricBlockMatrix& matrix) {
+  const Matrix3d weft_weft = weft * weft.transpose();
+  const Matrix3d warp_warp = warp * warp.transpose();
+  const Matrix3d warp_weft = warp * weft.transpose();
+  const auto block = [&](int i, int j) {
+    const double uu = factor * element.weft_weights[i] * element.weft_weights[j];
+    const double vv = factor * element.warp_weights[i] * element.warp_weights[j];
+    const double uv = factor * element.weft_weights[i] * element.warp_weights[j];
+    const double vu = factor * element.warp_weights[i] * element.weft_weights[j];
+    Matrix3d result = (slope[0] * uu + slope[2] * vv) * weft_weft +
+                      (slope[1] * vv + slope[2] * uu) * warp_warp +
+                      (slope[2] * uv + coupling * vu) * warp_weft +
+                      (slope[2] * vu + coupling * uv) * warp_weft.transpose();
+    result.diagonal().array() += stress[0] * uu + stress[1] * vv + stress[2] * (uv + vu);
+    return result;
+  };
+  addElementBlocks(element, block, matrix);
+}
+
+Vector3d clampedToNonNegative(const Vector3d& slope) { return slope.cwiseMax(0.0); }
+
+/// Makes the tangent [[slope0, coupling], [coupling, slope1]] and the slope of the shear positive
+/// semidefinite.
+void projectMaterial(Vector3d& slope, double& coupling) {
+  if (coupling == 0.0) {
+    slope = clampedToNonNegative(slope);
+    return;
+  }
+  const Vector3d projected = projectStress({slope[0], slope[1], coupling});
+  slope = {projected[0], projected[1], std::max(0.0, slope[2])};
+  coupling = projected[2];
+}
+
+}  // namespace
+
+Vector3d projectStress(const Vector3d& stress) {
+  const double mean = 0.5 * (stress[0] + stress[1]);
+  const double difference = 0.5 * (stress[0] - stress[1]);
+  const double radius = std::sqrt(difference * difference + stress[2] * stress[2]);
+  if (mean >= radius) return stress;
+  if (mean <= -radius) return Vector3d::Zero();
+  const double half = 0.5 * (mean + radius);  // half the one positive eigenvalue; radius > 0 here
+  return {half * (1.0 + difference / radius), half * (1.0 - difference / radius),
+          half * stress[2] / radius};
+}
+
+Membrane::Membrane(const mesh::ClothMesh& mesh, const material::Fabric& fabric, bool viscosity,
+                   bool contraction)
+    : viscosity_(viscosity), contraction_(contraction) {
+  elements_.reserve(mesh.triangles.size());
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    elements_.push_back(restElement(mesh, triangle));
+  }
+  bind({static_cast<int>(mesh.rest_coordinates.size()), mesh.triangles});
+  setFabric(fabric);
+}
+
+void Membrane::bind(const linear::SymmetricBlockMatrix& matrix) {
+  for (MembraneElement& element : elements_) {
+    const auto& [a, b, c] = element.particles;
+    element.slots = {matrix.slot(b, a), matrix.slot(c, a), matrix.slot(c, b)};
+  }
+  batches_.clear();
+  if (!kernels::canAddBatches()) return;
+  for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
+    batches_.push_back(batchOf(&elements_[t]));
+  }
+}
+
+void Membrane::setFabric(const material::Fabric& fabric) {
+  elastic_ = {fabric.weft.elastic, fabric.warp.elastic, fabric.shear.elastic};
+  viscous_ = {fabric.weft.viscous, fabric.warp.viscous, fabric.shear.viscous};
+  coupling_ = contraction_ ? material::contractionModulus(fabric) : 0.0;
+}
+
+Membrane::Frame Membrane::frame(const MembraneElement& element,
+                                const std::vector<Vector3d>& points) {
+  return {elementFrame(element, points)};
+}
+
+MembraneStrain Membrane::strain(const MembraneElement& element, const Positions& positions) const {
+  return frame(element, positions).strain();
+}
+
+Membrane::Response Membrane::respond(const Curves& curves, const MembraneStrain& strain) {
+  const material::CurveValue weft = curves[0].evaluate(strain[0]);
+  const material::CurveValue warp = curves[1].evaluate(strain[1]);
+  const material::CurveValue shear = curves[2].evaluate(strain[2]);
+  return {{weft.stress, warp.stress, shear.stress}, {weft.slope, warp.slope, shear.slope}};
+}
+
+Membrane::Response Membrane::respondElastic(const MembraneStrain& strain) const {
+  Response response = respond(elastic_, strain);
+  response.stress[0] += coupling_ * strain[1];
+  response.stress[1] += coupling_ * strain[0];
+  response.coupling = coupling_;
+  return response;
+}
+
+kernels::MembraneLaw Membrane::law(bool viscosity) const {
+  return {&elastic_, viscosity ? &viscous_ : nullptr, coupling_};
+}
+
+/// Energy per rest area (J/m^2).
+double Membrane::elasticDensity(const MembraneStrain& strain) const {
+  double density = coupling_ * strain[0] * strain[1];
+  for (int m = 0; m < 3; ++m) density += elastic_[m].energy(strain[m]);
+  return density;
+}
+
+void Membrane::addForces(const Positions& positions, const Velocities& velocities,
+                         std::vector<Vector3d>& forces) const {
+  for (const MembraneElement& element : elements_) {
+    const Frame at = frame(element, positions);
+    Vector3d stress = respondElastic(at.strain()).stress;
+    if (viscosity_) stress += respond(viscous_, at.rate(frame(element, velocities))).stress;
+    stress *= -element.area;
+    addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
+                 stress[1] * at.warp + stress[2] * at.weft,
+                 [&](int particle) -> Vector3d& { return forces[particle]; });
+  }
+}
+
+double Membrane::elasticEnergy(const Positions& positions) const {
+  double energy = 0.0;
+  if (!batches_.empty()) {
+    energy = kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
+                                positions.data()->data(), nullptr, 0.0, law(false));
+  }
+  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+    energy += elements_[t].area * elasticDensity(frame(elements_[t], positions).strain());
+  }
+  return energy;
+}
+
+void Membrane::addStep(const Positions& positions, const Velocities& velocities,
+                       const StageTimes& times, linear::SymmetricBlockMatrix& matrix,
+                       linear::BlockVector& rhs) const {
+  if (!batches_.empty()) {
+    kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
+                     {positions.data()->data(),
+                      velocities.data()->data(),
+                      times.a,
+                      times.ahead,
+                      law(viscosity_),
+                      {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
+  }
+  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+    if (viscosity_) {
+      addStepOf<true>(elements_[t], positions, velocities, times, matrix, rhs);
+    } else {
+      addStepOf<false>(elements_[t], positions, velocities, times, matrix, rhs);
+    }
+  }
+}
+
+template <bool kViscous>
+void Membrane::addStepOf(const MembraneElement& element, const Positions& positions,
+                         const Velocities& velocities, const StageTimes& times,
+                         linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const {
+  const Frame at = frame(element, positions);
+  const Frame derivative = frame(element, velocities);
+  const MembraneStrain rate = at.rate(derivative);
+  auto [stress, slope, coupling] = respondElastic(at.strain());
+  projectMaterial(slope, coupling);
+  const Vector3d stress_increment =
+      times.ahead * (slope.cwiseProduct(rate) + coupling * Vector3d(rate[1], rate[0], 0.0));
+  if constexpr (kViscous) {
+    const Response viscous = respond(viscous_, rate);
+    stress += viscous.stress;
+    slope += clampedToNonNegative(viscous.slope) / times.a;
+  }
+  const Vector3d geometric = projectStress(stress);
+  addTangent(element, at.weft, at.warp, slope, coupling, geometric,
+             element.area * times.a * times.a, matrix);
+
+  const double factor = -element.area * times.a;
+  const Vector3d end = factor * (stress + stress_increment);
+  const Vector3d turning = factor * times.ahead * geometric;
+  addScattered(element,
+               end[0] * at.weft + end[2] * at.warp + turning[0] * derivative.weft +
+                   turning[2] * derivative.warp,
+               end[1] * at.warp + end[2] * at.weft + turning[1] * derivative.warp +
+                   turning[2] * derivative.weft,
+               [&](int particle) { return rhs.col(particle); });
+}
+
+void Membrane::addNewton(const Positions& positions,
+                         const std::vector<MembraneStrain>& begin_strains, double h,
+                         Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                         linear::BlockVector& rhs) const {
+  if (!batches_.empty()) {
+    kernels::addNewton(batches_.data(), static_cast<int>(batches_.size()),
+                       {positions.data()->data(),
+                        begin_strains.data()->data(),
+                        h,
+                        hessian == Hessian::kExact,
+                        law(viscosity_),
+                        {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
+  }
+  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+    const MembraneElement& element = elements_[t];
+    const Frame at = frame(element, positions);
+    const MembraneStrain strain = at.strain();
+    auto [stress, slope, coupling] = respondElastic(strain);
+    if (viscosity_) {
+      const Response viscous = respond(viscous_, (strain - begin_strains[t]) / h);
+      stress += viscous.stress;
+      slope += viscous.slope / h;
+    }
+    const bool exact = hessian == Hessian::kExact;
+    if (!exact) projectMaterial(slope, coupling);
+    addTangent(element, at.weft, at.warp, slope, coupling, exact ? stress : projectStress(stress),
+               element.area * h * h, matrix);
+    stress *= -element.area * h;
+    addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
+                 stress[1] * at.warp + stress[2] * at.weft,
+                 [&](int particle) { return rhs.col(particle); });
+  }
+}
+
+double Membrane::incrementalPotential(const Positions& positions,
+                                      const std::vector<MembraneStrain>& begin_strains,
+                                      double h) const {
+  double potential = 0.0;
+  if (!batches_.empty()) {
+    potential = kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
+                                   positions.data()->data(), begin_strains.data()->data(), h,
+                                   law(viscosity_));
+  }
+  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+    const MembraneStrain strain = frame(elements_[t], positions).strain();
+    double density = elasticDensity(strain);
+    for (int m = 0; viscosity_ && m < 3; ++m) {
+      density += h * viscous_[m].energy((strain[m] - begin_strains[t][m]) / h);
+    }
+    potential += elements_[t].area * density;
+  }
+  return potential;
+}
+
+void Membrane::computeStrains(const Positions& positions,
+                              std::vector<MembraneStrain>& strains) const {
+  strains.resize(elements_.size());
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    strains[t] = frame(elements_[t], positions).strain();
+  }
+}
+
+void Membrane::computeStrainsBefore(const Positions& positions, const Velocities& velocities,
+                                    double interval, std::vector<MembraneStrain>& strains) const {
+  strains.resize(elements_.size());
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const Frame at = frame(elements_[t], positions);
+    strains[t] = at.strain() - interval * at.rate(frame(elements_[t], velocities));
+  }
+}
+
+Membrane::Jacobian Membrane::exactJacobian(const MembraneElement& element,
+                                           const Positions& positions,
+                                           const Velocities& velocities) const {
+  const Frame at = frame(element, positions);
+  auto [stress, slope, coupling] = respondElastic(at.strain());
+  Matrix3d tangent = slope.asDiagonal();
+  tangent(0, 1) = tangent(1, 0) = coupling;
+  Vector3d viscous_slope = Vector3d::Zero();
+  Frame derivative{{Vector3d::Zero(), Vector3d::Zero()}};
+  if (viscosity_) {
+    derivative = frame(element, velocities);
+    const Response viscous = respond(viscous_, at.rate(derivative));
+    stress += viscous.stress;
+    viscous_slope = viscous.slope;
+  }
+  // Column m is the derivative of strain m by the position of particle i, which is also the
+  // derivative of its rate by the velocity; with the velocity's frame it is the derivative of the
+  // rate by the position.
+  const auto gradients = [&](const Frame& f, int i) {
+    const double ru = element.weft_weights[i];
+    const double rv = element.warp_weights[i];
+    Matrix3d columns;
+    columns << ru * f.weft, rv * f.warp, ru * f.warp + rv * f.weft;
+    return columns;
+  };
+  Jacobian result;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const Matrix3d g_i = -element.area * gradients(at, i);
+      const Matrix3d g_j = gradients(at, j);
+      const double ru_i = element.weft_weights[i], ru_j = element.weft_weights[j];
+      const double rv_i = element.warp_weights[i], rv_j = element.warp_weights[j];
+      const double geometric = -element.area * (stress[0] * ru_i * ru_j + stress[1] * rv_i * rv_j +
+                                                stress[2] * (ru_i * rv_j + rv_i * ru_j));
+      result.by_velocity[i][j] = g_i * viscous_slope.asDiagonal() * g_j.transpose();
+      result.by_position[i][j] =
+          g_i * tangent * g_j.transpose() +
+          g_i * viscous_slope.asDiagonal() * gradients(derivative, j).transpose() +
+          geometric * Matrix3d::Identity();
+    }
+  }
+  return result;
+}
+
+}  // namespace haptex::cloth

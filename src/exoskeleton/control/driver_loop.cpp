@@ -1,0 +1,198 @@
+#include "haptex/exoskeleton/control/driver_loop.h"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "haptex/realtime/steady_clock.h"
+
+namespace haptex::exoskeleton {
+
+namespace {
+
+/// A stamp that went through ROS's clock and back is not exact.
+constexpr Time kStampError = std::chrono::microseconds(200);
+
+unsigned bitOf(Finger finger) { return 1U << static_cast<unsigned>(finger); }
+
+/// Waits until the descriptor has bytes, or something happened to it. @returns false if not in time
+bool awaitBytes(int descriptor, Time until) {
+  pollfd file{descriptor, POLLIN, 0};
+  const timespec patience = realtime::toTimespec(std::max(Time{0}, until - realtime::steadyNow()));
+  return ::ppoll(&file, 1, &patience, nullptr) > 0;
+}
+
+}  // namespace
+
+FixedText::FixedText(const std::string& text) {
+  std::copy_n(text.begin(), std::min(text.size(), kCapacity), characters_.begin());
+}
+
+DriverLoop::DriverLoop(const std::string& port, const std::string& urdf, Observer observer)
+    : controller_(urdf), observer_(std::move(observer)), ports_(port) {}
+
+void DriverLoop::tick(Time now) {
+  takePort();
+  receive(now);
+  controller_.observe(state_, now);
+  snapshot_.operating_state = controller_.operatingState();
+  for (const Finger finger : kFingers) snapshot_.fingers[finger] = controller_.measured(finger);
+  if (state_ != nullptr && observer_) observer_(snapshot_);
+  now = awaitAnswers(now);
+  DriverRequest request{};
+  const bool asked = requests_.take(request);
+  Refusal refusal;
+  if (asked) refusal = carryOut(request);
+  const DeviceCommand& command = controller_.drive(now);
+  send(link_.poll(now));
+  send(link_.send(command));
+  measurePath();
+  dropClosedPort();
+  show();
+  if (asked) requests_.answer(std::move(refusal));
+}
+
+void DriverLoop::takePort() {
+  if (!ports_.takeNew()) return;
+  link_.reset();  // whoever answers there may be another device
+}
+
+void DriverLoop::receiveBytes(Time now) {
+  if (ports_.port() == nullptr) return;
+  const std::size_t count = ports_.port()->read(received_.data(), received_.size());
+  link_.receive(received_.data(), count, now);
+}
+
+void DriverLoop::receive(Time now) {
+  receiveBytes(now);
+  state_ = link_.takeState();
+  if (state_ == nullptr) return;
+  snapshot_.state_time = now;
+  ++snapshot_.states;
+}
+
+void DriverLoop::takeCommands(Time now) {
+  for (const Finger finger : kFingers) {
+    CommandBox& box = commands_[finger];
+    const bool died = box.died.exchange(false);  // first: a command after it is another one's
+    if (box.newest.update()) {
+      const StampedCommand& newest = box.newest.value();
+      controller_.command(finger, newest.command, newest.arrival);
+      answered_[finger] = newest.answers;
+    }
+    if (died) controller_.commanderDied(finger, now);
+  }
+}
+
+/// Fingers whose last states were answered and that lack the answer to this one, a bit for each.
+unsigned DriverLoop::answersDue() const {
+  if (state_ == nullptr) return 0;
+  unsigned due = 0;
+  for (const Finger finger : kFingers) {
+    const Time answered = answered_[finger];
+    const Time age = snapshot_.state_time - answered;
+    if (answered >= Time{0} && age > kStampError && age <= kStillAnswering) due |= bitOf(finger);
+  }
+  return due;
+}
+
+/// @returns when it is now
+Time DriverLoop::awaitAnswers(Time now) {
+  takeCommands(now);
+  const Time end = snapshot_.state_time + kAnswerPatience;
+  bool in_time = true;
+  for (unsigned due = answersDue(); due != 0 && in_time; due = answersDue()) {
+    answers_due_ = due;
+    takeCommands(now);  // what came before the bits were there
+    if ((due = answersDue()) == 0) break;
+    in_time = answered_all_.waitUntil(end);
+    takeCommands(now);
+  }
+  answers_due_ = 0;
+  return std::max(now, realtime::steadyNow());
+}
+
+void DriverLoop::measurePath() {
+  for (const Finger finger : kFingers) {
+    const Time answered = answered_[finger];
+    if (answered < Time{0} || answered <= path_end_[finger] + kStampError) continue;
+    path_end_[finger] = answered;
+    path_.add(realtime::steadyNow() - answered + kLine);
+  }
+}
+
+bool DriverLoop::awaitState(Time until) {
+  while (ports_.port() != nullptr && !ports_.port()->closed() &&
+         awaitBytes(ports_.port()->descriptor(), until)) {
+    const Time now = realtime::steadyNow();
+    receiveBytes(now);
+    if (link_.hasState()) return true;
+    if (ports_.port()->closed() || now >= until) break;
+  }
+  realtime::sleepUntil(until);
+  return false;
+}
+
+Refusal DriverLoop::carryOut(DriverRequest request) {
+  switch (request) {
+    case DriverRequest::kEnable:
+      return controller_.enable();
+    case DriverRequest::kDisable:
+      return controller_.disable();
+    case DriverRequest::kPause:
+      return controller_.pause();
+    case DriverRequest::kHome:
+      return controller_.home();
+    case DriverRequest::kClearFault:
+      return controller_.clearFault();
+  }
+  return "unknown request";
+}
+
+void DriverLoop::send(Bytes bytes) {
+  if (bytes.empty() || ports_.port() == nullptr) return;
+  if (!ports_.port()->write(bytes)) ++snapshot_.frames_unsent;
+}
+
+void DriverLoop::dropClosedPort() {
+  if (ports_.port() == nullptr || !ports_.port()->closed()) return;
+  ports_.discard();
+  link_.reset();
+  ++snapshot_.ports_lost;
+  const OperatingState& state = controller_.operatingState();
+  if (state.mode != Mode::kDisabled || state.is_busy) {
+    controller_.raiseFault("the serial port was closed: unplugged, or its other end ended");
+  }
+}
+
+void DriverLoop::show() {
+  for (const Finger finger : kFingers) snapshot_.fingers[finger] = controller_.measured(finger);
+  snapshot_.operating_state = controller_.operatingState();
+  snapshot_.motors_on = controller_.motorsOn();
+  snapshot_.fault = FixedText(controller_.fault());
+  snapshot_.fault_is_a_stall = controller_.faultIsAStall();
+  snapshot_.link = link_.status();
+  snapshot_.link_statistics = link_.statistics();
+  snapshot_.identity = link_.identity();
+  snapshot_.port_open = ports_.port() != nullptr;
+  ++snapshot_.ticks;
+  status_.write(snapshot_);
+  if (state_ != nullptr) measured_.write(snapshot_);
+}
+
+void DriverLoop::command(Finger finger, const ForceCommand& command, Time arrival, Time answers) {
+  CommandBox& box = commands_[finger];
+  const std::lock_guard<std::mutex> lock(box.writers);
+  box.newest.write({command, arrival, answers});
+  // Woken up once, by the last one that is waited for.
+  if (answers_due_.fetch_and(~bitOf(finger)) == bitOf(finger)) answered_all_.post();
+}
+
+DriverSnapshot DriverLoop::status() const {
+  const std::lock_guard<std::mutex> lock(status_readers_);
+  status_.update();
+  return status_.value();
+}
+
+}  // namespace haptex::exoskeleton

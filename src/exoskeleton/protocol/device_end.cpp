@@ -1,0 +1,124 @@
+#include "haptex/exoskeleton/protocol/device_end.h"
+
+#include <algorithm>
+
+namespace haptex::exoskeleton {
+namespace {
+
+// s. A lag behind the driver is made up for by this much: its clock may be faster, and commands
+// that keep changing must not leave the torques behind for long.
+constexpr double kShortPeriod = 0.95 * seconds(DeviceEnd::kCommandPeriod);
+
+}  // namespace
+
+DeviceEnd::DeviceEnd(const Identity& identity) : identity_(identity) {}
+
+void DeviceEnd::receive(const std::uint8_t* bytes, std::size_t count, Time now) {
+  if (count == 0) return;
+  // Else the first bytes of a dead driver's last command would wait for something to complete them.
+  if (now - last_bytes_ >= kInterrupted) parser_.discard();
+  last_bytes_ = now;
+  Bytes rest{bytes, count};
+  while (const Frame* frame = parser_.next(rest)) {
+    if (frame->type == FrameType::kHello) takeHello(*frame);
+    if (frame->type == FrameType::kCommand) takeCommand(*frame, now);
+  }
+}
+
+void DeviceEnd::takeHello(const Frame& frame) {
+  const auto hello = decodeHello(frame);
+  if (!hello) return;
+  to_answer_ = true;
+  if (hello->version != identity_.version) return;
+  greeted_ = true;
+  command_number_ = frame.sequence;
+}
+
+void DeviceEnd::takeCommand(const Frame& frame, Time now) {
+  const int ahead = numbersAhead(frame.sequence, command_number_);
+  if (!greeted_ || ahead == 0) return;
+  // After a Hello the command of a dead driver may still come twice, with a number that looks new.
+  if (last_command_ && frame.sequence == obeyed_number_) return;
+  const auto command = decodeCommand(frame);
+  if (!command) return;
+  approach(*command, ahead, now);
+  last_command_ = now;
+  ramp_start_ = now + kRampStart;
+  command_ = *command;
+  command_number_ = obeyed_number_ = frame.sequence;
+}
+
+// The driver took a period for each change of at most its slew limit. A line that is on its way
+// keeps its speed: a steady command is reached in time, and one that moves on no faster than it
+// does itself.
+void DeviceEnd::approach(const DeviceCommand& command, int ahead, Time now) {
+  const PerFinger<MotorVector> present = torques(now);
+  const Time rise = last_command_ ? kReturn : kRamp;
+  const double fallen = (1.0 - watchdogShare(now)) * seconds(rise);
+  double left = fallen;
+  if (last_command_) left += std::max(0.0, seconds(reached_ - lineEnd(now)));
+  double duration = fallen;  // at least: the first command of a driver may be any
+  for (const Finger finger : kFingers) {
+    const MotorVector& last = command_.torques[finger];
+    const MotorVector& next = command.torques[finger];
+    const double way = (next - present[finger]).norm();
+    if (way == 0.0) continue;
+    const double line_speed = left > 0.0 ? (last - present[finger]).norm() / left : 0.0;
+    const double driver_speed = (next - last).norm() / (ahead * seconds(kCommandPeriod));
+    duration = std::max(duration, way / std::max(line_speed, driver_speed));
+  }
+  duration = std::min(duration, left + ahead * kShortPeriod);
+  from_ = present;
+  reached_ = now + std::chrono::round<Time>(std::chrono::duration<double>(duration));
+}
+
+void DeviceEnd::hangUp(Time now) { ramp_start_ = std::min(ramp_start_, now); }
+
+Bytes DeviceEnd::answer() {
+  if (!to_answer_) return {};
+  to_answer_ = false;
+  return encode(identity_, state_number_, outgoing_);
+}
+
+double DeviceEnd::watchdogShare(Time now) const {
+  if (!last_command_) return 0.0;
+  return std::clamp(seconds(ramp_start_ + kRamp - now) / seconds(kRamp), 0.0, 1.0);
+}
+
+bool DeviceEnd::isOff(Time now) const { return !last_command_ || now >= ramp_start_ + kRamp; }
+
+Time DeviceEnd::lineEnd(Time now) const { return std::min(now, ramp_start_); }
+
+PerFinger<MotorVector> DeviceEnd::torques(Time now) const {
+  double way = 1.0;
+  if (last_command_) {
+    const Time until = lineEnd(now);
+    if (until < reached_) {
+      way = seconds(until - *last_command_) / seconds(reached_ - *last_command_);
+    }
+  }
+  PerFinger<MotorVector> torques;
+  for (const Finger finger : kFingers) {
+    const MotorVector& from = from_[finger];
+    torques[finger] = watchdogShare(now) * (from + way * (command_.torques[finger] - from));
+  }
+  return torques;
+}
+
+DeviceCommand DeviceEnd::command(Time now) {
+  if (isOff(now) || command_.mode == DriveMode::kOff) return {};
+  DeviceCommand command;
+  command.mode = command_.mode;
+  command.torques = torques(now);
+  return command;
+}
+
+Bytes DeviceEnd::report(DeviceState state, Time now) {
+  if (!greeted_) return {};
+  state.last_command = command_number_;
+  state.mode = command(now).mode;
+  state.watchdog_tripped = command_.mode != DriveMode::kOff && last_command_ && isOff(now);
+  return encode(state, ++state_number_, outgoing_);
+}
+
+}  // namespace haptex::exoskeleton

@@ -1,0 +1,205 @@
+#include "haptex/mesh/mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+namespace haptex::mesh {
+namespace {
+
+void requireLength(const char* name, double value) {
+  if (!std::isfinite(value) || value <= 0.0) {
+    std::ostringstream message;
+    message << name << " is " << value << " m; it must be finite and greater than 0";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+void requireCells(const char* name, int value) {
+  if (value < 1) {
+    std::ostringstream message;
+    message << name << " is " << value << "; it must be at least 1";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+void describe(std::ostringstream& text, const char* what, const std::vector<int>& indices) {
+  if (indices.empty()) return;
+  if (text.tellp() > 0) text << "; ";
+  text << what << ":";
+  constexpr std::size_t kMostNamed = 10;
+  for (std::size_t i = 0; i < std::min(indices.size(), kMostNamed); ++i) text << ' ' << indices[i];
+  if (indices.size() > kMostNamed) text << " and " << indices.size() - kMostNamed << " more";
+}
+
+/// Smallest altitude over longest edge of a rest triangle; 0 if a particle is repeated.
+double slenderness(const ClothMesh& mesh, const std::array<int, 3>& triangle) {
+  const Eigen::Vector2d& a = mesh.rest_coordinates[triangle[0]];
+  const Eigen::Vector2d ab = mesh.rest_coordinates[triangle[1]] - a;
+  const Eigen::Vector2d ac = mesh.rest_coordinates[triangle[2]] - a;
+  const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+  if (longest == 0.0) return 0.0;
+  return std::abs(ab.x() * ac.y() - ab.y() * ac.x()) / (longest * longest);
+}
+
+}  // namespace
+
+ClothMesh makeRectangle(double width, double height, int cells_u, int cells_v,
+                        Triangulation triangulation) {
+  requireLength("width", width);
+  requireLength("height", height);
+  requireCells("cells_u", cells_u);
+  requireCells("cells_v", cells_v);
+  ClothMesh mesh;
+  for (int j = 0; j <= cells_v; ++j) {
+    for (int i = 0; i <= cells_u; ++i) {
+      const double u = width * i / cells_u;
+      const double v = height * j / cells_v;
+      mesh.rest_coordinates.emplace_back(u, v);
+      mesh.initial_positions.emplace_back(0.0, u - 0.5 * width, v - height);
+    }
+  }
+  for (int j = 0; j < cells_v; ++j) {
+    for (int i = 0; i < cells_u; ++i) {
+      const int a = j * (cells_u + 1) + i;  // (u, v)
+      const int b = a + 1;                  // (u + du, v)
+      const int c = a + cells_u + 1;        // (u, v + dv)
+      const int d = c + 1;                  // (u + du, v + dv)
+      const bool turned = triangulation == Triangulation::kAlternating && (i + j) % 2 == 1;
+      if (turned) {
+        mesh.triangles.push_back({a, b, c});
+        mesh.triangles.push_back({b, d, c});
+      } else {
+        mesh.triangles.push_back({a, b, d});
+        mesh.triangles.push_back({a, d, c});
+      }
+    }
+  }
+  return mesh;
+}
+
+ClothMesh makeDisc(double radius, int rings) {
+  requireLength("radius", radius);
+  requireCells("rings", rings);
+  const double golden_angle = M_PI * (3.0 - std::sqrt(5.0));
+  ClothMesh mesh;
+  mesh.rest_coordinates.push_back(Eigen::Vector2d::Zero());
+  int inner_begin = 0, inner_count = 1;
+  double inner_phase = 0.0;
+  for (int ring = 1; ring <= rings; ++ring) {
+    // The height of an equilateral triangle is sqrt 3 / 2 of its side.
+    const int count = static_cast<int>(std::lround(M_PI * std::sqrt(3.0) * ring));
+    const int begin = static_cast<int>(mesh.rest_coordinates.size());
+    const double step = 2.0 * M_PI / count;
+    const double phase = std::fmod(ring * golden_angle, step);
+    for (int i = 0; i < count; ++i) {
+      const double angle = phase + i * step, r = radius * ring / rings;
+      mesh.rest_coordinates.emplace_back(r * std::cos(angle), r * std::sin(angle));
+    }
+    // Around both circles at once, from the side that lags behind.
+    const double inner_step = 2.0 * M_PI / inner_count;
+    for (int inner = 0, outer = 0; outer < count || (inner_count > 1 && inner < inner_count);) {
+      const bool by_outer = inner_count == 1 || inner == inner_count ||
+                            (outer < count && phase + (outer + 0.5) * step <=
+                                                  inner_phase + (inner + 0.5) * inner_step);
+      const int a = inner_begin + inner % inner_count, b = begin + outer % count;
+      if (by_outer) {
+        mesh.triangles.push_back({a, b, begin + ++outer % count});
+      } else {
+        mesh.triangles.push_back({a, b, inner_begin + ++inner % inner_count});
+      }
+    }
+    inner_begin = begin;
+    inner_count = count;
+    inner_phase = phase;
+  }
+  for (const Eigen::Vector2d& place : mesh.rest_coordinates) {
+    mesh.initial_positions.emplace_back(place.x(), place.y(), 0.0);
+  }
+  return mesh;
+}
+
+std::vector<int> sideParticles(const ClothMesh& mesh, Side side) {
+  std::vector<int> particles;
+  if (mesh.rest_coordinates.empty()) return particles;
+  Eigen::Vector2d low = mesh.rest_coordinates.front();
+  Eigen::Vector2d high = low;
+  for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {
+    low = low.cwiseMin(rest);
+    high = high.cwiseMax(rest);
+  }
+  const double margin = 1e-9 * (high - low).norm();
+  const int axis = side == Side::kLeft || side == Side::kRight ? 0 : 1;
+  const bool at_low = side == Side::kBottom || side == Side::kLeft;
+  const double line = at_low ? low[axis] : high[axis];
+  for (std::size_t i = 0; i < mesh.rest_coordinates.size(); ++i) {
+    if (std::abs(mesh.rest_coordinates[i][axis] - line) <= margin) {
+      particles.push_back(static_cast<int>(i));
+    }
+  }
+  return particles;
+}
+
+bool MeshDefects::none() const {
+  return !empty && !size_mismatch && invalid_triangles.empty() && degenerate_triangles.empty() &&
+         duplicate_triangles.empty() && unreferenced_particles.empty() &&
+         non_finite_particles.empty();
+}
+
+std::string MeshDefects::description() const {
+  std::ostringstream text;
+  if (empty) text << "the mesh has no triangle";
+  if (size_mismatch) {
+    if (text.tellp() > 0) text << "; ";
+    text << "rest coordinates and initial positions differ in number";
+  }
+  describe(text, "triangles with a particle that does not exist", invalid_triangles);
+  describe(text, "degenerate triangles", degenerate_triangles);
+  describe(text, "duplicate triangles", duplicate_triangles);
+  describe(text, "particles in no triangle", unreferenced_particles);
+  describe(text, "particles with a coordinate that is not finite", non_finite_particles);
+  return text.str();
+}
+
+MeshDefects findDefects(const ClothMesh& mesh) {
+  constexpr double kSmallestSlenderness = 1e-9;
+  MeshDefects defects;
+  defects.empty = mesh.triangles.empty();
+  defects.size_mismatch = mesh.rest_coordinates.size() != mesh.initial_positions.size();
+  const int particles = static_cast<int>(mesh.rest_coordinates.size());
+  for (int i = 0; i < particles; ++i) {
+    const bool finite = mesh.rest_coordinates[i].allFinite() &&
+                        (defects.size_mismatch || mesh.initial_positions[i].allFinite());
+    if (!finite) defects.non_finite_particles.push_back(i);
+  }
+  std::vector<bool> referenced(particles, false);
+  std::set<std::array<int, 3>> seen;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    std::array<int, 3> triangle = mesh.triangles[t];
+    std::sort(triangle.begin(), triangle.end());
+    if (triangle[0] < 0 || triangle[2] >= particles) {
+      defects.invalid_triangles.push_back(static_cast<int>(t));
+      continue;
+    }
+    for (int particle : triangle) referenced[particle] = true;
+    if (!seen.insert(triangle).second) defects.duplicate_triangles.push_back(static_cast<int>(t));
+    // Negated so that a rest coordinate that is not a number counts as degenerate.
+    if (!(slenderness(mesh, triangle) >= kSmallestSlenderness)) {
+      defects.degenerate_triangles.push_back(static_cast<int>(t));
+    }
+  }
+  for (int i = 0; i < particles; ++i) {
+    if (!referenced[i]) defects.unreferenced_particles.push_back(i);
+  }
+  return defects;
+}
+
+void requireSound(const ClothMesh& mesh) {
+  const MeshDefects defects = findDefects(mesh);
+  if (!defects.none()) throw std::invalid_argument(defects.description());
+}
+
+}  // namespace haptex::mesh

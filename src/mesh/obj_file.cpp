@@ -1,0 +1,167 @@
+#include "haptex/mesh/obj_file.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace haptex::mesh {
+namespace {
+
+template <typename Number>
+bool parseAll(const std::string& text, Number& number) {
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, number);
+  return result.ec == std::errc() && result.ptr == end;
+}
+
+enum class RestCoordinates { kRequired, kIgnored };
+
+class ObjReader {
+ public:
+  ObjReader(const std::string& path, RestCoordinates rest_coordinates)
+      : path_(path), with_textures_(rest_coordinates == RestCoordinates::kRequired) {}
+
+  ClothMesh read() {
+    std::error_code error;
+    std::ifstream stream(path_);
+    if (!stream.is_open() || std::filesystem::is_directory(path_, error)) {
+      throw std::runtime_error(path_ + ": cannot be read, must be a Wavefront OBJ file");
+    }
+    std::string line;
+    while (std::getline(stream, line)) {
+      ++line_number_;
+      readLine(line.substr(0, line.find('#')));
+    }
+    if (stream.bad()) throw std::runtime_error(path_ + ": cannot be read to its end");
+    if (with_textures_) takeRestCoordinates();
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw std::invalid_argument(path_ + ": line " + std::to_string(line_number_) + ": " + what);
+  }
+
+  void readLine(const std::string& line) {
+    std::istringstream words(line);
+    std::string statement;
+    words >> statement;
+    std::vector<std::string> arguments;
+    for (std::string word; words >> word;) arguments.push_back(word);
+    if (statement == "v") {
+      mesh_.initial_positions.push_back(readNumbers<3>("v", arguments));
+      texture_of_particle_.emplace_back();
+    } else if (statement == "vt" && with_textures_) {
+      textures_.push_back(readNumbers<2>("vt", arguments));
+    } else if (statement == "f") {
+      readFace(arguments);
+    }
+  }
+
+  // Further numbers (a weight, a colour) are allowed by the format and mean nothing here.
+  template <int kSize>
+  Eigen::Matrix<double, kSize, 1> readNumbers(const std::string& statement,
+                                              const std::vector<std::string>& words) const {
+    Eigen::Matrix<double, kSize, 1> numbers;
+    if (words.size() < kSize) {
+      refuse("'" + statement + "' has " + std::to_string(words.size()) + " numbers, must have " +
+             std::to_string(kSize));
+    }
+    for (int i = 0; i < kSize; ++i) {
+      if (!parseAll(words[i], numbers[i]) || !std::isfinite(numbers[i])) {
+        refuse("'" + words[i] + "' must be a finite number");
+      }
+    }
+    return numbers;
+  }
+
+  void readFace(const std::vector<std::string>& corners) {
+    if (corners.size() != 3) {
+      refuse("a face has " + std::to_string(corners.size()) + " corners, must be a triangle");
+    }
+    std::array<int, 3> triangle;
+    for (int i = 0; i < 3; ++i) triangle[i] = readCorner(corners[i]);
+    mesh_.triangles.push_back(triangle);
+  }
+
+  // A corner is position/texture or position/texture/normal, for surfaces also position or
+  // position//normal.
+  int readCorner(const std::string& corner) {
+    const std::size_t first = corner.find('/');
+    const int particle =
+        readIndex(corner.substr(0, first), "position", mesh_.initial_positions.size());
+    if (with_textures_) readTexture(corner, first, particle);
+    return particle;
+  }
+
+  // What follows the first separator of a corner.
+  void readTexture(const std::string& corner, std::size_t first, int particle) {
+    const std::size_t second =
+        first == std::string::npos ? std::string::npos : corner.find('/', first + 1);
+    if (first == std::string::npos || first + 1 == corner.size() || second == first + 1) {
+      refuse("corner '" + corner + "' has no texture coordinate, which is its rest coordinate");
+    }
+    const int texture = readIndex(corner.substr(first + 1, second - first - 1),
+                                  "texture coordinate", textures_.size());
+    std::optional<int>& known = texture_of_particle_[particle];
+    if (known && textures_[*known] != textures_[texture]) {
+      refuse("position " + std::to_string(particle + 1) + " has the texture coordinates " +
+             std::to_string(*known + 1) + " and " + std::to_string(texture + 1) +
+             " (a seam), must have one");
+    }
+    known = texture;
+  }
+
+  // Counts from 1, or backwards from the last one with -1.
+  int readIndex(const std::string& word, const std::string& kind, std::size_t count) const {
+    const int size = static_cast<int>(count);
+    int index = 0;
+    if (!parseAll(word, index) || index == 0 || index > size || index < -size) {
+      refuse(kind + " '" + word + "' does not exist, " + std::to_string(size) +
+             " are defined before this line");
+    }
+    return index > 0 ? index - 1 : size + index;
+  }
+
+  // A particle in no face keeps the origin here; requireSound() then reports it.
+  void takeRestCoordinates() {
+    for (const std::optional<int>& texture : texture_of_particle_) {
+      mesh_.rest_coordinates.push_back(texture ? textures_[*texture] : Eigen::Vector2d::Zero());
+    }
+  }
+
+  std::string path_;
+  bool with_textures_;
+  int line_number_ = 0;
+  ClothMesh mesh_;
+  std::vector<Eigen::Vector2d> textures_;
+  std::vector<std::optional<int>> texture_of_particle_;
+};
+
+}  // namespace
+
+ClothMesh loadObj(const std::string& path) {
+  ClothMesh mesh = ObjReader(path, RestCoordinates::kRequired).read();
+  try {
+    requireSound(mesh);
+  } catch (const std::invalid_argument& defects) {
+    throw std::invalid_argument(path + ": " + defects.what() + " (counted from 0)");
+  }
+  return mesh;
+}
+
+ObstacleMesh loadObjSurface(const std::string& path) {
+  ClothMesh mesh = ObjReader(path, RestCoordinates::kIgnored).read();
+  if (mesh.triangles.empty()) throw std::invalid_argument(path + ": the mesh has no triangle");
+  return {std::move(mesh.initial_positions), std::move(mesh.triangles)};
+}
+
+}  // namespace haptex::mesh

@@ -1,0 +1,273 @@
+#include "haptex/nodes/cloth_simulation/cloth_node.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/loop_diagnostics.h"
+#include "haptex/nodes/common/node_parameters.h"
+#include "haptex/realtime/steady_clock.h"
+#include "haptex/scene/scene_fabric.h"
+
+namespace haptex::nodes {
+namespace {
+
+constexpr double kDefaultMarkerRate = 25.0;
+constexpr double kDefaultStrainScale = 0.01;
+constexpr double kRestPeriod = 0.1;  // s, between two messages of a state that does not change
+constexpr std::chrono::seconds kQualityPeriod{1};  // between two messages without a change
+constexpr double kShareToKeep = 0.95;              // of the cycles, inside the budget
+
+/// How many steps there are between two messages of a rate, to the nearest whole number.
+std::uint64_t stepsPerMessage(double rate, double time_step) {
+  if (rate == 0.0) return 1;
+  return std::max<std::uint64_t>(1, std::llround(std::min(1.0 / (rate * time_step), 1e9)));
+}
+
+std::optional<RuntimeQuality> qualityOf(const ClothNodeParameters& parameters) {
+  if (!parameters.quality.any()) return std::nullopt;
+  return RuntimeQuality(parameters.scene_path, parameters.quality);
+}
+
+simulation::SimulatedCloth simulate(const ClothNodeParameters& parameters,
+                                    const std::optional<RuntimeQuality>& quality,
+                                    const scene::Scene& scene) {
+  if (quality) return quality->simulate();
+  return simulation::SimulatedCloth(scene, scene::loadSceneFabric(parameters.scene_path, scene));
+}
+
+}  // namespace
+
+ClothNodeParameters ClothNodeParameters::read(const ros::NodeHandle& private_node) {
+  ClothNodeParameters parameters;
+  parameters.scene_path = readScenePath(private_node);
+  parameters.state_rate = readPositive(private_node, "state_rate", 0.0);
+  parameters.marker_rate = readPositive(private_node, "marker_rate", kDefaultMarkerRate);
+  parameters.strain_scale = readPositive(private_node, "strain_scale", kDefaultStrainScale);
+  parameters.quality = QualityRequest::read(private_node);
+  return parameters;
+}
+
+ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : ClothNode(node, private_node, ClothNodeParameters::read(private_node)) {}
+
+ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                     const ClothNodeParameters& parameters)
+    : ClothNode(node, private_node, parameters, qualityOf(parameters)) {}
+
+ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                     const ClothNodeParameters& parameters,
+                     const std::optional<RuntimeQuality>& quality)
+    : ClothNode(node, private_node, parameters, quality,
+                quality ? quality->scene() : scene::loadScene(parameters.scene_path)) {}
+
+ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                     const ClothNodeParameters& parameters,
+                     const std::optional<RuntimeQuality>& quality, const scene::Scene& scene)
+    : node_(node),
+      diagnostics_(node, private_node),
+      steps_per_state_(stepsPerMessage(parameters.state_rate, scene.time_step)),
+      steps_per_markers_(stepsPerMessage(parameters.marker_rate, scene.time_step)),
+      markers_(scene.mesh, parameters.strain_scale, scene.obstacles),
+      state_stamp_(ros::Time::now()),
+      quality_(quality),
+      time_step_(scene.time_step),
+      tolerance_(scene.step.tolerance),
+      particle_count_(scene.mesh.initial_positions.size()),
+      triangle_count_(scene.mesh.triangles.size()),
+      contact_input_(scene.fingers ? std::make_unique<ContactInput>(node, triangle_count_)
+                                   : nullptr),
+      heartbeat_(node, "cloth/heartbeat"),
+      loop_(
+          simulate(parameters, quality, scene),
+          [this](const simulation::SimulatedCloth& simulation, bool rests) {
+            publishStep(simulation, rests);
+          },
+          contact_input_
+              ? simulation::RealTimeLoop::Command([this](simulation::SimulatedCloth& simulation) {
+                  takeContactForces(simulation);
+                })
+              : simulation::RealTimeLoop::Command()) {
+  ROS_INFO("Scene %s: %zu particles, %zu triangles, steps of %g ms", parameters.scene_path.c_str(),
+           particle_count_, triangle_count_, 1e3 * time_step_);
+  advertiseTopics();
+  loop_.start();
+  loop_.execute([this](simulation::SimulatedCloth& simulation) {
+    publishMesh(simulation.cloth());
+    publishQuality(simulation);
+  });
+  advertiseServices();
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("cloth simulation", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    diagnose(status);
+  });
+  diagnostics_timer_ = node_.createTimer(
+      ros::Duration(1.0), [this](const ros::TimerEvent&) { diagnostics_.force_update(); });
+  // Whoever judges by the age of the messages whether this node lives shall see that it does.
+  rest_timer_ =
+      node_.createSteadyTimer(ros::WallDuration(kRestPeriod),
+                              [this](const ros::SteadyTimerEvent&) { republishIfResting(); });
+}
+
+void ClothNode::advertiseTopics() {
+  const ros::SubscriberStatusCallback republish = [this](const ros::SingleSubscriberPublisher&) {
+    republishIfResting();
+  };
+  mesh_publisher_ = node_.advertise<haptex::ClothMesh>("cloth/mesh", 1, true);
+  state_publisher_ = node_.advertise<haptex::ClothState>("cloth/state", 10, republish);
+  marker_publisher_ =
+      node_.advertise<visualization_msgs::MarkerArray>("cloth/markers", 2, republish);
+  if (quality_) {
+    quality_publisher_ = node_.advertise<haptex::ClothQuality>("cloth/quality", 1, true);
+  }
+}
+
+void ClothNode::publishMesh(const cloth::Cloth& cloth) {
+  mesh_publisher_.publish(meshMessage(cloth, ros::Time::now()));
+}
+
+void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, bool rests) {
+  if (stamped_step_ != simulation.steps()) {
+    stamped_step_ = simulation.steps();
+    state_stamp_ = ros::Time::now();
+  }
+  const bool state_due = rests || stamped_step_ % steps_per_state_ == 0;
+  if (state_due && state_publisher_.getNumSubscribers() > 0) {
+    publishState(simulation);
+  }
+  const bool markers_due = rests || stamped_step_ % steps_per_markers_ == 0;
+  if (markers_due && marker_publisher_.getNumSubscribers() > 0) {
+    marker_publisher_.publish(markers_.update(simulation, state_stamp_));
+  }
+  publishQualityIfDue(simulation);
+}
+
+void ClothNode::publishQuality(const simulation::SimulatedCloth& simulation) {
+  if (!quality_) return;
+  const haptex::ClothQuality message = quality_->message(simulation, ros::Time::now());
+  quality_publisher_.publish(message);
+  published_changes_ = simulation.controller()->changes();
+  quality_due_ = realtime::steadyNow() + kQualityPeriod;
+  const std::lock_guard<std::mutex> lock(quality_mutex_);
+  quality_message_ = message;
+}
+
+void ClothNode::publishQualityIfDue(const simulation::SimulatedCloth& simulation) {
+  if (!quality_) return;
+  const bool changed = published_changes_ != simulation.controller()->changes();
+  if (changed || realtime::steadyNow() >= quality_due_) publishQuality(simulation);
+}
+
+/// While the cloth sleeps, only the time is new.
+void ClothNode::publishState(const simulation::SimulatedCloth& simulation) {
+  if (simulation.asleep() && filled_step_ == simulation.computedSteps()) {
+    restampStateMessage(simulation, state_stamp_, state_message_);
+  } else {
+    fillStateMessage(simulation, state_stamp_, forces_, state_message_);
+    filled_step_ = simulation.computedSteps();
+  }
+  state_publisher_.publish(state_message_);
+}
+
+void ClothNode::takeContactForces(simulation::SimulatedCloth& simulation) {
+  // They have been checked when they came, so that this does not throw.
+  if (contact_input_->loads().take(loads_, realtime::steadyNow())) simulation.setPointLoads(loads_);
+}
+
+void ClothNode::republishIfResting() {
+  const simulation::LoopStatus loop = loop_.status();
+  if (!loop.paused && !loop.last_step_rejected) return;
+  try {
+    loop_.execute([](simulation::SimulatedCloth&) {});  // then every command shows the state
+  } catch (const std::runtime_error&) {
+    // The node is being shut down: there is nothing to show any more.
+  }
+}
+
+void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  const simulation::LoopStatus loop = loop_.status();
+  if (loop.last_step_rejected) {
+    status.summary(DiagnosticStatus::ERROR,
+                   "a step was not finite and was rejected: the last good state stays; reset, or "
+                   "undo what led to it");
+  } else if (loop.paused) {
+    status.summary(DiagnosticStatus::OK, "paused");
+  } else if (loop.asleep) {
+    status.summary(DiagnosticStatus::OK, "asleep: nothing moves, and nothing is computed");
+  } else if (loop.dropped_seconds > diagnosed_drop_) {
+    status.summaryf(DiagnosticStatus::WARN, "gave up %.3f s of simulated time",
+                    loop.dropped_seconds - diagnosed_drop_);
+  } else if (loop.real_time_factor < 0.99) {
+    status.summaryf(DiagnosticStatus::WARN, "%.1f %% slower than real time",
+                    100.0 * (1.0 - loop.real_time_factor));
+  } else {
+    status.summary(DiagnosticStatus::OK, "in real time");
+  }
+  diagnosed_drop_ = loop.dropped_seconds;
+  const bool direct = loop.last_report.solver == linear::LinearSolverMethod::kCholesky;
+  status.add("simulated time (s)", loop.simulated_time);
+  status.add("steps", loop.steps);
+  status.add("step rate (Hz)", loop.step_rate);
+  status.add("real-time factor", loop.real_time_factor);
+  status.add("dropped simulated time (s)", loop.dropped_seconds);
+  status.add("time step (ms)", 1e3 * time_step_);
+  status.add("mean computing time of a step (ms)", 1e3 * loop.mean_step_seconds);
+  status.add("largest computing time of a step (ms)", 1e3 * loop.largest_step_seconds);
+  addQuantiles(status, "computing time of a step", "since the start", loop_.stepTimes());
+  status.add("linear solver", direct ? "Cholesky" : "conjugate gradient");
+  status.add("linear iterations", loop.last_report.linear_iterations);
+  status.add("largest residual", loop.largest_residual);
+  if (!quality_) status.add("tolerance", tolerance_);
+  status.add("steps that missed the tolerance", loop.unsolved_steps);
+  status.add("rejected steps", loop.rejected_steps);
+  status.add("asleep", loop.asleep ? "yes" : "no");
+  status.add("particles", particle_count_);
+  status.add("triangles", triangle_count_);
+  if (quality_) diagnoseQuality(status);
+  if (!contact_input_) return;
+  const ContactInputStatus contact = contact_input_->status();
+  status.add("contact forces taken", contact.taken);
+  status.add("contact forces refused", contact.refused);
+  status.add("last contact forces refused for",
+             contact.refused_why.empty() ? "none" : contact.refused_why);
+}
+
+void ClothNode::diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  haptex::ClothQuality quality;
+  {
+    const std::lock_guard<std::mutex> lock(quality_mutex_);
+    quality = quality_message_;
+  }
+  const haptex::QualityPoint& point = quality.quality;
+  if (quality.within_budget < kShareToKeep) {
+    status.mergeSummaryf(DiagnosticStatus::WARN, "only %.0f %% of the cycles within %g ms",
+                         100.0 * quality.within_budget, quality.budget_ms);
+  }
+  if (quality_->reduced(quality)) {
+    status.mergeSummary(
+        DiagnosticStatus::WARN,
+        "by less quality to keep the budget: " + point.name + " instead of " + quality_->wanted());
+  }
+  status.add("quality", point.name);
+  status.add("integrator", point.integrator);
+  status.add("substeps", point.substeps);
+  status.add("tolerance", point.solver_tolerance);
+  status.add("Newton iterations", point.newton_iterations);
+  status.add("budget (ms)", quality.budget_ms > 0.0 ? std::to_string(quality.budget_ms) : "none");
+  status.add("smoothed computing time of a cycle (ms)", quality.cycle_ms);
+  status.add("cycles within the budget (%)", 100.0 * quality.within_budget);
+  status.add("load", quality.load);
+  status.add("changes of quality", quality.changes);
+  for (std::size_t i = 0; i < point.motion.size(); ++i) {
+    status.add("expected error of position in " + point.motion[i] + " of " + point.fabric + " (mm)",
+               1e3 * point.position_error[i]);
+  }
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,146 @@
+// The services of ClothNode. Each checks its request, changes the simulation between two steps, and
+// answers what was done or why nothing was.
+#include <stdexcept>
+#include <string>
+
+#include "haptex/material/fabric_file.h"
+#include "haptex/nodes/cloth_simulation/cloth_node.h"
+#include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/config_files.h"
+#include "haptex/nodes/common/service_answer.h"
+
+namespace haptex::nodes {
+namespace {
+
+constexpr std::uint32_t kMostSteps = 100000;
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+void ClothNode::advertiseServices() {
+  services_ = {node_.advertiseService("cloth/reset", &ClothNode::reset, this),
+               node_.advertiseService("cloth/pause", &ClothNode::pause, this),
+               node_.advertiseService("cloth/step", &ClothNode::step, this),
+               node_.advertiseService("cloth/set_fabric", &ClothNode::setFabric, this),
+               node_.advertiseService("cloth/attach", &ClothNode::attach, this),
+               node_.advertiseService("cloth/move", &ClothNode::move, this),
+               node_.advertiseService("cloth/release", &ClothNode::release, this),
+               node_.advertiseService("cloth/get_jacobian", &ClothNode::getJacobian, this),
+               node_.advertiseService("cloth/query_budget", &ClothNode::queryBudget, this)};
+}
+
+bool ClothNode::reset(std_srvs::Trigger::Request& /*request*/,
+                      std_srvs::Trigger::Response& response) {
+  return answer("reset", response, [&] {
+    loop_.execute([this](simulation::SimulatedCloth& simulation) {
+      if (contact_input_) contact_input_->loads().clear();
+      simulation.reset();
+    });
+    return std::string("positions, velocities, attachments and time are those of the start");
+  });
+}
+
+bool ClothNode::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+  return answer("pause", response, [&] {
+    loop_.setPaused(request.data);
+    return std::string(request.data ? "paused" : "running");
+  });
+}
+
+bool ClothNode::step(StepCloth::Request& request, StepCloth::Response& response) {
+  return answer("step", response, [&] {
+    if (request.steps < 1 || request.steps > kMostSteps) {
+      throw std::invalid_argument("steps = " + std::to_string(request.steps) +
+                                  ": allowed are 1 to " + std::to_string(kMostSteps));
+    }
+    const simulation::StepsTaken taken = loop_.takeSteps(request.steps);
+    const std::string message = "took " + counted(taken.steps, "step");
+    if (taken.end == simulation::StepsTaken::End::kRejected) {
+      throw std::runtime_error(message + "; the next was not finite and was rejected");
+    }
+    if (taken.end == simulation::StepsTaken::End::kInterrupted) {
+      throw std::runtime_error(message + "; then the simulation was resumed or ended");
+    }
+    return message;
+  });
+}
+
+bool ClothNode::setFabric(SetFabric::Request& request, SetFabric::Response& response) {
+  return answer("set_fabric", response, [&] {
+    // Read here: the loop does not wait for files.
+    material::Fabric fabric = material::loadFabric(findConfigFile("fabrics", request.fabric));
+    const std::string message = "the fabric is " + fabric.name;
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      simulation.setFabric(std::move(fabric));
+      publishMesh(simulation.cloth());
+      publishQuality(simulation);
+    });
+    return message;
+  });
+}
+
+bool ClothNode::attach(AttachParticles::Request& request, AttachParticles::Response& response) {
+  return answer("attach", response, [&] {
+    requireFixedFrame(request.header);
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      if (request.positions.empty()) {
+        simulation.attach(request.particles);
+      } else {
+        simulation.attach(request.particles, fromMessage(request.positions));
+      }
+    });
+    return "attached " + counted(request.particles.size(), "particle");
+  });
+}
+
+bool ClothNode::move(MoveParticles::Request& request, MoveParticles::Response& response) {
+  return answer("move", response, [&] {
+    requireFixedFrame(request.header);
+    const Eigen::Vector3d displacement(request.displacement.x, request.displacement.y,
+                                       request.displacement.z);
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      simulation.move(request.particles, displacement, request.duration);
+    });
+    return "moving " + counted(request.particles.size(), "particle");
+  });
+}
+
+bool ClothNode::release(ReleaseParticles::Request& request, ReleaseParticles::Response& response) {
+  return answer("release", response, [&] {
+    loop_.execute(
+        [&](simulation::SimulatedCloth& simulation) { simulation.release(request.particles); });
+    return "released " + counted(request.particles.size(), "particle");
+  });
+}
+
+bool ClothNode::getJacobian(GetJacobian::Request& request, GetJacobian::Response& response) {
+  return answer("get_jacobian", response, [&] {
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      fillJacobianResponse(simulation.jacobian(request.particles), response);
+      response.header.stamp = state_stamp_;
+      response.header.frame_id = kFixedFrame;
+      response.simulated_time = simulation.state().time;
+    });
+    return counted(response.rows.size(), "block");
+  });
+}
+
+bool ClothNode::queryBudget(QueryBudget::Request& request, QueryBudget::Response& response) {
+  return answer("query_budget", response, [&] {
+    if (!quality_) {
+      throw std::invalid_argument(
+          "the node runs by the scene's own settings: start it with ~quality "
+          "or ~budget_ms, so that it measures what the qualities take");
+    }
+    std::string message;
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      message = quality_->query(simulation, 1e-3 * request.budget_ms, response);
+    });
+    return message;
+  });
+}
+
+}  // namespace haptex::nodes

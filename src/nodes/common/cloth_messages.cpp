@@ -1,0 +1,89 @@
+#include "haptex/nodes/common/cloth_messages.h"
+
+#include <stdexcept>
+
+namespace haptex::nodes {
+namespace {
+
+template <typename Message>
+void fillVectors(const std::vector<Eigen::Vector3d>& vectors, std::vector<Message>& messages) {
+  messages.resize(vectors.size());
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    messages[i].x = vectors[i].x();
+    messages[i].y = vectors[i].y();
+    messages[i].z = vectors[i].z();
+  }
+}
+
+void appendRowByRow(const Eigen::Matrix3d& block, std::vector<double>& numbers) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) numbers.push_back(block(row, column));
+  }
+}
+
+}  // namespace
+
+haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, const ros::Time& stamp) {
+  haptex::ClothMesh message;
+  message.header.stamp = stamp;
+  message.header.frame_id = kFixedFrame;
+  message.fabric = cloth.fabric().name;
+  for (const Eigen::Vector2d& rest : cloth.mesh().rest_coordinates) {
+    message.rest_weft_coordinates.push_back(rest.x());
+    message.rest_warp_coordinates.push_back(rest.y());
+  }
+  for (const auto& triangle : cloth.mesh().triangles) {
+    message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
+  }
+  message.masses = cloth.masses();
+  return message;
+}
+
+void fillStateMessage(const simulation::SimulatedCloth& simulation, const ros::Time& stamp,
+                      std::vector<Eigen::Vector3d>& forces, haptex::ClothState& message) {
+  const cloth::ClothState& state = simulation.state();
+  simulation.cloth().computeForces(state, forces);
+  restampStateMessage(simulation, stamp, message);
+  message.header.frame_id = kFixedFrame;
+  fillVectors(state.positions, message.positions);
+  fillVectors(state.velocities, message.velocities);
+  fillVectors(forces, message.forces);
+  message.attached.clear();
+  const auto& attachments = simulation.cloth().attachments();
+  for (std::size_t i = 0; i < attachments.size(); ++i) {
+    if (attachments[i]) message.attached.push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+void restampStateMessage(const simulation::SimulatedCloth& simulation, const ros::Time& stamp,
+                         haptex::ClothState& message) {
+  message.header.stamp = stamp;
+  message.step = simulation.steps();
+  message.simulated_time = simulation.state().time;
+}
+
+void fillJacobianResponse(const std::vector<cloth::JacobianBlock>& blocks,
+                          haptex::GetJacobian::Response& response) {
+  for (const cloth::JacobianBlock& block : blocks) {
+    response.rows.push_back(block.row);
+    response.columns.push_back(block.column);
+    appendRowByRow(block.by_position, response.by_position);
+    appendRowByRow(block.by_velocity, response.by_velocity);
+  }
+}
+
+void requireFixedFrame(const std_msgs::Header& header) {
+  if (header.frame_id != kFixedFrame) {
+    throw std::invalid_argument("header.frame_id = '" + header.frame_id + "': allowed is '" +
+                                kFixedFrame + "'");
+  }
+}
+
+std::vector<Eigen::Vector3d> fromMessage(const std::vector<geometry_msgs::Point>& points) {
+  std::vector<Eigen::Vector3d> vectors;
+  vectors.reserve(points.size());
+  for (const geometry_msgs::Point& point : points) vectors.emplace_back(point.x, point.y, point.z);
+  return vectors;
+}
+
+}  // namespace haptex::nodes

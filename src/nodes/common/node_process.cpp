@@ -1,0 +1,90 @@
+#include "haptex/nodes/common/node_process.h"
+
+#include <ros/ros.h>
+#include <ros/xmlrpc_manager.h>
+
+#include <atomic>
+#include <csignal>
+#include <exception>
+
+#include "haptex/nodes/common/socket_thread.h"
+#include "haptex/realtime/scheduling.h"
+#include "haptex/realtime/semaphore.h"
+
+namespace haptex::nodes {
+namespace {
+
+constexpr auto kLook = std::chrono::milliseconds(100);  // at roscpp, which may end by itself
+std::atomic<bool> ending{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "for use in a signal handler");
+
+realtime::Semaphore& endAsked() {
+  static realtime::Semaphore semaphore;
+  return semaphore;
+}
+
+void askToEnd() {
+  ending = true;
+  endAsked().post();
+}
+
+void takeSignal(int /*number*/) { askToEnd(); }
+
+/// The second parameter of shutdown(caller, reason), if the caller has sent a text: it may be
+/// anybody.
+std::string reasonOf(XmlRpc::XmlRpcValue& parameters) {
+  using Value = XmlRpc::XmlRpcValue;
+  if (parameters.getType() != Value::TypeArray || parameters.size() < 2) return "no reason given";
+  Value& reason = parameters[1];
+  if (reason.getType() != Value::TypeString) return "the reason given is not a text";
+  return reason;
+}
+
+/// What the master calls for `rosnode kill` and when another node takes the name. Whatever is wrong
+/// with the request, the node ends: that is the safe answer.
+void takeShutdown(XmlRpc::XmlRpcValue& parameters, XmlRpc::XmlRpcValue& result) {
+  ROS_WARN("Asked to end: %s", reasonOf(parameters).c_str());
+  askToEnd();
+  result = ros::xmlrpc::responseInt(1, "", 0);
+}
+
+void takeOverEnding() {
+  endAsked();  // made before a signal can come
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, takeSignal);
+  ros::XMLRPCManager::instance()->unbind("shutdown");
+  ros::XMLRPCManager::instance()->bind("shutdown", takeShutdown);
+}
+
+}  // namespace
+
+bool isEnding() { return ending || !ros::ok(); }
+
+int runNode(int argc, char** argv, const ProcessTraits& traits,
+            const std::function<RunningNode()>& make) {
+  ros::init(argc, argv, traits.name, ros::init_options::NoSigintHandler);
+  const ros::NodeHandle started;  // without a node ROS_FATAL prints nothing
+  takeOverEnding();
+  preferMessages(traits.on_force_path);
+  if (traits.on_force_path) realtime::lockMemory();
+  int status = 0;
+  try {
+    RunningNode running = make();
+    ros::AsyncSpinner spinner(traits.spinners);
+    spinner.start();
+    while (!isEnding()) endAsked().waitFor(kLook);
+    running.stop();
+    realtime::makeAllOrdinary();
+    spinner.stop();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s: %s", traits.name.c_str(), error.what());
+    realtime::makeAllOrdinary();
+    if (ros::param::param("~stay", false)) {
+      while (!isEnding()) endAsked().waitFor(kLook);
+    }
+    status = 1;
+  }
+  ros::shutdown();
+  return status;
+}
+
+}  // namespace haptex::nodes

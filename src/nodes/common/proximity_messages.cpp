@@ -1,0 +1,211 @@
+#include "haptex/nodes/common/proximity_messages.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "haptex/nodes/common/cloth_messages.h"
+
+namespace haptex::nodes {
+namespace {
+
+using Request = haptex::QueryProximity::Request;
+
+constexpr int kAnyNumber = -1;
+
+/// What goes with a shape.
+struct Shape {
+  const char* name;
+  int points;
+  int radii;  // kAnyNumber: one for each point
+};
+
+/// @throws std::invalid_argument if there is no such shape
+Shape shapeOf(const Request& request) {
+  switch (request.shape) {
+    case Request::POINT:
+      return {"POINT", 1, 0};
+    case Request::SPHERES:
+      return {"SPHERES", kAnyNumber, kAnyNumber};
+    case Request::CAPSULE:
+      return {"CAPSULE", 2, 1};
+    case Request::TAPERED_CAPSULE:
+      return {"TAPERED_CAPSULE", 2, 2};
+    case Request::OBSTACLE:
+      return {"OBSTACLE", 0, 0};
+    default:
+      throw std::invalid_argument("shape = " + std::to_string(request.shape) +
+                                  ": allowed are POINT = 0, SPHERES = 1, CAPSULE = 2, "
+                                  "TAPERED_CAPSULE = 3 and OBSTACLE = 4");
+  }
+}
+
+bool isLength(double value) {
+  return std::isfinite(value) && std::abs(value) <= proximity::kLargestLength;
+}
+
+void requirePlaces(const std::string& name, const std::vector<geometry_msgs::Point>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (proximity::isPlace({points[i].x, points[i].y, points[i].z})) continue;
+    std::ostringstream message;
+    message << name << "[" << i << "] = (" << points[i].x << ", " << points[i].y << ", "
+            << points[i].z << "): allowed are finite numbers up to " << proximity::kLargestLength
+            << " m";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+/// Lengths that are not negative.
+void requireDistance(const std::string& name, double value) {
+  if (isLength(value) && value >= 0.0) return;
+  std::ostringstream message;
+  message << name << " = " << value << ": allowed are finite numbers from 0 to "
+          << proximity::kLargestLength << " m";
+  throw std::invalid_argument(message.str());
+}
+
+void requireCount(const std::string& name, std::size_t count, int allowed, const Shape& shape) {
+  if (count == static_cast<std::size_t>(allowed)) return;
+  throw std::invalid_argument(name + " has " + std::to_string(count) + " elements: shape " +
+                              shape.name + " takes " + std::to_string(allowed));
+}
+
+void requireCounts(const Request& request, const Shape& shape) {
+  if (shape.points != kAnyNumber) {
+    requireCount("points", request.points.size(), shape.points, shape);
+    requireCount("radii", request.radii.size(), shape.radii, shape);
+    return;
+  }
+  if (request.points.empty()) {
+    throw std::invalid_argument(std::string("points is empty: shape ") + shape.name +
+                                " takes one or more");
+  }
+  if (request.radii.size() != request.points.size()) {
+    throw std::invalid_argument("radii has " + std::to_string(request.radii.size()) +
+                                " elements: shape " + shape.name + " takes one for each of the " +
+                                std::to_string(request.points.size()) + " points");
+  }
+}
+
+NearElement elementMessage(const proximity::NearElement& element) {
+  NearElement message;
+  message.triangle = element.triangle;
+  message.part = element.part;
+  message.distance = element.distance;
+  message.point.x = element.point.x();
+  message.point.y = element.point.y();
+  message.point.z = element.point.z();
+  for (int i = 0; i < 3; ++i) message.barycentric[i] = element.barycentric[i];
+  message.normal.x = element.normal.x();
+  message.normal.y = element.normal.y();
+  message.normal.z = element.normal.z();
+  return message;
+}
+
+}  // namespace
+
+RestMesh restMesh(const haptex::ClothMesh& message) {
+  const std::vector<double>& weft = message.rest_weft_coordinates;
+  const std::vector<double>& warp = message.rest_warp_coordinates;
+  if (weft.size() != warp.size()) {
+    throw std::invalid_argument("rest_weft_coordinates has " + std::to_string(weft.size()) +
+                                " elements and rest_warp_coordinates " +
+                                std::to_string(warp.size()) + ": allowed is one per particle");
+  }
+  if (message.triangles.empty() || message.triangles.size() % 3 != 0) {
+    throw std::invalid_argument("triangles has " + std::to_string(message.triangles.size()) +
+                                " elements: allowed are three per triangle, of one or more");
+  }
+  RestMesh mesh;
+  mesh.triangles.resize(message.triangles.size() / 3);
+  for (std::size_t i = 0; i < message.triangles.size(); ++i) {
+    const std::uint32_t particle = message.triangles[i];
+    if (particle >= weft.size()) {
+      throw std::invalid_argument("triangles[" + std::to_string(i) +
+                                  "] = " + std::to_string(particle) + ": there are " +
+                                  std::to_string(weft.size()) + " particles");
+    }
+    mesh.triangles[i / 3][i % 3] = static_cast<int>(particle);
+  }
+  for (std::size_t i = 0; i < weft.size(); ++i) {
+    if (!isLength(weft[i]) || !isLength(warp[i])) {
+      std::ostringstream text;
+      text << "rest coordinates of particle " << i << " = (" << weft[i] << ", " << warp[i]
+           << "): allowed are finite numbers up to " << proximity::kLargestLength << " m";
+      throw std::invalid_argument(text.str());
+    }
+    mesh.rest_coordinates.emplace_back(weft[i], warp[i], 0.0);
+  }
+  return mesh;
+}
+
+void requireValid(const haptex::ClothState& message) {
+  requireFixedFrame(message.header);
+  requirePlaces("positions", message.positions);
+}
+
+void requireValid(const Request& request) {
+  const Shape shape = shapeOf(request);
+  requireCounts(request, shape);
+  if (request.shape != Request::OBSTACLE && !request.obstacle.empty()) {
+    throw std::invalid_argument("obstacle = '" + request.obstacle + "' with shape " + shape.name +
+                                ": leave it empty, or set the shape to OBSTACLE = 4");
+  }
+  requirePlaces("points", request.points);
+  for (std::size_t i = 0; i < request.radii.size(); ++i) {
+    requireDistance("radii[" + std::to_string(i) + "]", request.radii[i]);
+  }
+  requireDistance("distance", request.distance);
+}
+
+proximity::Cursor cursorInWorld(const Request& request, const Eigen::Isometry3d& world_from_frame) {
+  std::vector<Eigen::Vector3d> places = fromMessage(request.points);
+  for (Eigen::Vector3d& place : places) place = world_from_frame * place;
+  switch (request.shape) {
+    case Request::POINT:
+      return proximity::Cursor::point(places[0]);
+    case Request::CAPSULE:
+      return proximity::Cursor::capsule(places[0], places[1], request.radii[0]);
+    case Request::TAPERED_CAPSULE:
+      return proximity::Cursor::taperedCapsule({places[0], request.radii[0]},
+                                               {places[1], request.radii[1]});
+    default: {
+      std::vector<proximity::Sphere> spheres;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        spheres.push_back({places[i], request.radii[i]});
+      }
+      return proximity::Cursor::spheres(spheres);
+    }
+  }
+}
+
+void fillResponse(const std::vector<proximity::NearElement>& found, double asked,
+                  haptex::QueryProximity::Response& response) {
+  std::ostringstream message;
+  if (found.empty()) {
+    message << "no element";
+  } else {
+    message << found.size() << (found.size() == 1 ? " element" : " elements");
+  }
+  message << " within " << asked << " m";
+  response.success = true;
+  response.message = message.str();
+  response.distance =
+      found.empty() ? std::numeric_limits<double>::infinity() : found.front().distance;
+  response.elements.reserve(found.size());
+  for (const proximity::NearElement& element : found) {
+    response.elements.push_back(elementMessage(element));
+  }
+}
+
+haptex::QueryProximity::Response refusal(const std::string& message) {
+  haptex::QueryProximity::Response response;
+  response.success = false;
+  response.message = message;
+  response.distance = std::numeric_limits<double>::infinity();
+  return response;
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,130 @@
+#include "haptex/nodes/exoskeleton_driver/servo_force_filter.h"
+
+#include <sstream>
+
+#include "haptex/exoskeleton/control/command_check.h"
+#include "haptex/nodes/common/driver_messages.h"
+
+namespace haptex::nodes {
+namespace {
+
+using base::Time;
+using exoskeleton::CommandFlaw;
+using exoskeleton::ForceCommand;
+
+Eigen::Vector3d fromMessage(const geometry_msgs::Vector3& vector) {
+  return {vector.x, vector.y, vector.z};
+}
+
+ForceCommand commandOf(const haptex::ServoForce& message) {
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  ForceCommand command;
+  command.force = fromMessage(message.force);
+  command.position = {message.position.x, message.position.y, message.position.z};
+  command.velocity = fromMessage(message.velocity);
+  command.stiffness = Eigen::Map<const RowMajor>(message.stiffness.data());
+  command.damping = Eigen::Map<const RowMajor>(message.damping.data());
+  return command;
+}
+
+/// ns. (ros::Duration would throw for stamps beyond 68 years.)
+std::int64_t difference(const ros::Time& later, const ros::Time& earlier) {
+  return static_cast<std::int64_t>(later.toNSec()) - static_cast<std::int64_t>(earlier.toNSec());
+}
+
+double milliseconds(std::int64_t nanoseconds) { return 1e-6 * static_cast<double>(nanoseconds); }
+
+}  // namespace
+
+const char* name(ServoForceFlaw flaw) {
+  switch (flaw) {
+    case ServoForceFlaw::kFrame:
+      return "another frame";
+    case ServoForceFlaw::kNotFinite:
+      return "not finite";
+    case ServoForceFlaw::kTooLarge:
+      return "too large";
+    case ServoForceFlaw::kActive:
+      return "stiffness or damping not positive semidefinite";
+    case ServoForceFlaw::kTooOld:
+      return "too old";
+    case ServoForceFlaw::kTooNew:
+      return "from the future";
+    case ServoForceFlaw::kOrder:
+      return "out of order";
+  }
+  return "unknown";
+}
+
+std::optional<ForceCommand> ServoForceFilter::take(const haptex::ServoForce& message,
+                                                   const ros::Time& now, Time steady_now) {
+  const std::optional<ServoForceFlaw> flaw = findFlaw(message, now, steady_now);
+  if (flaw) {
+    last_flaw_ = *flaw;
+    dropped_[static_cast<std::size_t>(*flaw)].fetch_add(1, std::memory_order_relaxed);
+    return std::nullopt;
+  }
+  last_stamp_ = message.header.stamp;
+  last_time_ = steady_now;
+  taken_.fetch_add(1, std::memory_order_relaxed);
+  return commandOf(message);
+}
+
+std::optional<ServoForceFlaw> ServoForceFilter::findFlaw(const haptex::ServoForce& message,
+                                                         const ros::Time& now,
+                                                         Time steady_now) const {
+  if (message.header.frame_id != kHandFrame) return ServoForceFlaw::kFrame;
+  switch (exoskeleton::findFlaw(commandOf(message))) {
+    case CommandFlaw::kNotFinite:
+      return ServoForceFlaw::kNotFinite;
+    case CommandFlaw::kTooLarge:
+      return ServoForceFlaw::kTooLarge;
+    case CommandFlaw::kActive:
+      return ServoForceFlaw::kActive;
+    case CommandFlaw::kNone:
+      break;
+  }
+  const Time age{difference(now, message.header.stamp)};
+  if (age > kStampTolerance) return ServoForceFlaw::kTooOld;
+  if (age < -kStampTolerance) return ServoForceFlaw::kTooNew;
+  const bool remembered = last_time_ && steady_now - *last_time_ <= kForgetAfter;
+  if (remembered && difference(message.header.stamp, last_stamp_) <= 0) {
+    return ServoForceFlaw::kOrder;
+  }
+  return std::nullopt;
+}
+
+std::string ServoForceFilter::explain(const haptex::ServoForce& message,
+                                      const ros::Time& now) const {
+  std::ostringstream text;
+  const double age = milliseconds(difference(now, message.header.stamp));
+  switch (last_flaw_) {
+    case ServoForceFlaw::kFrame:
+      text << "header.frame_id = '" << message.header.frame_id << "': allowed is '" << kHandFrame
+           << "'";
+      break;
+    case ServoForceFlaw::kNotFinite:
+    case ServoForceFlaw::kTooLarge:
+    case ServoForceFlaw::kActive:
+      text << exoskeleton::explainFlaw(commandOf(message));
+      break;
+    case ServoForceFlaw::kTooOld:
+    case ServoForceFlaw::kTooNew:
+      text << "header.stamp is " << (age > 0.0 ? age : -age) << " ms "
+           << (age > 0.0 ? "before" : "after") << " the driver's clock: allowed are "
+           << milliseconds(kStampTolerance.count()) << " ms";
+      break;
+    case ServoForceFlaw::kOrder:
+      text << "header.stamp is not later than that of the command before, but by "
+           << milliseconds(difference(last_stamp_, message.header.stamp))
+           << " ms earlier: allowed are later ones";
+      break;
+  }
+  return text.str();
+}
+
+std::uint64_t ServoForceFilter::dropped(ServoForceFlaw flaw) const {
+  return dropped_[static_cast<std::size_t>(flaw)].load(std::memory_order_relaxed);
+}
+
+}  // namespace haptex::nodes

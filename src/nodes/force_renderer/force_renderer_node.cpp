@@ -1,0 +1,300 @@
+#include "haptex/nodes/force_renderer/force_renderer_node.h"
+
+#include <tf2_msgs/TFMessage.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/driver_messages.h"
+#include "haptex/nodes/common/node_parameters.h"
+#include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/force_renderer/renderer_messages.h"
+#include "haptex/realtime/steady_clock.h"
+#include "haptex/scene/scene.h"
+
+namespace haptex::nodes {
+namespace {
+
+using base::Finger;
+using base::kFingers;
+using base::Time;
+
+// Spheres at the ends of the fingers in urdf/hand_exoskeleton.urdf.
+constexpr double kIndexRadius = 0.0075;       // m
+constexpr double kThumbRadius = 0.009;        // m
+constexpr double kLargestRadius = 0.1;        // m
+constexpr double kMarkerPeriod = 1.0 / 30.0;  // s
+constexpr std::uint32_t kContactQueue = 5;    // messages, for a subscriber that is slow for 20 ms
+constexpr int kTicksPerContact = 4;
+constexpr std::uint32_t kTransformQueue = 100;  // messages
+/// In which the loop commands no force before it ends.
+constexpr Time kLastCommands = std::chrono::milliseconds(5);
+/// Of a transform whose stamp is to be believed.
+constexpr Time kOldestTransform = std::chrono::milliseconds(20);
+
+double readRadius(const ros::NodeHandle& private_node, const std::string& name, double fallback) {
+  const double radius = readPositive(private_node, name, fallback);
+  if (radius <= kLargestRadius) return radius;
+  std::ostringstream message;
+  message << "parameter " << private_node.resolveName(name) << " = " << radius
+          << ": allowed are numbers > 0 and up to " << kLargestRadius << " m";
+  throw std::invalid_argument(message.str());
+}
+
+std::string topic(Finger finger, const char* of_finger) {
+  return std::string(base::name(finger)) + "/" + of_finger;
+}
+
+/// How long ago a stamp was, as far as it is believed.
+Time ageOf(const ros::Time& stamp) {
+  const auto now = static_cast<std::int64_t>(ros::Time::now().toNSec());
+  return std::clamp(Time(now - static_cast<std::int64_t>(stamp.toNSec())), Time{0},
+                    kOldestTransform);
+}
+
+}  // namespace
+
+ForceRendererParameters ForceRendererParameters::read(const ros::NodeHandle& private_node) {
+  ForceRendererParameters parameters;
+  parameters.scene_path = readScenePath(private_node);
+  parameters.radii = {{readRadius(private_node, "index_radius", kIndexRadius),
+                       readRadius(private_node, "thumb_radius", kThumbRadius)}};
+  const scene::Scene scene = scene::loadScene(parameters.scene_path);
+  requireListed(parameters.scene_path, scene.fingers, "fingers", "force_renderer");
+  parameters.tactile = scene.tactile;
+  return parameters;
+}
+
+ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
+                                     const ros::NodeHandle& private_node)
+    : ForceRendererNode(node, private_node, ForceRendererParameters::read(private_node)) {}
+
+ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
+                                     const ros::NodeHandle& private_node,
+                                     const ForceRendererParameters& parameters)
+    : node_(node),
+      device_node_(node),
+      input_node_(input_thread_.handle(node)),
+      transform_listener_(transforms_, input_node_, false),
+      tactile_(parameters.tactile),
+      loop_(parameters.radii),
+      fingers_{{{FingerTopics(node, Finger::kIndex), FingerTopics(node, Finger::kThumb)}}},
+      diagnostics_(node, private_node),
+      supplier_(node, LayerBuilder(parameters.scene_path), loop_),
+      loop_thread_(simulation::ForceLoop::kPeriod, [this](Time now) { work(now); },
+                   {{}, realtime::kForcePriority, true}) {
+  if (!loop_thread_.refusedScheduler().empty()) {
+    ROS_WARN("The loop runs without SCHED_FIFO, on a busy machine it will be late: %s",
+             loop_thread_.refusedScheduler().c_str());
+  }
+  subscribe();
+  marker_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("contact/markers", 2);
+  marker_timer_ = node_.createSteadyTimer(
+      ros::WallDuration(kMarkerPeriod), [this](const ros::SteadyTimerEvent&) { publishMarkers(); });
+  addDiagnostics();
+  input_thread_.start();
+}
+
+ForceRendererNode::~ForceRendererNode() { stop(); }
+
+void ForceRendererNode::stop() {
+  if (stopping_.exchange(true)) return;  // from now on the loop commands no force
+  std::this_thread::sleep_for(kLastCommands);
+  fingertip_subscriber_.shutdown();
+  for (FingerTopics& topics : fingers_.values) {
+    topics.pose.shutdown();
+    topics.twist.shutdown();
+  }
+  loop_thread_.stop();
+  supplier_.stop();
+  input_thread_.stop();
+}
+
+ForceRendererNode::FingerTopics::FingerTopics(ros::NodeHandle node, Finger finger)
+    // Only the latest force counts.
+    : force(node.advertise<haptex::ServoForce>(topic(finger, "servo_cf"), 1)),
+      contact(node.advertise<haptex::Contact>(topic(finger, "contact"), kContactQueue)) {}
+
+void ForceRendererNode::subscribe() {
+  device_node_.setCallbackQueue(&device_queue_);
+  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+  for (const Finger finger : kFingers) subscribeToFinger(finger);
+  const boost::function<void(const haptex::Fingertips&)> take_fingertips =
+      [this](const haptex::Fingertips& message) { takeFingertips(message); };
+  fingertip_subscriber_ = device_node_.subscribe<haptex::Fingertips>(
+      "exoskeleton/fingertips", 1, take_fingertips, ros::VoidConstPtr(), hints);
+  const boost::function<void(const haptex::ClothState&)> take_state =
+      [this](const haptex::ClothState& message) { takeState(message); };
+  state_subscriber_ = input_node_.subscribe<haptex::ClothState>("cloth/state", 1, take_state,
+                                                                ros::VoidConstPtr(), hints);
+  const boost::function<void(const std_msgs::Header&)> take_heartbeat =
+      [this](const std_msgs::Header&) { loop_.takeHeartbeat(realtime::steadyNow()); };
+  heartbeat_subscriber_ = device_node_.subscribe<std_msgs::Header>(
+      "cloth/heartbeat", 1, take_heartbeat, ros::VoidConstPtr(), hints);
+  const boost::function<void(const haptex::ClothMeshConstPtr&)> take_mesh =
+      [this](const haptex::ClothMeshConstPtr& message) { supplier_.setMesh(message); };
+  mesh_subscriber_ =
+      node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh, ros::VoidConstPtr(), hints);
+  // After the listener, which subscribed before on the same thread: the buffer knows them then.
+  const boost::function<void(const tf2_msgs::TFMessage&)> take_transforms =
+      [this](const tf2_msgs::TFMessage&) { takeTransforms(); };
+  transform_subscriber_ = input_node_.subscribe<tf2_msgs::TFMessage>(
+      "/tf", kTransformQueue, take_transforms, ros::VoidConstPtr(), hints);
+  static_transform_subscriber_ =
+      input_node_.subscribe<tf2_msgs::TFMessage>("/tf_static", kTransformQueue, take_transforms);
+}
+
+void ForceRendererNode::subscribeToFinger(Finger finger) {
+  FingerTopics& topics = fingers_[finger];
+  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+  const boost::function<void(const geometry_msgs::PoseStamped&)> take_pose =
+      [this, finger, &topics](const geometry_msgs::PoseStamped& message) {
+        const Time arrival = realtime::steadyNow();
+        const auto pose = topics.filter.take(message, ros::Time::now(), arrival);
+        if (!pose || !takesSingly(arrival)) return;
+        loop_.takePose(finger, *pose, arrival, Time(message.header.stamp.toNSec()));
+        topics.poses.fetch_add(1, std::memory_order_relaxed);
+      };
+  const boost::function<void(const geometry_msgs::TwistStamped&)> take_twist =
+      [this, finger, &topics](const geometry_msgs::TwistStamped& message) {
+        const Time arrival = realtime::steadyNow();
+        const auto twist = topics.filter.take(message, ros::Time::now(), arrival);
+        if (twist && takesSingly(arrival)) loop_.takeTwist(finger, *twist, arrival);
+      };
+  // Only the latest counts.
+  topics.pose = device_node_.subscribe<geometry_msgs::PoseStamped>(
+      topic(finger, "measured_cp"), 1, take_pose, ros::VoidConstPtr(), hints);
+  topics.twist = device_node_.subscribe<geometry_msgs::TwistStamped>(
+      topic(finger, "measured_cv"), 1, take_twist, ros::VoidConstPtr(), hints);
+}
+
+void ForceRendererNode::takeFingertips(const haptex::Fingertips& message) {
+  const Time arrival = realtime::steadyNow();
+  const ros::Time now = ros::Time::now();
+  for (const Finger finger : kFingers) {
+    FingerTopics& topics = fingers_[finger];
+    const auto motion = topics.filter.take(message, finger, now, arrival);
+    if (!motion) continue;
+    loop_.takePose(finger, motion->pose, arrival, Time(message.header.stamp.toNSec()));
+    loop_.takeTwist(finger, motion->twist, arrival);
+    topics.poses.fetch_add(1, std::memory_order_relaxed);
+    last_fingertips_ = arrival;
+  }
+  loop_thread_.call();
+}
+
+/// Whether the device tells of its fingers one by one only.
+bool ForceRendererNode::takesSingly(Time arrival) const {
+  return arrival - last_fingertips_.load() > FingertipFilter::kForgetAfter;
+}
+
+void ForceRendererNode::takeState(const haptex::ClothState& message) {
+  const Time arrival = realtime::steadyNow();
+  try {
+    readState(message, state_);
+  } catch (const std::invalid_argument& error) {
+    ROS_WARN_THROTTLE(1.0, "cloth/state dropped: %s", error.what());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++dropped_states_;
+    last_dropped_state_ = error.what();
+    return;
+  }
+  supplier_.setAttached(state_.attached);
+  loop_.takeState(state_, arrival);
+}
+
+void ForceRendererNode::takeTransforms() {
+  takeHandBase();
+  if (!tactile_) return;
+  for (const Finger finger : kFingers) takeArray(finger);
+}
+
+void ForceRendererNode::takeHandBase() {
+  if (!transforms_.canTransform(kFixedFrame, kHandFrame, ros::Time(0))) return;
+  try {
+    const geometry_msgs::TransformStamped transform =
+        transforms_.lookupTransform(kFixedFrame, kHandFrame, ros::Time(0));
+    const Eigen::Isometry3d pose = fromMessage(transform.transform);
+    const Time now = realtime::steadyNow();
+    const bool fixed = transform.header.stamp.isZero();
+    const bool is_new =
+        fixed ? !pose.isApprox(fixed_hand_base_, 0.0) : transform.header.stamp != hand_base_stamp_;
+    if (has_hand_base_ && !is_new) return;
+    has_hand_base_ = true;
+    hand_base_stamp_ = transform.header.stamp;
+    fixed_hand_base_ = pose;
+    loop_.takeHandBase(pose, fixed ? now : now - ageOf(transform.header.stamp), now, fixed);
+  } catch (const tf2::TransformException&) {
+    // Replaced between the two calls: the next look finds it.
+  }
+}
+
+/// Fixed to the fingertip: once is enough.
+void ForceRendererNode::takeArray(Finger finger) {
+  FingerTopics& topics = fingers_[finger];
+  if (topics.has_array) return;
+  const std::string tip = std::string(base::name(finger)) + "_tip";
+  const std::string array = std::string(base::name(finger)) + "_tactile";
+  if (!transforms_.canTransform(tip, array, ros::Time(0))) return;
+  try {
+    const auto transform = transforms_.lookupTransform(tip, array, ros::Time(0));
+    loop_.takeArray(finger, fromMessage(transform.transform));
+    topics.has_array = true;
+  } catch (const tf2::TransformException&) {
+    // As above.
+  }
+}
+
+void ForceRendererNode::work(Time now) {
+  const bool contact_due = ++ticks_to_contact_ >= kTicksPerContact;
+  if (contact_due) ticks_to_contact_ = 0;
+  for (const Finger finger : kFingers) {
+    loop_.wantContactors(finger, contact_due && fingers_[finger].contact.getNumSubscribers() > 0);
+  }
+  loop_.tick(now);
+  const ros::Time stamp = ros::Time::now();
+  for (const Finger finger : kFingers) publishForce(finger, stamp);
+  for (const Finger finger : kFingers) {
+    if (contact_due) publishContact(finger, stamp);
+  }
+  tick_durations_.add(realtime::steadyNow() - now);
+}
+
+void ForceRendererNode::publishForce(Finger finger, const ros::Time& stamp) {
+  FingerTopics& topics = fingers_[finger];
+  if (topics.force.getNumSubscribers() == 0) return;
+  const simulation::ForceLoop::Rendered& rendered = loop_.rendered(finger);
+  const boost::shared_ptr<haptex::ServoForce>& message = topics.force_messages.next();
+  fillServoForce(rendered.contact, stopping_ ? 0.0 : rendered.gain, loop_.hand(), stamp, *message);
+  message->measured.fromNSec(static_cast<std::uint64_t>(rendered.measured.count()));
+  topics.force.publish(message);
+}
+
+void ForceRendererNode::publishContact(Finger finger, const ros::Time& stamp) {
+  FingerTopics& topics = fingers_[finger];
+  if (topics.contact.getNumSubscribers() == 0) return;
+  const simulation::ForceLoop::Rendered& rendered = loop_.rendered(finger);
+  fillContact(rendered.contact, rendered.contactor_forces, rendered.array, rendered.gain, stamp,
+              topics.contact_message);
+  topics.contact.publish(topics.contact_message);
+}
+
+void ForceRendererNode::publishMarkers() {
+  const Time now = realtime::steadyNow();
+  const LoopRates rates = {force_rate_.update(loop_thread_.periods(), now),
+                           cloth_rate_.update(loop_.status().states, now),
+                           proximity_rate_.update(supplier_.status().queries, now),
+                           exoskeleton_rate_.update(fingers_[Finger::kIndex].poses, now)};
+  if (marker_publisher_.getNumSubscribers() == 0) return;
+  const simulation::ForceLoopStatus status = loop_.status();
+  const base::PerFinger<std::string> why{{simulation::whySilent(Finger::kIndex, status.news, now),
+                                          simulation::whySilent(Finger::kThumb, status.news, now)}};
+  marker_publisher_.publish(markers_.update(loop_.picture(), rates, ros::Time::now(), why));
+  loop_.askForPicture();
+}
+
+}  // namespace haptex::nodes

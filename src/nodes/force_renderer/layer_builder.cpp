@@ -1,0 +1,28 @@
+#include "haptex/nodes/force_renderer/layer_builder.h"
+
+#include <stdexcept>
+
+#include "haptex/nodes/common/cloth_fabric.h"
+#include "haptex/nodes/force_renderer/renderer_messages.h"
+#include "haptex/scene/scene.h"
+
+namespace haptex::nodes {
+
+LayerBuilder::LayerBuilder(const std::string& scene_path)
+    : settings_(contact::loadHapticSettings(scene_path)) {
+  const scene::Scene scene = scene::loadScene(scene_path);
+  effects_ = scene.effects;
+  fabric_path_ = scene.fabric_path;
+}
+
+std::unique_ptr<contact::HapticLayer> LayerBuilder::build(const haptex::ClothMesh& message) const {
+  mesh::ClothMesh mesh = clothMesh(message);
+  try {
+    return std::make_unique<contact::HapticLayer>(
+        std::move(mesh), fabricOfCloth(message.fabric, fabric_path_).fabric, effects_, settings_);
+  } catch (const std::exception& error) {
+    throw std::invalid_argument("fabric '" + message.fabric + "': " + error.what());
+  }
+}
+
+}  // namespace haptex::nodes

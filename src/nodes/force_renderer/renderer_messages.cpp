@@ -1,0 +1,178 @@
+#include "haptex/nodes/force_renderer/renderer_messages.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/driver_messages.h"
+#include "haptex/nodes/common/marker_shapes.h"
+#include "haptex/nodes/common/proximity_messages.h"
+
+namespace haptex::nodes {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+constexpr double kFastest = 1e4;  // m/s, of a cloth
+
+geometry_msgs::Vector3 vectorMessage(const Eigen::Vector3d& vector) {
+  geometry_msgs::Vector3 message;
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+  return message;
+}
+
+/// Without allocation if it is that frame already.
+void setHeader(const ros::Time& stamp, const std::string& frame, std_msgs::Header& header) {
+  header.stamp = stamp;
+  if (header.frame_id != frame) header.frame_id = frame;
+}
+
+void requireCount(const char* name, std::size_t count, std::size_t particles) {
+  if (count == particles) return;
+  throw std::invalid_argument(std::string(name) + " has " + std::to_string(count) +
+                              " elements: positions has " + std::to_string(particles));
+}
+
+void readVelocities(const haptex::ClothState& message, simulation::LargeScaleState& state) {
+  for (std::size_t i = 0; i < message.velocities.size(); ++i) {
+    const geometry_msgs::Vector3& velocity = message.velocities[i];
+    state.velocities[i] = {velocity.x, velocity.y, velocity.z};
+    if (state.velocities[i].allFinite() && state.velocities[i].norm() <= kFastest) continue;
+    std::ostringstream text;
+    text << "velocities[" << i << "] = (" << state.velocities[i].transpose()
+         << "): allowed are finite numbers up to " << kFastest << " m/s";
+    throw std::invalid_argument(text.str());
+  }
+}
+
+}  // namespace
+
+mesh::ClothMesh clothMesh(const haptex::ClothMesh& message) {
+  const RestMesh rest = restMesh(message);
+  mesh::ClothMesh mesh;
+  mesh.triangles = rest.triangles;
+  for (const Eigen::Vector3d& place : rest.rest_coordinates) {
+    mesh.rest_coordinates.emplace_back(place.x(), place.y());
+    mesh.initial_positions.emplace_back(0.0, place.x(), place.y());
+  }
+  mesh::requireSound(mesh);
+  return mesh;
+}
+
+void readState(const haptex::ClothState& message, simulation::LargeScaleState& state) {
+  requireValid(message);
+  if (!std::isfinite(message.simulated_time)) {
+    throw std::invalid_argument("simulated_time is not finite");
+  }
+  const std::size_t particles = message.positions.size();
+  requireCount("velocities", message.velocities.size(), particles);
+  state.positions.resize(particles);
+  state.velocities.resize(particles);
+  for (std::size_t i = 0; i < particles; ++i) {
+    const geometry_msgs::Point& position = message.positions[i];
+    state.positions[i] = {position.x, position.y, position.z};
+  }
+  readVelocities(message, state);
+  state.attached.assign(particles, 0);
+  for (const std::uint32_t particle : message.attached) {
+    if (particle >= particles) {
+      throw std::invalid_argument("attached has " + std::to_string(particle) + ": there are " +
+                                  std::to_string(particles) + " particles");
+    }
+    state.attached[particle] = 1;
+  }
+  state.simulated_time = message.simulated_time;
+}
+
+void fillServoForce(const contact::FingertipContact& contact, double gain,
+                    const simulation::FrameMotion& hand, const ros::Time& stamp,
+                    haptex::ServoForce& message) {
+  setHeader(stamp, kHandFrame, message.header);
+  const Eigen::Matrix3d to_hand = hand.pose.linear().transpose();
+  const Eigen::Vector3d arm = contact.position - hand.pose.translation();
+  const Eigen::Vector3d carried = hand.velocity + hand.angular_velocity.cross(arm);
+  message.force = vectorMessage(gain * (to_hand * contact.force));
+  message.position = pointMessage(to_hand * arm);
+  message.velocity = vectorMessage(to_hand * (contact.velocity - carried));
+  Eigen::Map<RowMajor>(message.stiffness.data()) =
+      gain * (to_hand * contact.stiffness * to_hand.transpose());
+  Eigen::Map<RowMajor>(message.damping.data()) =
+      gain * (to_hand * contact.damping * to_hand.transpose());
+}
+
+void fillContact(const contact::FingertipContact& contact,
+                 const tactile::PerContactor<double>& contactor_forces,
+                 const tactile::ArrayPlacement& array, double gain, const ros::Time& stamp,
+                 haptex::Contact& message) {
+  setHeader(stamp, kFixedFrame, message.header);
+  static const contact::FingertipContact kNone;
+  const contact::FingertipContact& shown = gain > 0.0 ? contact : kNone;
+  message.touching = shown.touching;
+  message.slipping = shown.slipping;
+  message.force = vectorMessage(gain * shown.force);
+  message.centre = pointMessage(shown.centre);
+  message.normal = vectorMessage(shown.normal);
+  message.normal_force = gain * shown.normal_force;
+  message.area = shown.area;
+  message.penetration = shown.penetration;
+  message.sliding_velocity = vectorMessage(shown.sliding_velocity);
+  for (int i = 0; i < 2; ++i) {
+    message.fabric_position[i] = shown.fabric_position[i];
+    message.fabric_velocity[i] = shown.fabric_velocity[i];
+    message.array_origin[i] = gain > 0.0 ? array.origin[i] : 0.0;
+    message.array_x[i] = gain > 0.0 ? array.axes(i, 0) : 0.0;
+    message.array_y[i] = gain > 0.0 ? array.axes(i, 1) : 0.0;
+  }
+  for (std::size_t i = 0; i < contactor_forces.size(); ++i) {
+    message.contactor_forces[i] = gain * contactor_forces[i];
+  }
+}
+
+void fillContactForces(const std::vector<cloth::PointLoad>& loads, double gain,
+                       const ros::Time& stamp, haptex::ContactForces& message) {
+  setHeader(stamp, kFixedFrame, message.header);
+  const std::size_t count = gain > 0.0 ? loads.size() : 0;
+  message.triangles.resize(count);
+  message.barycentric.resize(3 * count);
+  message.positions.resize(count);
+  message.forces.resize(count);
+  message.stiffness.resize(9 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const cloth::PointLoad& load = loads[i];
+    message.triangles[i] = static_cast<std::uint32_t>(load.triangle);
+    message.positions[i] = pointMessage(load.position);
+    message.forces[i] = vectorMessage(gain * load.force);
+    Eigen::Map<Eigen::Vector3d>(&message.barycentric[3 * i]) = load.weights;
+    Eigen::Map<RowMajor>(&message.stiffness[9 * i]) = gain * load.stiffness;
+  }
+}
+
+haptex::QueryProximity::Request volumeQuery(const contact::SearchVolume& volume) {
+  haptex::QueryProximity::Request request;
+  request.header.frame_id = kFixedFrame;
+  request.shape = haptex::QueryProximity::Request::CAPSULE;
+  request.points = {pointMessage(volume.begin), pointMessage(volume.end)};
+  request.radii = {volume.radius};
+  request.distance = volume.distance;
+  request.nearest = static_cast<std::uint32_t>(volume.count);
+  return request;
+}
+
+void addFound(const haptex::QueryProximity::Response& response, std::size_t triangles,
+              const contact::HapticSettings& settings, contact::PatchSelection& selection) {
+  for (std::size_t i = 0; i < response.elements.size(); ++i) {
+    const haptex::NearElement& element = response.elements[i];
+    if (element.triangle >= triangles) {
+      throw std::invalid_argument("elements has the triangle " + std::to_string(element.triangle) +
+                                  ": the mesh has " + std::to_string(triangles));
+    }
+    selection.add(static_cast<int>(element.triangle), element.distance, static_cast<int>(i),
+                  settings);
+  }
+}
+
+}  // namespace haptex::nodes

@@ -1,0 +1,162 @@
+// The oracles of the integrators of the cloth room.
+#include <cmath>
+#include <complex>
+
+#include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/oracles/checks/cloth_oracles.h"
+#include "haptex/oracles/experiments/amplification.h"
+#include "haptex/oracles/experiments/cloth_swing.h"
+
+namespace haptex::oracles {
+namespace {
+
+using cloth::IntegrationMethod;
+using cloth::StepSettings;
+using Eigen::Vector3d;
+
+constexpr double kTimeStep = 0.0125;               // s
+constexpr double kPhase = 2.0 * M_PI * kTimeStep;  // of a 1 Hz oscillator per step
+constexpr int kStepsPerPeriod = 80;
+constexpr double kOrderTolerance = 0.1;    // what terms of higher order still add
+constexpr double kEnergyTolerance = 2e-4;  // the two-step Euler ends a little out of phase
+constexpr double kMostLoss = 0.01;         // of the energy per period, second-order methods
+
+/// @param solves per stage
+StepSettings settingsOf(IntegrationMethod method, int solves) {
+  StepSettings settings;
+  settings.method = method;
+  settings.solver = linear::LinearSolverMethod::kCholesky;
+  settings.tolerance = 1e-10;
+  settings.newton_iterations = solves;
+  return settings;
+}
+
+int orderOf(IntegrationMethod method) {
+  switch (method) {
+    case IntegrationMethod::kBackwardEuler:
+    case IntegrationMethod::kExplicitEuler:
+    case IntegrationMethod::kTwoStepEuler:
+      return 1;
+    case IntegrationMethod::kRungeKutta4:
+      return 4;
+    default:
+      return 2;
+  }
+}
+
+/// By how much y' = -i omega y grows or shrinks in a step.
+double growthPerStep(IntegrationMethod method) {
+  const std::complex<double> z(0.0, -kPhase);
+  switch (method) {
+    case IntegrationMethod::kBackwardEuler:
+      return 1.0 / std::abs(1.0 - z);
+    case IntegrationMethod::kBdf2:  // the root near 1; the other dies away
+      return std::abs((2.0 + std::sqrt(1.0 + 2.0 * z)) / (3.0 - 2.0 * z));
+    case IntegrationMethod::kTrBdf2: {
+      const double g = 2.0 - std::sqrt(2.0);
+      const std::complex<double> middle = (1.0 + 0.5 * g * z) / (1.0 - 0.5 * g * z);
+      return std::abs((middle - (1.0 - g) * (1.0 - g)) / (g * (2.0 - g - (1.0 - g) * z)));
+    }
+    case IntegrationMethod::kExplicitEuler:
+    case IntegrationMethod::kExplicitMidpoint:
+    case IntegrationMethod::kRungeKutta4:
+      return amplification(method, kPhase);
+    default:  // the midpoint, and two-step Euler on average over a period
+      return 1.0;
+  }
+}
+
+/// Of the energy of a 1 Hz oscillator after a period: a limp cloth on a spring at each particle.
+double oscillatorEnergy(const StepSettings& settings) {
+  constexpr double kAmplitude = 0.02;  // m
+  material::Fabric limp;
+  limp.areal_density = 0.1;
+  cloth::ModelledEffects effects;
+  effects.point_loads = true;
+  cloth::Cloth cloth(mesh::makeRectangle(0.1, 0.1, 1, 1, mesh::Triangulation::kOneWay), limp,
+                     effects);
+  cloth::ClothState state = cloth.initialState();
+  std::vector<cloth::PointLoad> springs(cloth.particleCount());
+  double energy_begin = 0.0;
+  for (std::size_t t = 0; t < cloth.mesh().triangles.size(); ++t) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const int particle = cloth.mesh().triangles[t][corner];
+      const double stiffness = cloth.masses()[particle] * std::pow(kPhase / kTimeStep, 2);
+      springs[particle] = {static_cast<int>(t), Vector3d::Unit(corner), state.positions[particle],
+                           Vector3d::Zero(), stiffness * Eigen::Matrix3d::Identity()};
+    }
+  }
+  cloth.setPointLoads(springs);
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    state.positions[i].x() += kAmplitude;
+    energy_begin += 0.5 * springs[i].stiffness(0, 0) * kAmplitude * kAmplitude;
+  }
+  cloth::Integrator integrator(cloth, settings);
+  for (int i = 0; i < kStepsPerPeriod; ++i) integrator.step(cloth, state, kTimeStep);
+  return (cloth.potentialEnergy(state) + cloth.kineticEnergy(state)) / energy_begin;
+}
+
+double distance(const cloth::ClothState& a, const cloth::ClothState& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.positions.size(); ++i) {
+    sum += (a.positions[i] - b.positions[i]).squaredNorm();
+  }
+  return std::sqrt(sum);
+}
+
+/// How often the error of a swing's positions halves when the step does. The fabric is so soft and
+/// the mesh so coarse that the steps resolve the fastest vibration.
+void validateOrders(const Sink& sink) {
+  constexpr double kDuration = 0.1;  // s
+  constexpr int kSteps = 1024;
+  material::Fabric soft;
+  soft.areal_density = 0.1;
+  soft.weft.elastic = soft.warp.elastic = material::StrainStressCurve::linear(5.0);
+  soft.shear.elastic = material::StrainStressCurve::linear(2.5);
+  const ClothSwing swing(soft, 4, 0.05);
+  const auto end = [&](IntegrationMethod method, int steps) {
+    return swing.swing(settingsOf(method, 2), kDuration, steps).end;
+  };
+  const cloth::ClothState exact = end(IntegrationMethod::kRungeKutta4, 16 * kSteps);
+  for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
+    const double order = std::log2(distance(end(named.method, kSteps), exact) /
+                                   distance(end(named.method, 2 * kSteps), exact));
+    const double expected = orderOf(named.method);
+    sink({std::string("cloth/integrator/") + named.name + "/order", expected, order,
+          std::abs(order - expected), kOrderTolerance});
+  }
+}
+
+/// Over four periods.
+double lossPerPeriod(const ClothSwing& swing, const StepSettings& settings) {
+  constexpr int kPeriods = 4;
+  const ClothSwing::Motion motion =
+      swing.swing(settings, kPeriods * kStepsPerPeriod * kTimeStep, kPeriods * kStepsPerPeriod);
+  if (!motion.accepted) return std::nan("");
+  return 1.0 - std::pow(motion.energies.back() / motion.energies.front(), 1.0 / kPeriods);
+}
+
+}  // namespace
+
+void validateIntegrators(const material::Fabric& linear, const material::Fabric& wool,
+                         const Sink& sink) {
+  validateOrders(sink);
+  const ClothSwing linear_swing(linear, 32, 0.05), wool_swing(wool, 32, 0.05);
+  for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
+    const std::string name = std::string("cloth/integrator/") + named.name;
+    const double exact = std::pow(growthPerStep(named.method), 2 * kStepsPerPeriod);
+    sink(base::relativeTo(1.0, name + "/oscillator_energy", exact,
+                          oscillatorEnergy(settingsOf(named.method, 1)), kEnergyTolerance));
+    if (!isImplicit(named.method) || orderOf(named.method) < 2) continue;
+    const auto sinkLoss = [&](const std::string& of, const ClothSwing& swing, int solves) {
+      const double loss = lossPerPeriod(swing, settingsOf(named.method, solves));
+      sink({name + "/swing_loss/" + of, 0.0, loss, std::abs(loss), kMostLoss});
+    };
+    sinkLoss(linear.name, linear_swing, 2);
+    // The midpoint rule stretches a stiff cloth at the ends of its steps, and has to be damped.
+    if (named.method == IntegrationMethod::kBackwardMidpoint) continue;
+    sinkLoss(wool.name, wool_swing, 20);
+  }
+}
+
+}  // namespace haptex::oracles

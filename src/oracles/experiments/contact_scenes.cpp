@@ -1,0 +1,135 @@
+#include "haptex/oracles/experiments/contact_scenes.h"
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "haptex/base/constants.h"
+
+namespace haptex::oracles {
+namespace {
+
+using contact::Fingertip;
+using contact::kFingertips;
+using Eigen::Vector3d;
+
+constexpr int kCells = 32;
+
+HapticLoopSettings sampleAt(const material::Fabric& fabric, double large_scale_rate) {
+  HapticLoopSettings settings;
+  settings.mesh = mesh::makeRectangle(kSampleSide, kSampleSide, kCells, kCells,
+                                      mesh::Triangulation::kAlternating);
+  settings.fabric = fabric;
+  settings.effects.viscosity = true;
+  settings.effects.bending = true;
+  settings.large_scale_step =
+      std::round(1.0 / large_scale_rate / settings.haptics.time_step) * settings.haptics.time_step;
+  settings.step.newton_iterations = 4;
+  // What the linear solves leave open is not what these scenes are about, and at 25 Hz 1e-6 can
+  // keep the released sample in a small cycle.
+  settings.step.tolerance = 1e-10;
+  return settings;
+}
+
+}  // namespace
+
+HapticLoopSettings hangingSample(const material::Fabric& fabric, kes::Direction up,
+                                 double large_scale_rate) {
+  HapticLoopSettings settings = sampleAt(fabric, large_scale_rate);
+  settings.effects.gravity = {0.0, 0.0, -base::kStandardGravity};
+  settings.attached_particles = sideParticles(
+      settings.mesh, up == kes::Direction::kWarp ? mesh::Side::kTop : mesh::Side::kLeft);
+  if (up == kes::Direction::kWarp) return settings;
+  for (std::size_t i = 0; i < settings.mesh.rest_coordinates.size(); ++i) {
+    const Eigen::Vector2d& rest = settings.mesh.rest_coordinates[i];
+    settings.mesh.initial_positions[i] = {0.0, rest.y() - 0.5 * kSampleSide, -rest.x()};
+  }
+  return settings;
+}
+
+HapticLoopSettings tautSample(const material::Fabric& fabric, double strain,
+                              double large_scale_rate) {
+  HapticLoopSettings settings = sampleAt(fabric, large_scale_rate);
+  std::vector<char> held(settings.mesh.rest_coordinates.size(), 0);
+  for (mesh::Side side :
+       {mesh::Side::kTop, mesh::Side::kBottom, mesh::Side::kLeft, mesh::Side::kRight}) {
+    for (int particle : sideParticles(settings.mesh, side)) held[particle] = 1;
+  }
+  const Vector3d middle(0.0, 0.0, -0.5 * kSampleSide);
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i]) settings.attached_particles.push_back(static_cast<int>(i));
+    Vector3d& position = settings.mesh.initial_positions[i];
+    position = middle + (1.0 + strain) * (position - middle);
+  }
+  return settings;
+}
+
+double weight(const HapticLoopSettings& sample) {
+  const cloth::Cloth cloth(sample.mesh, sample.fabric, sample.effects);
+  return base::kStandardGravity *
+         std::accumulate(cloth.masses().begin(), cloth.masses().end(), 0.0);
+}
+
+Fingertips Hand::fingertips() const {
+  Fingertip index, thumb;
+  index.radius = index_radius;
+  thumb.radius = thumb_radius;
+  index.position = middle + Vector3d(0.5 * gap + index_radius, 0.0, 0.0);
+  thumb.position = middle - Vector3d(0.5 * gap + thumb_radius, 0.0, 0.0);
+  index.velocity = velocity + Vector3d(0.5 * opening, 0.0, 0.0);
+  thumb.velocity = velocity - Vector3d(0.5 * opening, 0.0, 0.0);
+  return {index, thumb};
+}
+
+void move(Hand& hand, const Vector3d& displacement, double opening, double seconds, double h,
+          const std::function<void(const Fingertips&)>& step) {
+  const Hand begin = hand;
+  const int steps = static_cast<int>(std::lround(seconds / h));
+  hand.velocity = displacement / (steps * h);
+  hand.opening = opening / (steps * h);
+  for (int i = 1; i <= steps; ++i) {
+    const double part = static_cast<double>(i) / steps;
+    hand.middle = begin.middle + part * displacement;
+    hand.gap = begin.gap + part * opening;
+    step(hand.fingertips());
+  }
+  hand.velocity.setZero();
+  hand.opening = 0.0;
+}
+
+Vector3d forceOnFingertips(const contact::HapticLayer& layer) {
+  return layer.contacts()[0].force + layer.contacts()[1].force;
+}
+
+RefinedCloth::RefinedCloth(const HapticLoopSettings& sample)
+    : law_(sample.fabric), motion_(sample.mesh.rest_coordinates.size()) {
+  std::vector<int> all(sample.mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<char> attached(sample.mesh.rest_coordinates.size(), 0);
+  for (int particle : sample.attached_particles) attached[particle] = 1;
+  const contact::MeshTopology topology(sample.mesh);
+  patch_ = std::make_unique<contact::Patch>(
+      sample.mesh,
+      contact::cutAndRefine(sample.mesh, topology, all, attached, sample.haptics.refinement),
+      sample.fabric, sample.effects, law_);
+  motion_.receive(sample.mesh.initial_positions, 1.0);
+  patch_->start(motion_);
+}
+
+void RefinedCloth::step(const Fingertips& fingertips, double h) {
+  contact::PerFingertip<const Fingertip*> present{};
+  for (int f = 0; f < kFingertips; ++f) present[f] = fingertips[f] ? &*fingertips[f] : nullptr;
+  if (!patch_->advance(motion_, present, h)) {
+    throw std::runtime_error("the refined cloth's step could not be solved");
+  }
+}
+
+Vector3d RefinedCloth::force(int fingertip) const {
+  Vector3d sum = Vector3d::Zero();
+  for (const contact::TouchedParticle& touched : patch_->contact(fingertip).touched()) {
+    sum -= touched.force();
+  }
+  return sum;
+}
+
+}  // namespace haptex::oracles

@@ -1,0 +1,70 @@
+#include "haptex/oracles/experiments/hanging_strip.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/oracles/experiments/linear_fabric.h"
+
+namespace haptex::oracles {
+
+using cloth::Cloth;
+using cloth::Integrator;
+using material::StrainStressCurve;
+
+double exactElongation(const HangingStrip& strip) {
+  const double load = strip.areal_density * strip.gravity / strip.modulus;
+  const double right = 2.0 * load * strip.length;
+  double q = right / 2.0;  // Newton on 2 q + 3 q^2 + q^3 = right, convex from above
+  for (int i = 0; i < 50; ++i) {
+    q -= (q * (2.0 + q * (3.0 + q)) - right) / (2.0 + q * (6.0 + 3.0 * q));
+  }
+  return q * q * (1.0 + q * (2.0 + 0.75 * q)) / (2.0 * load * strip.length);
+}
+
+double simulatedElongation(const HangingStrip& strip, int cells, double time_step) {
+  if (cells <= 0 || cells % 5 != 0) {
+    throw std::invalid_argument("cells is " + std::to_string(cells) +
+                                "; it must be a positive multiple of 5");
+  }
+  // Viscosity near the critical damping of the slowest longitudinal mode: it shortens the way to
+  // the state of rest and does not change it.
+  const double slowest = 0.5 * M_PI / strip.length * std::sqrt(strip.modulus / strip.areal_density);
+  material::Fabric fabric = linearFabric(strip.modulus, strip.modulus / slowest);
+  fabric.areal_density = strip.areal_density;
+
+  cloth::ModelledEffects effects;
+  effects.viscosity = true;
+  effects.gravity = {0.0, 0.0, -strip.gravity};
+  Cloth cloth(mesh::makeRectangle(strip.length / 5.0, strip.length, cells / 5, cells,
+                                  mesh::Triangulation::kAlternating),
+              fabric, effects);
+  cloth::ClothState state = cloth.initialState();
+  for (int particle : sideParticles(cloth.mesh(), mesh::Side::kTop)) {
+    cloth::AttachmentPath place;
+    place.start = state.positions[particle];
+    cloth.attach(particle, place);
+  }
+  Integrator integrator(cloth, {});
+  constexpr double kTimeConstants = 30.0;  // e^-30 is below rounding
+  while (state.time * slowest < kTimeConstants || state.time < 10.0 * time_step) {
+    integrator.step(cloth, state, time_step);
+  }
+  const std::vector<int> bottom = sideParticles(cloth.mesh(), mesh::Side::kBottom);
+  double lower_end = 0.0;
+  for (int particle : bottom) lower_end += state.positions[particle].z() / bottom.size();
+  return -lower_end / strip.length - 1.0;
+}
+
+double stretchUnder(double load, const StrainStressCurve& curve) {
+  double low = 1.0, high = 2.0;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double l = 0.5 * (low + high);
+    (l * curve.evaluate(0.5 * (l * l - 1.0)).stress < load ? low : high) = l;
+  }
+  return low;
+}
+
+}  // namespace haptex::oracles

@@ -1,0 +1,151 @@
+#include "haptex/oracles/experiments/obstacle_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "haptex/base/constants.h"
+#include "haptex/contact/obstacles.h"
+#include "haptex/oracles/experiments/linear_fabric.h"
+
+namespace haptex::oracles {
+namespace {
+
+using contact::ObstacleCollision;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using mesh::ClothMesh;
+using mesh::Obstacle;
+
+cloth::ModelledEffects effectsOf(const material::Fabric& fabric, double gravity) {
+  cloth::ModelledEffects effects;
+  effects.gravity = {0.0, 0.0, -gravity};
+  effects.viscosity = true;
+  effects.contacts = true;
+  effects.bending = fabric.bending.has_value();
+  return effects;
+}
+
+Vector3d mean(const std::vector<Vector3d>& vectors) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3d& vector : vectors) sum += vector;
+  return sum / static_cast<double>(vectors.size());
+}
+
+}  // namespace
+
+ClothMesh flatSheet(const Eigen::Vector2d& size, int cells_u, int cells_v, const Isometry3d& pose) {
+  ClothMesh mesh =
+      mesh::makeRectangle(size.x(), size.y(), cells_u, cells_v, mesh::Triangulation::kAlternating);
+  for (std::size_t i = 0; i < mesh.initial_positions.size(); ++i) {
+    const Eigen::Vector2d from_middle = mesh.rest_coordinates[i] - 0.5 * size;
+    mesh.initial_positions[i] = pose * Vector3d(from_middle.x(), from_middle.y(), 0.0);
+  }
+  return mesh;
+}
+
+CollidingCloth::CollidingCloth(ClothMesh mesh, material::Fabric fabric, double gravity,
+                               const cloth::StepSettings& settings, std::vector<Obstacle> obstacles)
+    : cloth(std::move(mesh), fabric, effectsOf(fabric, gravity)),
+      state(cloth.initialState()),
+      integrator(cloth, settings),
+      collision(cloth, std::move(obstacles)) {}
+
+cloth::StepReport CollidingCloth::step(double h) {
+  const cloth::StepReport report = collision.step(cloth, integrator, state, h);
+  if (!report.accepted) throw std::runtime_error("a step was not accepted");
+  return report;
+}
+
+Vector3d CollidingCloth::contactForce() const {
+  Vector3d sum = Vector3d::Zero();
+  for (const cloth::ContactReaction& reaction : integrator.contactReactions()) {
+    sum += reaction.force;
+  }
+  return sum;
+}
+
+double CollidingCloth::leastDistance() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : collision.obstacles()) {
+    proximity::RigidObstacle shape = contact::makeObstacle(obstacle);
+    shape.setPose(obstacle.poseAt(state.time));
+    for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+      if (cloth.attachments()[i]) continue;
+      least = std::min(least, shape.distance(state.positions[i]).distance);
+    }
+  }
+  return least;
+}
+
+InclineOutcome slideDown(double angle, double friction, cloth::IntegrationMethod method, double h) {
+  Isometry3d pose(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
+  Obstacle incline{"incline", mesh::ObstacleBox{{10.0, 1.0, 0.1}}, pose};
+  incline.friction = friction;
+  Isometry3d on_top = pose;
+  on_top.translation() = (0.05 + ObstacleCollision::kOffset) * pose.linear().col(2);
+  cloth::StepSettings settings;
+  settings.method = method;
+  CollidingCloth scene(flatSheet({0.1, 0.1}, 8, 8, on_top), linearFabric(1000.0, 1.0),
+                       base::kStandardGravity, settings, {incline});
+  const Vector3d down = pose.linear().col(0);
+  const auto way = [&] { return down.dot(mean(scene.state.positions)); };
+  const auto speed = [&] { return down.dot(mean(scene.state.velocities)); };
+  const double start = way();
+  const int quarter = static_cast<int>(std::lround(0.25 / h));
+  for (int i = 0; i < quarter; ++i) scene.step(h);
+  const double speed_before = speed();
+  for (int i = 0; i < quarter; ++i) scene.step(h);
+  return {way() - start, (speed() - speed_before) / (quarter * h)};
+}
+
+double pullOverCapsule(double friction) {
+  constexpr double kRadius = 0.02, kWidth = 0.01, kLength = 0.24, kLoad = 0.2;  // m, N
+  constexpr int kCells = 96;
+  constexpr double kSpeed = 0.02, kDuration = 2.0;  // m/s, s
+  const double radius = kRadius + ObstacleCollision::kOffset;
+  Isometry3d along_y(Eigen::AngleAxisd(M_PI / 2.0, Vector3d::UnitX()));
+  Obstacle capsule{"capsule", mesh::ObstacleCapsule{kRadius, 0.2}, along_y};
+  capsule.friction = friction;
+  ClothMesh mesh = flatSheet({kLength, kWidth}, kCells, 2, Isometry3d::Identity());
+  // Bent around the upper half, both ends hanging down.
+  for (Vector3d& place : mesh.initial_positions) {
+    const double s = place.x(), quarter = 0.5 * M_PI * radius;
+    if (std::abs(s) <= quarter) {
+      place = Vector3d(radius * std::sin(s / radius), place.y(), radius * std::cos(s / radius));
+    } else {
+      place = Vector3d(std::copysign(radius, s), place.y(), quarter - std::abs(s));
+    }
+  }
+  constexpr double h = 1e-3;  // s
+  cloth::StepSettings settings;
+  settings.tolerance = 1e-8;
+  CollidingCloth scene(std::move(mesh), linearFabric(1000.0, 0.1), 0.0, settings, {capsule});
+  const auto loaded = sideParticles(scene.cloth.mesh(), mesh::Side::kLeft);
+  const auto pulled = sideParticles(scene.cloth.mesh(), mesh::Side::kRight);
+  for (int particle : loaded) {
+    scene.cloth.setExternalForce(particle, {0.0, 0.0, -kLoad / loaded.size()});
+  }
+  for (int particle : pulled) {
+    scene.cloth.attach(
+        particle,
+        {scene.state.positions[particle], {0.0, 0.0, -kSpeed * kDuration}, 0.0, kDuration});
+  }
+  // In the middle of the path, when the strip slips everywhere. Under a dead load it judders: the
+  // mean is what the equation is about.
+  std::vector<Vector3d> forces;
+  double sum = 0.0;
+  int samples = 0;
+  while (scene.state.time < 0.7 * kDuration) {
+    scene.step(h);
+    if (scene.state.time < 0.4 * kDuration) continue;
+    scene.cloth.computeForces(scene.state, forces);
+    for (int particle : pulled) sum += forces[particle].z();
+    ++samples;
+  }
+  return sum / samples / kLoad;
+}
+
+}  // namespace haptex::oracles

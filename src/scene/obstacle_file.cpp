@@ -1,0 +1,141 @@
+#include "haptex/scene/obstacle_file.h"
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "haptex/mesh/obj_file.h"
+#include "haptex/scene/scene_values.h"
+
+namespace haptex::scene {
+namespace {
+
+using base::YamlValue;
+
+constexpr double kShortestPeriod = 1e-3;  // s
+constexpr double kFastest = 1e3;          // m/s
+const std::vector<std::string> kShapes = {"sphere", "box", "capsule", "mesh"};
+
+Eigen::Vector3d readVector(const YamlValue& value) {
+  const auto components = value.items(3);
+  Eigen::Vector3d vector;
+  for (int i = 0; i < 3; ++i) vector[i] = components[i].number();
+  return vector;
+}
+
+Eigen::Vector3d readPosition(const YamlValue& value) {
+  const Eigen::Vector3d position = readVector(value);
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(position[i]) > kLargestSize)
+      value.items(3)[i].refuse("must be from -100 to 100 m");
+  }
+  return position;
+}
+
+// As in URDF: rotations about the fixed axes x, y and z, in this order.
+Eigen::Matrix3d readRotation(const YamlValue& value) {
+  const Eigen::Vector3d rpy = readVector(value);
+  return (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+mesh::ObstacleBox readBox(const YamlValue& value) {
+  const auto sides = value.items(3);
+  return {{readSize(sides[0]), readSize(sides[1]), readSize(sides[2])}};
+}
+
+mesh::ObstacleCapsule readCapsule(const YamlValue& value) {
+  value.requireKeys({"radius", "length"});
+  return {readSize(value.at("radius")), readSize(value.at("length"))};
+}
+
+mesh::ObstacleMesh readMesh(const YamlValue& value) {
+  const std::string path = resolveFile(value, "meshes", ".obj");
+  mesh::ObstacleMesh mesh = mesh::loadObjSurface(path);
+  requireTriangleCount(value, static_cast<long long>(mesh.triangles.size()));
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (mesh.vertices[i].cwiseAbs().maxCoeff() > kLargestSize) {
+      value.refuseBecause("position " + std::to_string(i + 1) + " of " + path +
+                          " must be from -100 to 100 m along every axis");
+    }
+  }
+  return mesh;
+}
+
+auto readShape(const YamlValue& value) -> decltype(mesh::Obstacle::shape) {
+  int shapes = 0;
+  for (const std::string& shape : kShapes) shapes += value.has(shape) ? 1 : 0;
+  if (shapes != 1) value.refuseBecause("must have exactly one of sphere, box, capsule, mesh");
+  if (value.has("sphere")) return mesh::ObstacleSphere{readSize(value.at("sphere"))};
+  if (value.has("box")) return readBox(value.at("box"));
+  if (value.has("capsule")) return readCapsule(value.at("capsule"));
+  return readMesh(value.at("mesh"));
+}
+
+mesh::ObstacleOrbit readOrbit(const YamlValue& value) {
+  value.requireKeys({"centre", "axis", "period"});
+  mesh::ObstacleOrbit orbit{readPosition(value.at("centre")), readVector(value.at("axis")),
+                            value.at("period").number()};
+  if (!(orbit.axis.stableNorm() > 0.0)) value.at("axis").refuseBecause("must not be zero");
+  orbit.axis.stableNormalize();
+  if (!(orbit.period >= kShortestPeriod)) value.at("period").refuse("must be at least 1e-3 s");
+  return orbit;
+}
+
+mesh::ObstacleDrift readDrift(const YamlValue& value) {
+  const mesh::ObstacleDrift drift{readVector(value)};
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(drift.velocity[i]) > kFastest) {
+      value.items(3)[i].refuse("must be from -1000 to 1000 m/s");
+    }
+  }
+  return drift;
+}
+
+auto readMotion(const YamlValue& value) -> decltype(mesh::Obstacle::motion) {
+  if (value.has("orbit") && value.has("velocity")) {
+    value.refuseBecause("must have at most one of orbit, velocity");
+  }
+  if (value.has("orbit")) return readOrbit(value.at("orbit"));
+  if (value.has("velocity")) return readDrift(value.at("velocity"));
+  return {};
+}
+
+double readFriction(const YamlValue& value) {
+  const double friction = value.number();
+  if (!(friction >= 0.0)) value.refuse("must be >= 0");
+  return friction;
+}
+
+mesh::Obstacle readObstacle(const YamlValue& value) {
+  std::vector<std::string> optional = kShapes;
+  for (const char* key : {"rpy", "orbit", "velocity", "friction"}) optional.push_back(key);
+  value.requireKeys({"name", "position"}, optional);
+  mesh::Obstacle obstacle;
+  obstacle.name = value.at("name").text();
+  obstacle.shape = readShape(value);
+  obstacle.pose.setIdentity();
+  obstacle.pose.translation() = readPosition(value.at("position"));
+  if (value.has("rpy")) obstacle.pose.linear() = readRotation(value.at("rpy"));
+  obstacle.motion = readMotion(value);
+  if (value.has("friction")) obstacle.friction = readFriction(value.at("friction"));
+  return obstacle;
+}
+
+}  // namespace
+
+std::vector<mesh::Obstacle> readObstacles(const YamlValue& list) {
+  std::vector<mesh::Obstacle> obstacles;
+  std::set<std::string> names;
+  for (const YamlValue& item : list.items()) {
+    obstacles.push_back(readObstacle(item));
+    if (!names.insert(obstacles.back().name).second) {
+      item.at("name").refuse("is the name of an earlier obstacle, must be unique");
+    }
+  }
+  return obstacles;
+}
+
+}  // namespace haptex::scene

@@ -1,0 +1,294 @@
+#include "haptex/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "haptex/base/constants.h"
+#include "haptex/base/yaml_reader.h"
+#include "haptex/mesh/obj_file.h"
+#include "haptex/scene/obstacle_file.h"
+#include "haptex/scene/scene_values.h"
+#include "haptex/scene/step_values.h"
+
+namespace haptex::scene {
+namespace {
+
+using base::YamlValue;
+
+constexpr double kMostCurvature = 1000.0;  // 1/m
+const Eigen::Vector3d kDownwards(0.0, 0.0, -base::kStandardGravity);
+
+int readCells(const YamlValue& value) {
+  const int cells = value.integer();
+  if (cells < 1) value.refuse("must be an integer >= 1");
+  return cells;
+}
+
+/// As few as make none longer than the cell size, but for rounding.
+int cellsOf(const YamlValue& sheet, double length, double cell_size) {
+  const double cells = std::max(1.0, std::ceil(length / cell_size * (1.0 - 1e-9)));
+  requireTriangleCount(sheet, static_cast<long long>(std::min(2.0 * cells, 1e15)));
+  return static_cast<int>(cells);
+}
+
+/// @param cell_size m, of the longest edge along weft or warp; 0: the cells of the file
+mesh::ClothMesh readSheet(const YamlValue& value, double cell_size) {
+  value.requireKeys({"size", "cells", "diagonals"});
+  const auto size = value.at("size").items(2);
+  const auto cells = value.at("cells").items(2);
+  const double width = readSize(size[0]), height = readSize(size[1]);
+  int cells_u = readCells(cells[0]), cells_v = readCells(cells[1]);
+  // Each factor alone is bounded first, so that the product cannot overflow.
+  requireTriangleCount(cells[0], 2LL * cells_u);
+  requireTriangleCount(value.at("cells"), 2LL * cells_u * cells_v);
+  if (cell_size > 0.0) {
+    cells_u = cellsOf(value, width, cell_size);
+    cells_v = cellsOf(value, height, cell_size);
+    requireTriangleCount(value, 2LL * cells_u * cells_v);
+  }
+  const bool one_way = value.at("diagonals").oneOf({"one_way", "alternating"}) == "one_way";
+  mesh::ClothMesh mesh = mesh::makeRectangle(
+      width, height, cells_u, cells_v,
+      one_way ? mesh::Triangulation::kOneWay : mesh::Triangulation::kAlternating);
+  try {
+    requireSound(mesh);
+  } catch (const std::invalid_argument& defects) {
+    value.refuseBecause(defects.what());
+  }
+  return mesh;
+}
+
+mesh::ClothMesh readMesh(const YamlValue& scene, double cell_size) {
+  if (scene.has("sheet") == scene.has("mesh")) {
+    scene.refuseBecause("must have exactly one of sheet, mesh");
+  }
+  if (scene.has("sheet")) return readSheet(scene.at("sheet"), cell_size);
+  mesh::ClothMesh mesh = mesh::loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"));
+  requireTriangleCount(scene.at("mesh"), static_cast<long long>(mesh.triangles.size()));
+  return mesh;
+}
+
+mesh::Side readSide(const YamlValue& value) {
+  const std::string side = value.oneOf({"top", "bottom", "left", "right"});
+  if (side == "top") return mesh::Side::kTop;
+  if (side == "bottom") return mesh::Side::kBottom;
+  return side == "left" ? mesh::Side::kLeft : mesh::Side::kRight;
+}
+
+int readParticle(const YamlValue& value, const mesh::ClothMesh& mesh) {
+  const int particle = value.integer();
+  const int count = static_cast<int>(mesh.rest_coordinates.size());
+  if (particle < 0 || particle >= count) {
+    value.refuse("must be a particle from 0 to " + std::to_string(count - 1));
+  }
+  return particle;
+}
+
+// Ascending, each particle once: sides share their corners.
+std::vector<int> readAttachedParticles(const YamlValue& value, const mesh::ClothMesh& mesh) {
+  std::set<int> attached;
+  for (const YamlValue& item : value.items()) {
+    if (item.isMap()) {
+      item.requireKeys({"particles"});
+      for (const YamlValue& particle : item.at("particles").items()) {
+        attached.insert(readParticle(particle, mesh));
+      }
+    } else {
+      const std::vector<int> side = mesh::sideParticles(mesh, readSide(item));
+      attached.insert(side.begin(), side.end());
+    }
+  }
+  return std::vector<int>(attached.begin(), attached.end());
+}
+
+bool allowsAnyCells(const YamlValue& scene) {
+  if (!scene.has("sheet")) return false;
+  const std::vector<YamlValue> attached = scene.at("attach").items();
+  return std::none_of(attached.begin(), attached.end(),
+                      [](const YamlValue& item) { return item.isMap(); });
+}
+
+Eigen::Vector3d readVector(const YamlValue& value) {
+  const auto components = value.items(3);
+  return {components[0].number(), components[1].number(), components[2].number()};
+}
+
+double readNotNegative(const YamlValue& value) {
+  const double number = value.number();
+  if (number < 0.0) value.refuse("must be a finite number >= 0");
+  return number;
+}
+
+cloth::Wind readWind(const YamlValue& value) {
+  value.requireKeys({"velocity"}, {"gusts"});
+  cloth::Wind wind;
+  wind.mean = readVector(value.at("velocity"));
+  if (!value.has("gusts")) return wind;
+  for (const YamlValue& item : value.at("gusts").items()) {
+    item.requireKeys({"velocity", "frequency"}, {"phase"});
+    cloth::Gust gust;
+    gust.velocity = readVector(item.at("velocity"));
+    gust.frequency = readNotNegative(item.at("frequency"));
+    if (item.has("phase")) gust.phase = item.at("phase").number();
+    wind.gusts.push_back(gust);
+  }
+  return wind;
+}
+
+cloth::Air readAir(const YamlValue& scene) {
+  cloth::Air air;
+  if (scene.has("air")) {
+    const YamlValue value = scene.at("air");
+    value.requireKeys({}, {"normal", "tangential", "lift"});
+    const auto read = [&](const char* key, double& coefficient) {
+      if (value.has(key)) coefficient = readNotNegative(value.at(key));
+    };
+    read("normal", air.coefficients.normal);
+    read("tangential", air.coefficients.tangential);
+    read("lift", air.coefficients.lift);
+  }
+  if (scene.has("wind")) air.wind = readWind(scene.at("wind"));
+  return air;
+}
+
+double readCurvature(const YamlValue& value) {
+  const double curvature = value.number();
+  if (std::abs(curvature) > kMostCurvature) value.refuse("must be from -1000 to 1000 1/m");
+  return curvature;
+}
+
+cloth::BendingSettings readBending(const YamlValue& value) {
+  value.requireKeys({}, {"model", "rest_curvature"});
+  cloth::BendingSettings settings;
+  if (value.has("model") && value.at("model").oneOf({"linear", "quadratic"}) == "quadratic") {
+    settings.model = cloth::BendingModel::kQuadratic;
+  }
+  if (value.has("rest_curvature")) {
+    const YamlValue curvature = value.at("rest_curvature");
+    curvature.requireKeys({"weft", "warp"});
+    settings.rest_curvature << readCurvature(curvature.at("weft")),
+        readCurvature(curvature.at("warp"));
+  }
+  return settings;
+}
+
+cloth::Elasticity readElasticity(const YamlValue& value, const mesh::ClothMesh& mesh) {
+  const std::string name = value.oneOf({"green_lagrange", "mass_spring", "corotational"});
+  if (name == "green_lagrange") return cloth::Elasticity::kGreenLagrange;
+  if (name == "corotational") return cloth::Elasticity::kCorotational;
+  try {
+    cloth::findLatticeSprings(mesh, false);
+  } catch (const std::invalid_argument& error) {
+    value.refuseBecause(error.what());
+  }
+  return cloth::Elasticity::kMassSpring;
+}
+
+using Listed = std::set<std::string>;
+
+/// What the scene lists, each once and with what it builds on.
+Listed readModel(const YamlValue& scene) {
+  Listed listed;
+  for (const YamlValue& item : scene.at("model").items()) {
+    const std::string name =
+        item.oneOf({"gravity", "viscosity", "bending", "bending_hysteresis", "contraction", "air",
+                    "wind", "obstacles", "fingers", "tactile", "recording"});
+    if (!listed.insert(name).second) item.refuse("is listed twice");
+  }
+  const auto requireBoth = [&](const std::string& effect, const std::string& base) {
+    if (listed.count(effect) == 0 || listed.count(base) > 0) return;
+    scene.at("model").refuseBecause("lists " + effect + ", which needs " + base + " listed, too");
+  };
+  requireBoth("bending_hysteresis", "bending");
+  requireBoth("wind", "air");
+  requireBoth("tactile", "fingers");
+  return listed;
+}
+
+/// A key that says how something is modelled is a contradiction where it is not modelled.
+void requireListedKeys(const YamlValue& scene, const Listed& listed) {
+  const auto requireListed = [&](const char* key, const std::string& effect) {
+    if (!scene.has(key) || listed.count(effect) > 0) return;
+    scene.at(key).refuseBecause("is allowed only if model lists " + effect + ", which it does not");
+  };
+  requireListed("gravity", "gravity");
+  requireListed("air", "air");
+  requireListed("wind", "wind");
+  requireListed("bending", "bending");
+  requireListed("haptics", "fingers");
+  if (listed.count("wind") > 0 && !scene.has("wind")) {
+    scene.at("model").refuseBecause("lists wind, so the key wind is required");
+  }
+}
+
+cloth::ModelledEffects readEffects(const YamlValue& scene, const Listed& listed) {
+  cloth::ModelledEffects effects;
+  effects.viscosity = listed.count("viscosity") > 0;
+  effects.bending = listed.count("bending") > 0;
+  effects.bending_hysteresis = listed.count("bending_hysteresis") > 0;
+  effects.contraction = listed.count("contraction") > 0;
+  effects.contacts = listed.count("obstacles") > 0;
+  effects.point_loads = listed.count("fingers") > 0;
+  if (listed.count("air") > 0) effects.air = readAir(scene);
+  if (listed.count("gravity") > 0) effects.gravity = kDownwards;
+  if (scene.has("gravity")) effects.gravity = readVector(scene.at("gravity"));
+  if (scene.has("bending")) effects.bending_settings = readBending(scene.at("bending"));
+  return effects;
+}
+
+Scene readScene(const std::string& path, double cell_size) {
+  const YamlValue file = YamlValue::load(path);
+  file.requireKeys({"fabric", "attach", "model", "time_step"},
+                   {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind",
+                    "integrator", "solver", "obstacles", "haptics"});
+  Scene scene;
+  scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
+  scene.any_cells = allowsAnyCells(file);
+  scene.mesh = readMesh(file, scene.any_cells ? cell_size : 0.0);
+  scene.attached_particles = readAttachedParticles(file.at("attach"), scene.mesh);
+  const Listed listed = readModel(file);
+  requireListedKeys(file, listed);
+  scene.effects = readEffects(file, listed);
+  scene.fingers = listed.count("fingers") > 0;
+  scene.tactile = listed.count("tactile") > 0;
+  scene.recording = listed.count("recording") > 0;
+  if (file.has("elasticity")) {
+    scene.effects.elasticity = readElasticity(file.at("elasticity"), scene.mesh);
+    if (scene.effects.contraction &&
+        scene.effects.elasticity != cloth::Elasticity::kGreenLagrange) {
+      file.at("elasticity").refuse("is not allowed if model lists contraction");
+    }
+    if (scene.effects.bending_hysteresis &&
+        scene.effects.elasticity == cloth::Elasticity::kMassSpring) {
+      file.at("elasticity").refuse("is not allowed if model lists bending_hysteresis");
+    }
+    if (file.has("bending") && scene.effects.elasticity == cloth::Elasticity::kMassSpring) {
+      file.at("bending").refuseBecause("is not allowed with mass_spring, which bends by springs");
+    }
+  }
+  scene.time_step = readTimeStep(file.at("time_step"));
+  scene.step = readStepSettings(file);
+  if (file.has("obstacles")) scene.obstacles = readObstacles(file.at("obstacles"));
+  if (scene.effects.contacts && scene.obstacles.empty()) {
+    file.at("model").refuseBecause("lists obstacles, so the key obstacles must have at least one");
+  }
+  return scene;
+}
+
+}  // namespace
+
+Scene loadScene(const std::string& path) { return readScene(path, 0.0); }
+
+Scene loadScene(const std::string& path, double cell_size) {
+  if (!std::isfinite(cell_size) || cell_size <= 0.0) {
+    throw std::invalid_argument("cell_size is " + std::to_string(cell_size) +
+                                " m; it must be finite and > 0");
+  }
+  return readScene(path, cell_size);
+}
+
+}  // namespace haptex::scene

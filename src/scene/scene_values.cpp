@@ -1,0 +1,59 @@
+#include "haptex/scene/scene_values.h"
+
+#include <filesystem>
+#include <set>
+
+namespace haptex::scene {
+namespace {
+
+using base::YamlValue;
+namespace fs = std::filesystem;
+
+constexpr long long kMostTriangles = 200000;
+
+// Names of the files of one kind, for a message that says what there is.
+std::string namesIn(const fs::path& directory, const std::string& extension) {
+  std::set<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error)) {
+    if (entry.path().extension() == extension) names.insert(entry.path().stem().string());
+  }
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return names.empty() ? "none" : list;
+}
+
+}  // namespace
+
+std::string resolveFile(const YamlValue& value, const std::string& kind,
+                        const std::string& extension) {
+  const std::string name = value.text();
+  const fs::path scene_directory = fs::path(value.file()).parent_path();
+  const fs::path kind_directory = (scene_directory / ".." / kind).lexically_normal();
+  const bool is_path = name.find('/') != std::string::npos;
+  fs::path path = (is_path ? scene_directory : kind_directory) / name;
+  if (path.extension() != extension) path += extension;
+  path = path.lexically_normal();
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) {
+    value.refuse("must be a name in " + kind_directory.string() + " (" +
+                 namesIn(kind_directory, extension) + ") or a path with a '/'; there is no file " +
+                 path.string());
+  }
+  return path.string();
+}
+
+double readSize(const YamlValue& value) {
+  const double size = value.number();
+  if (size <= 0.0 || size > kLargestSize) value.refuse("must be > 0 and <= 100 m");
+  return size;
+}
+
+void requireTriangleCount(const YamlValue& value, long long triangles) {
+  if (triangles > kMostTriangles) {
+    value.refuseBecause(std::to_string(triangles) + " triangles, at most " +
+                        std::to_string(kMostTriangles) + " are allowed");
+  }
+}
+
+}  // namespace haptex::scene

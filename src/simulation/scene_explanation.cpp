@@ -1,0 +1,302 @@
+#include "haptex/simulation/scene_explanation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <ostream>
+#include <stdexcept>
+
+#include "haptex/contact/haptic_settings.h"
+#include "haptex/scene/scene_fabric.h"
+#include "haptex/simulation/step_cost.h"
+#include "haptex/simulation/touch_cost.h"
+
+namespace haptex::simulation {
+namespace {
+
+constexpr double kTurn = 0.15;      // s of computing time, about, of a turn of a measurement
+constexpr int kRounds = 5;          // base, scene, base
+constexpr int kMilliseconds = 300;  // of touch
+constexpr double kNear = 1.5;       // factor, of cells and time steps
+
+__attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) {
+  char buffer[400];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof(buffer), format, arguments);
+  va_end(arguments);
+  return buffer;
+}
+
+void printRow(std::ostream& out, const std::string& name, const std::string& value) {
+  out << text("  %-20s ", name.c_str()) << value << '\n';
+}
+
+std::string methodName(cloth::IntegrationMethod method) {
+  for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
+    if (named.method == method) return named.name;
+  }
+  throw std::logic_error("an integrator has no name");
+}
+
+std::string solverName(linear::LinearSolverMethod method) {
+  switch (method) {
+    case linear::LinearSolverMethod::kAutomatic:
+      return "the cheaper solver";
+    case linear::LinearSolverMethod::kCholesky:
+      return "Cholesky";
+    default:
+      return "conjugate gradient";
+  }
+}
+
+std::string elasticityName(cloth::Elasticity elasticity) {
+  switch (elasticity) {
+    case cloth::Elasticity::kMassSpring:
+      return "springs (mass_spring)";
+    case cloth::Elasticity::kCorotational:
+      return "linear finite elements (corotational)";
+    default:
+      return "finite elements with the fabric's curves (green_lagrange)";
+  }
+}
+
+/// A scene that is measured, with as many steps per turn as its cost allows.
+class Measurement {
+ public:
+  Measurement(const scene::Scene& scene, const material::Fabric& fabric)
+      : scene_(scene), fabric_(fabric) {
+    const std::size_t before = allocatedBytes();
+    SteppedScene stepped(scene, fabric);
+    bytes_ = allocatedBytes() - before;
+    const int period =
+        std::max(1, static_cast<int>(std::lround(SteppedScene::kPeriod / scene.time_step)));
+    stepped.secondsFor(1);  // the first step is not like the others
+    const double step = stepped.secondsFor(std::min(3, period)) / std::min(3, period);
+    steps_ = std::clamp(static_cast<int>(kTurn / std::max(step, 1e-9)), 1, period);
+    seconds_ = stepped.secondsFor(steps_) / steps_;
+  }
+
+  std::size_t bytes() const { return bytes_; }
+  double stepSeconds() const { return seconds_; }
+
+  /// What of a step goes to what a scene has less.
+  StepCost against(const scene::Scene& less) const {
+    SteppedScene stepped(scene_, fabric_), base(less, fabric_);
+    return compareSteps(stepped, base, kRounds, steps_);
+  }
+
+ private:
+  const scene::Scene& scene_;
+  const material::Fabric& fabric_;
+  std::size_t bytes_;
+  int steps_;
+  double seconds_;  // computing time of a step
+};
+
+void printScene(const std::string& path, const scene::Scene& scene, const material::Fabric& fabric,
+                std::ostream& out) {
+  out << "scene " << path << "\n\n";
+  printRow(out, "fabric", fabric.name + ", " + scene.fabric_path);
+  printRow(out, "mesh",
+           text("%zu triangles, %zu particles of which %zu are attached, cells of %.3g mm",
+                scene.mesh.triangles.size(), scene.mesh.initial_positions.size(),
+                scene.attached_particles.size(), 1e3 * cellSize(scene.mesh)));
+  printRow(out, "stretch and shear", elasticityName(scene.effects.elasticity));
+  std::string step =
+      text("%g ms, %s", 1e3 * scene.time_step, methodName(scene.step.method).c_str());
+  if (cloth::isImplicit(scene.step.method)) {
+    step += text(", %d linear solve%s by %s to %g, %d thread%s", scene.step.newton_iterations,
+                 scene.step.newton_iterations == 1 ? "" : "s at most",
+                 solverName(scene.step.solver).c_str(), scene.step.tolerance, scene.step.threads,
+                 scene.step.threads == 1 ? "" : "s");
+  }
+  printRow(out, "step", step);
+  if (!scene.obstacles.empty()) {
+    printRow(out, "obstacles",
+             text("%zu, %s", scene.obstacles.size(),
+                  scene.effects.contacts ? "with which the cloth collides"
+                                         : "to be asked about only: the cloth goes through them"));
+  }
+}
+
+void printCost(const std::string& path, const scene::Scene& scene, const material::Fabric& fabric,
+               const Measurement& measurement, std::ostream& out, std::ostream& progress) {
+  out << "\nmodelled, and its share of a step\n";
+  for (const Effect& effect : effectsOf(scene)) {
+    if (!effect.listed) continue;
+    std::string cost;
+    if (effect.name == "tactile") {
+      progress << "explain_scene: measuring tactile\n";
+      cost = text("beside the steps: %.3g ms of every 25 ms, while a finger touches",
+                  1e3 * measureTactile(fabric, kMilliseconds));
+    } else if (effect.name == "recording") {
+      cost = "beside the steps: not measured";
+    } else {
+      progress << "explain_scene: measuring " << effect.name << '\n';
+      const StepCost against = measurement.against(withoutEffect(scene, effect.name));
+      const double share = 1.0 - 1.0 / against.ratio;
+      cost = std::abs(share) <= against.noise
+                 ? text("within the noise of %.0f %%", 100.0 * against.noise)
+                 : text("%.0f %%, noise %.0f %%", 100.0 * share, 100.0 * against.noise);
+    }
+    printRow(out, effect.name, text("%-52s ", effect.meaning.c_str()) + cost);
+  }
+  if (!scene.fingers) return;
+  progress << "explain_scene: measuring the cloth under two fingertips\n";
+  const TouchCost touch = measureTouch(scene.mesh, fabric, scene.effects,
+                                       contact::loadHapticSettings(path), kMilliseconds);
+  printRow(out, "  at 1 kHz",
+           text("%.2g ms of every millisecond while two fingertips touch %zu particles; %.2g ms "
+                "and no patch while none is near",
+                1e3 * touch.near_seconds, touch.near_particles, 1e3 * touch.far_seconds));
+}
+
+void printNotModelled(const scene::Scene& scene, std::ostream& out) {
+  out << "\nnot modelled: it takes neither time nor memory\n";
+  for (const Effect& effect : effectsOf(scene)) {
+    if (!effect.listed) printRow(out, effect.name, effect.meaning);
+  }
+}
+
+void printTotal(const scene::Scene& scene, const Measurement& measurement, std::ostream& out) {
+  out << "\non this machine\n";
+  const double step = measurement.stepSeconds();
+  printRow(out, "step of the cloth",
+           text("%.3g ms while it moves, %.3g times as fast as real time; nothing while it rests",
+                1e3 * step, scene.time_step / step));
+  if (step > scene.time_step) {
+    printRow(out, "", "it falls behind: simulated time will pass more slowly than real time");
+  }
+  if (measurement.bytes() > 0) {
+    printRow(out, "memory of the cloth", text("%.3g MB", 1e-6 * measurement.bytes()));
+  }
+}
+
+void printErrors(const scene::Scene& scene, const material::Fabric& fabric,
+                 const std::vector<scene::Quality>& studied, std::ostream& out) {
+  out << "\nerror to expect\n";
+  const scene::Quality* quality = nearestQuality(scene, studied);
+  if (quality == nullptr || quality->measured.empty()) {
+    printRow(out, "not studied", "no setting like this one is in config/presets/front.yaml");
+    return;
+  }
+  printRow(out, "nearest studied",
+           text("%s: cells of %.3g mm, steps of %.3g ms, %s", quality->name.c_str(),
+                1e3 * quality->cell_size, 1e3 * quality->time_step,
+                methodName(quality->step.method).c_str()));
+  if (kNear * cellSize(scene.mesh) < quality->cell_size) {
+    printRow(out, "", "the scene's cells are finer; most of these errors comes from the step");
+  }
+  const bool same =
+      std::any_of(quality->measured.begin(), quality->measured.end(),
+                  [&](const auto& measured) { return measured.fabric == fabric.name; });
+  if (!same) printRow(out, "", "not with " + fabric.name + "; with other fabrics it was");
+  for (const scene::MeasuredQuality& measured : quality->measured) {
+    if (same && measured.fabric != fabric.name) continue;
+    printRow(out, measured.motion,
+             text("%s: %.2g mm in position, %.2g N in the force that holds it, %.2g mJ in energy",
+                  measured.fabric.c_str(), 1e3 * measured.position_error, measured.force_error,
+                  1e3 * measured.energy_error));
+  }
+}
+
+}  // namespace
+
+std::vector<Effect> effectsOf(const scene::Scene& scene) {
+  const cloth::ModelledEffects& effects = scene.effects;
+  const bool wind =
+      effects.air && !(effects.air->wind.mean.isZero(0.0) && effects.air->wind.gusts.empty());
+  return {
+      {"gravity", "weight", !effects.gravity.isZero(0.0)},
+      {"viscosity", "stress by rates of strain", effects.viscosity},
+      {"bending", "resistance to bending", effects.bending},
+      {"bending_hysteresis", "friction within the fabric against bending",
+       effects.bending_hysteresis},
+      {"contraction", "stretched fabric becomes narrower", effects.contraction},
+      {"air", "drag and lift of air", effects.air.has_value()},
+      {"wind", "air that moves", wind},
+      {"obstacles", "collision with rigid bodies", effects.contacts},
+      {"fingers", "touch by fingertips", scene.fingers},
+      {"tactile", "the surface under the fingertips", scene.tactile},
+      {"recording", "a bag of everything", scene.recording},
+  };
+}
+
+scene::Scene withoutEffect(scene::Scene scene, const std::string& name) {
+  cloth::ModelledEffects& effects = scene.effects;
+  if (name == "gravity") {
+    effects.gravity.setZero();
+  } else if (name == "viscosity") {
+    effects.viscosity = false;
+  } else if (name == "bending") {
+    effects.bending = effects.bending_hysteresis = false;
+  } else if (name == "bending_hysteresis") {
+    effects.bending_hysteresis = false;
+  } else if (name == "contraction") {
+    effects.contraction = false;
+  } else if (name == "air") {
+    effects.air.reset();
+  } else if (name == "wind") {
+    if (effects.air) effects.air->wind = {};
+  } else if (name == "obstacles") {
+    effects.contacts = false;
+  } else if (name == "fingers") {
+    scene.fingers = scene.tactile = effects.point_loads = false;
+  } else {
+    throw std::invalid_argument("'" + name + "' is no effect that a step of the cloth knows");
+  }
+  return scene;
+}
+
+double cellSize(const mesh::ClothMesh& mesh) {
+  std::vector<double> sizes;
+  for (const std::array<int, 3>& corners : mesh.triangles) {
+    std::array<double, 3> edges;
+    for (int i = 0; i < 3; ++i) {
+      edges[i] =
+          (mesh.rest_coordinates[corners[(i + 1) % 3]] - mesh.rest_coordinates[corners[i]]).norm();
+    }
+    std::sort(edges.begin(), edges.end());
+    sizes.push_back(edges[1]);
+  }
+  std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
+  return sizes[sizes.size() / 2];
+}
+
+const scene::Quality* nearestQuality(const scene::Scene& scene,
+                                     const std::vector<scene::Quality>& studied) {
+  const scene::Quality* nearest = nullptr;
+  double least = HUGE_VAL;
+  for (const scene::Quality& quality : studied) {
+    if (scene.effects.elasticity != cloth::Elasticity::kGreenLagrange ||
+        quality.step.method != scene.step.method ||
+        quality.step.newton_iterations != scene.step.newton_iterations) {
+      continue;
+    }
+    const double coarser = std::log(cellSize(scene.mesh) / quality.cell_size);
+    const double steps = std::abs(std::log(quality.time_step / scene.time_step));
+    if (std::max(coarser, steps) > std::log(kNear)) continue;
+    if (std::abs(coarser) + steps >= least) continue;
+    least = std::abs(coarser) + steps;
+    nearest = &quality;
+  }
+  return nearest;
+}
+
+void explainScene(const std::string& scene_path, const std::vector<scene::Quality>& studied,
+                  std::ostream& out, std::ostream& progress) {
+  const scene::Scene scene = scene::loadScene(scene_path);
+  const material::Fabric fabric = scene::loadSceneFabric(scene_path, scene);
+  printScene(scene_path, scene, fabric, out);
+  progress << "explain_scene: measuring a step\n";
+  const Measurement measurement(scene, fabric);
+  printCost(scene_path, scene, fabric, measurement, out, progress);
+  printNotModelled(scene, out);
+  printTotal(scene, measurement, out);
+  printErrors(scene, fabric, studied, out);
+}
+
+}  // namespace haptex::simulation

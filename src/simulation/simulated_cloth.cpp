@@ -1,0 +1,284 @@
+#include "haptex/simulation/simulated_cloth.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace haptex::simulation {
+namespace {
+
+template <typename... Parts>
+[[noreturn]] void refuse(const Parts&... parts) {
+  std::ostringstream message;
+  (message << ... << parts);
+  throw std::invalid_argument(message.str());
+}
+
+void requirePlace(const std::string& name, const Eigen::Vector3d& place) {
+  if (!place.allFinite() || place.cwiseAbs().maxCoeff() > kLargestCoordinate) {
+    refuse(name, " = (", place.x(), ", ", place.y(), ", ", place.z(),
+           ") m: allowed are finite coordinates from ", -kLargestCoordinate, " to ",
+           kLargestCoordinate, " m");
+  }
+}
+
+std::string element(const std::string& array, std::size_t index) {
+  return array + "[" + std::to_string(index) + "]";
+}
+
+/// Of the substeps so far and the next one.
+cloth::StepReport sum(const cloth::StepReport& first, cloth::StepReport last) {
+  last.linear_converged = last.linear_converged && first.linear_converged;
+  last.linear_iterations += first.linear_iterations;
+  last.newton_iterations += first.newton_iterations;
+  last.newton_converged = last.newton_converged && first.newton_converged;
+  last.contact_rounds += first.contact_rounds;
+  last.assembly_seconds += first.assembly_seconds;
+  last.solve_seconds += first.solve_seconds;
+  last.total_seconds += first.total_seconds;
+  return last;
+}
+
+}  // namespace
+
+SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric)
+    : SimulatedCloth(std::move(scene), std::move(fabric), {{scene.step, 1}}) {}
+
+SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
+                               std::vector<StepPlan> plans)
+    : cloth_(std::move(scene.mesh), std::move(fabric), scene.effects),
+      state_(cloth_.initialState()),
+      plans_(std::move(plans)),
+      initially_attached_(std::move(scene.attached_particles)),
+      time_step_(scene.time_step),
+      disturbed_(scene.effects.contacts &&
+                 std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                             [](const mesh::Obstacle& obstacle) { return obstacle.moves(); })),
+      rest_(cloth_.particleCount()) {
+  if (plans_.empty()) refuse("plans is empty: allowed is at least one plan");
+  for (const StepPlan& plan : plans_) {
+    if (plan.substeps < 1) refuse("substeps = ", plan.substeps, ": allowed are numbers >= 1");
+    if (plan.cycles < 1 || (plan.cycles > 1 && plan.substeps > 1)) {
+      refuse("cycles = ", plan.cycles, ": allowed are numbers >= 1, and 1 with several substeps");
+    }
+  }
+  if (scene.effects.contacts) collision_.emplace(cloth_, std::move(scene.obstacles));
+  attachInitially();
+  makeIntegrators();
+}
+
+bool SimulatedCloth::step() { return take(1, 0.0); }
+
+bool SimulatedCloth::stepInRealTime(double waited) { return take(plans_[plan_].cycles, waited); }
+
+bool SimulatedCloth::take(int cycles, double waited) {
+  last_cycles_ = asleep_ ? 1 : cycles;
+  if (asleep_) {
+    state_.time += time_step_;
+    ++steps_;
+    return true;
+  }
+  if (!controller_) {
+    takeSubsteps(cycles * time_step_);
+  } else {
+    const auto begin = std::chrono::steady_clock::now();
+    takeSubsteps(cycles * time_step_);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    plan_ = controller_->record(waited + took.count(), cycles);
+  }
+  last_step_rejected_ = !report_.accepted;
+  if (!report_.accepted) {
+    rest_.wake();
+    return false;
+  }
+  ++steps_;
+  ++computed_steps_;
+  sleepIfResting();
+  return true;
+}
+
+void SimulatedCloth::sleepIfResting() {
+  if (disturbed_) return;
+  rest_.observe(state_);
+  asleep_ = rest_.resting() && cloth::isUndisturbed(cloth_, state_.time);
+  if (!asleep_) return;
+  report_ = cloth::StepReport{};  // of the steps to come, which do nothing
+  report_.accepted = true;
+}
+
+void SimulatedCloth::wake() {
+  rest_.wake();
+  asleep_ = false;
+}
+
+void SimulatedCloth::takeSubsteps(double duration) {
+  const int substeps = plans_[plan_].substeps;
+  if (substeps > 1) before_ = state_;
+  report_ = takeSubstep(duration / substeps);
+  for (int i = 1; i < substeps && report_.accepted; ++i) {
+    report_ = sum(report_, takeSubstep(duration / substeps));
+  }
+  if (substeps > 1 && !report_.accepted) state_ = before_;
+}
+
+cloth::StepReport SimulatedCloth::takeSubstep(double duration) {
+  cloth::Integrator& integrator = integrators_[plan_];
+  return collision_ ? collision_->step(cloth_, integrator, state_, duration)
+                    : integrator.step(cloth_, state_, duration);
+}
+
+void SimulatedCloth::use(std::size_t plan) {
+  if (plan >= plans_.size()) {
+    refuse("plan = ", plan, ": allowed are 0 to ", plans_.size() - 1);
+  }
+  plan_ = plan;
+}
+
+void SimulatedCloth::setController(QualityController controller) {
+  if (controller.size() != plans_.size()) {
+    refuse("the controller chooses among ", controller.size(), " qualities: allowed are ",
+           plans_.size(), ", one per plan");
+  }
+  controller_.emplace(std::move(controller));
+  plan_ = controller_->running();
+}
+
+void SimulatedCloth::relieve() {
+  if (!controller_) return;
+  controller_->relieve();
+  plan_ = controller_->running();
+}
+
+void SimulatedCloth::reset() {
+  cloth_.releaseAll();
+  cloth_.setPointLoads({});
+  attachInitially();
+  state_ = cloth_.initialState();
+  makeIntegrators();  // the old ones remember their last solutions and factors
+  report_ = cloth::StepReport{};
+  last_step_rejected_ = false;
+  steps_ = 0;
+  wake();
+}
+
+void SimulatedCloth::makeIntegrators() {
+  integrators_.clear();
+  bool several = false;
+  for (const StepPlan& plan : plans_) {
+    integrators_.emplace_back(cloth_, plan.step);
+    several = several || plan.substeps > 1;
+  }
+  if (several) before_ = state_;
+}
+
+void SimulatedCloth::setFabric(material::Fabric fabric) {
+  if (collision_) collision_->requireFriction(fabric);
+  cloth_.setFabric(std::move(fabric));
+  cloth_.forgetBending(state_);
+  if (cloth_.bending()) makeIntegrators();
+  wake();
+}
+
+void SimulatedCloth::setPointLoads(const std::vector<cloth::PointLoad>& loads) {
+  const bool changes = !loads.empty() || !cloth_.pointLoads().empty();
+  cloth_.setPointLoads(loads);
+  if (changes) wake();
+}
+
+void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
+  for (const int particle : requireParticles(particles)) {
+    cloth_.attach(particle, {state_.positions[particle], Eigen::Vector3d::Zero(), state_.time, 0});
+  }
+  wake();
+}
+
+void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,
+                            const std::vector<Eigen::Vector3d>& places) {
+  const std::vector<int> indices = requireParticles(particles);
+  if (places.size() != indices.size()) {
+    refuse("positions has ", places.size(), " elements and particles ", indices.size(),
+           ": allowed is one position for each particle, or none to attach them where they are");
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    requirePlace(element("positions", i), places[i]);
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    cloth_.attach(indices[i], {places[i], Eigen::Vector3d::Zero(), state_.time, 0});
+  }
+  wake();
+}
+
+void SimulatedCloth::move(const std::vector<std::uint32_t>& particles,
+                          const Eigen::Vector3d& displacement, double duration) {
+  const std::vector<int> indices = requireAttached(particles);
+  if (!displacement.allFinite()) {
+    refuse("displacement = (", displacement.x(), ", ", displacement.y(), ", ", displacement.z(),
+           ") m: allowed are finite numbers");
+  }
+  if (!std::isfinite(duration) || duration < 0) {
+    refuse("duration = ", duration, " s: allowed are finite numbers >= 0");
+  }
+  std::vector<Eigen::Vector3d> starts;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    starts.push_back(cloth_.attachments()[indices[i]]->position(state_.time));
+    requirePlace("the end of the path of " + element("particles", i), starts[i] + displacement);
+  }
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    cloth_.attach(indices[i], {starts[i], displacement, state_.time, duration});
+  }
+  wake();
+}
+
+void SimulatedCloth::release(const std::vector<std::uint32_t>& particles) {
+  for (const int particle : requireAttached(particles)) cloth_.release(particle);
+  wake();
+}
+
+std::vector<cloth::JacobianBlock> SimulatedCloth::jacobian(
+    const std::vector<std::uint32_t>& particles) const {
+  return cloth_.jacobian(state_, requireParticles(particles));
+}
+
+std::vector<int> SimulatedCloth::requireParticles(
+    const std::vector<std::uint32_t>& particles) const {
+  if (particles.empty()) refuse("particles is empty: allowed is at least one particle");
+  std::vector<bool> named(cloth_.particleCount(), false);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const std::uint32_t particle = particles[i];
+    if (particle >= named.size()) {
+      refuse(element("particles", i), " = ", particle, " does not exist: allowed are 0 to ",
+             named.size() - 1);
+    }
+    if (named[particle]) {
+      refuse(element("particles", i), " = ", particle,
+             " is named twice: allowed is each particle once");
+    }
+    named[particle] = true;
+  }
+  return {particles.begin(), particles.end()};
+}
+
+std::vector<int> SimulatedCloth::requireAttached(
+    const std::vector<std::uint32_t>& particles) const {
+  const std::vector<int> indices = requireParticles(particles);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (!cloth_.isAttached(indices[i])) {
+      refuse(element("particles", i), " = ", indices[i],
+             " is not attached: allowed are attached particles");
+    }
+  }
+  return indices;
+}
+
+void SimulatedCloth::attachInitially() {
+  for (const int particle : initially_attached_) {
+    cloth_.attach(particle,
+                  {cloth_.mesh().initial_positions[particle], Eigen::Vector3d::Zero(), 0, 0});
+  }
+}
+
+}  // namespace haptex::simulation

@@ -1,0 +1,96 @@
+#include "haptex/studies/extreme_shrink.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace haptex::studies {
+namespace {
+
+using Change = std::function<void(ExtremeCase&)>;
+
+Change setTo(double ExtremeCase::*field, double value) {
+  return [=](ExtremeCase& extreme) { extreme.*field = value; };
+}
+
+Change setTo(int ExtremeCase::*field, int value) {
+  return [=](ExtremeCase& extreme) { extreme.*field = value; };
+}
+
+/// Half of the way to a value, rounded towards it.
+Change approach(int ExtremeCase::*field, int value) {
+  return [=](ExtremeCase& extreme) { extreme.*field = value + (extreme.*field - value) / 2; };
+}
+
+Change decrease(int ExtremeCase::*field, int least) {
+  return [=](ExtremeCase& extreme) { extreme.*field -= extreme.*field > least; };
+}
+
+/// To the next power of ten in the direction of a value: fewer digits, milder.
+Change approachDecade(double ExtremeCase::*field, double value) {
+  return [=](ExtremeCase& extreme) {
+    const double decades = std::log10(extreme.*field / value);
+    if (decades == 0.0) return;
+    const double step = std::ceil(std::abs(decades)) - 1.0;
+    extreme.*field = value * std::pow(10.0, std::copysign(step, decades));
+  };
+}
+
+/// The strong ones first.
+std::vector<Change> changes() {
+  std::vector<Change> result = {
+      setTo(&ExtremeCase::bending, 0.0),
+      setTo(&ExtremeCase::viscosity, 0.0),
+      setTo(&ExtremeCase::stiffening, 1.0),
+      setTo(&ExtremeCase::irregularity, 0.0),
+      setTo(&ExtremeCase::needle, 1.0),
+      setTo(&ExtremeCase::newton_iterations, 1),
+      [](ExtremeCase& e) { e.method = cloth::IntegrationMethod::kBackwardEuler; },
+      [](ExtremeCase& e) { e.taut = false; },
+      [](ExtremeCase& e) { e.warp = e.weft; },
+      [](ExtremeCase& e) { e.shear = 0.5 * e.weft; },
+      [](ExtremeCase& e) { e.shortest_step = e.longest_step; },
+  };
+  for (int ExtremeCase::*cells : {&ExtremeCase::cells_u, &ExtremeCase::cells_v}) {
+    result.push_back(approach(cells, 1));
+    result.push_back(decrease(cells, 1));
+  }
+  for (int ExtremeCase::*steps : {&ExtremeCase::disturbed_steps, &ExtremeCase::free_steps}) {
+    result.push_back(approach(steps, 1));
+    result.push_back(decrease(steps, 1));
+  }
+  const ExtremeCase plain;
+  for (double ExtremeCase::*number :
+       {&ExtremeCase::weft, &ExtremeCase::warp, &ExtremeCase::shear, &ExtremeCase::density,
+        &ExtremeCase::cell, &ExtremeCase::strain, &ExtremeCase::longest_step,
+        &ExtremeCase::shortest_step, &ExtremeCase::magnitude}) {
+    result.push_back(setTo(number, plain.*number));
+    result.push_back(approachDecade(number, plain.*number));
+  }
+  return result;
+}
+
+}  // namespace
+
+ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
+                              const std::function<bool(const ExtremeCase&)>& fails) {
+  constexpr int kMostTries = 300;  // a case that comes back late may take a second
+  ExtremeCase smallest = extreme;
+  int tries = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const Change& change : changes()) {
+      ExtremeCase candidate = smallest;
+      change(candidate);
+      if (toText(candidate) == toText(smallest)) continue;
+      if (candidate.shear > std::min(candidate.weft, candidate.warp)) continue;  // is never drawn
+      if (++tries > kMostTries) return smallest;
+      if (!fails(candidate)) continue;
+      smallest = candidate;
+      changed = true;
+    }
+  }
+  return smallest;
+}
+
+}  // namespace haptex::studies

@@ -1,0 +1,194 @@
+#include "haptex/studies/quality_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+
+namespace haptex::studies {
+namespace {
+
+using scene::Quality;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+bool mayBePreset(const TradeOffPoint& point) {
+  return point.elasticity == cloth::Elasticity::kGreenLagrange && isImplicit(point.step.method) &&
+         point.cellSize() <= kLargestCell;
+}
+
+Quality qualityOf(const TradeOffTable& table, std::size_t point) {
+  const TradeOffPoint& settings = table.points[point];
+  Quality quality{"", settings.cellSize(), settings.timeStep(), settings.step, {}};
+  for (std::size_t i = 0; i < table.cases.size(); ++i) {
+    const TradeOffResult& result = table.results[point][i];
+    quality.measured.push_back({nameOf(table.cases[i].motion), table.cases[i].fabric.name,
+                                result.error.position, result.error.force, result.error.energy,
+                                result.cost});
+  }
+  return quality;
+}
+
+/// Points of the front, each at least kLeastGain more accurate than the one kept before.
+std::vector<std::size_t> usefulFront(const std::vector<CostAndError>& points) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i : paretoFront(points)) {
+    if (kept.empty() || points[i].error * kLeastGain <= points[kept.back()].error)
+      kept.push_back(i);
+  }
+  return kept;
+}
+
+double worstPosition(const Quality& quality) {
+  double worst = 0.0;
+  for (const scene::MeasuredQuality& measured : quality.measured) {
+    worst = std::max(worst, measured.position_error);
+  }
+  return worst;
+}
+
+void namePresets(const std::vector<CostAndError>& front, std::vector<Quality>& qualities) {
+  std::size_t accurate = 0, fast = 0;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    if (front[i].cost <= kMostCost) accurate = i;
+  }
+  while (fast < accurate && worstPosition(qualities[fast]) > kMostPositionError * kSampleSize) {
+    ++fast;
+  }
+  const std::vector<CostAndError> between(front.begin() + fast, front.begin() + accurate + 1);
+  const std::size_t balanced = fast + kneeOf(between);
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    qualities[i].name = "point_" + std::to_string(i + 1);
+  }
+  qualities[fast].name = "fast";
+  qualities[balanced].name = "balanced";
+  qualities[accurate].name = "accurate";
+}
+
+/// The name among the qualities of what a point stands for, or nothing.
+std::string presetOf(const TradeOffPoint& point, const std::vector<Quality>& qualities) {
+  for (const Quality& quality : qualities) {
+    if (mayBePreset(point) && quality.cell_size == point.cellSize() &&
+        quality.time_step == point.timeStep() && quality.step.method == point.step.method &&
+        quality.step.solver == point.step.solver &&
+        quality.step.tolerance == point.step.tolerance &&
+        quality.step.newton_iterations == point.step.newton_iterations) {
+      return quality.name;
+    }
+  }
+  return "";
+}
+
+std::vector<bool> onFront(const TradeOffTable& table, std::size_t of_case) {
+  std::vector<CostAndError> points;
+  for (const auto& results : table.results) {
+    points.push_back(overall({results[of_case]}));
+  }
+  std::vector<bool> on(points.size(), false);
+  for (std::size_t i : paretoFront(points)) on[i] = true;
+  return on;
+}
+
+/// To 10 nm: where cells may be at most that long, there is not one more of them for rounding.
+double roundedUp(double length) { return 1e-8 * std::ceil(1e8 * length - 1e-3); }
+
+void writeErrors(std::ostream& out, const TradeOffErrors& errors) {
+  out << errors.position << ',' << errors.force << ',' << errors.energy;
+}
+
+void writeResult(std::ostream& out, const TradeOffTable& table, std::size_t of_case,
+                 std::size_t point, bool front, const std::string& preset) {
+  const TradeOffPoint& settings = table.points[point];
+  const TradeOffResult& result = table.results[point][of_case];
+  out << nameOf(table.cases[of_case].motion) << ',' << table.cases[of_case].fabric.name << ','
+      << nameOf(settings.elasticity) << ',' << nameOf(settings.step.method) << ','
+      << settings.timeStep() << ',' << settings.cellSize() << ',';
+  if (isImplicit(settings.step.method)) {
+    out << settings.step.newton_iterations << ',' << nameOf(settings.step.solver) << ','
+        << settings.step.tolerance << ',';
+  } else {
+    out << ",,,";
+  }
+  writeErrors(out, result.error);
+  out << ',' << (result.distance.position < result.error.position) << ','
+      << (result.distance.force < result.error.force) << ','
+      << (result.distance.energy < result.error.energy) << ',' << result.relative_error << ','
+      << 1e3 * result.cost << ',' << result.stable << ',' << result.settling_seconds << ',' << front
+      << ',' << preset << '\n';
+}
+
+}  // namespace
+
+CostAndError overall(const std::vector<TradeOffResult>& results) {
+  double cost = 0.0, logarithms = 0.0;
+  for (const TradeOffResult& result : results) {
+    if (!result.followed || !result.stable) return {kInfinite, kInfinite};
+    cost = std::max(cost, result.cost);
+    logarithms += std::log(result.relative_error);
+  }
+  return {cost, std::exp(logarithms / static_cast<double>(results.size()))};
+}
+
+std::vector<Quality> chooseQualities(const TradeOffTable& table) {
+  std::vector<CostAndError> costs;
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    costs.push_back(mayBePreset(table.points[i]) ? overall(table.results[i])
+                                                 : CostAndError{kInfinite, kInfinite});
+  }
+  std::vector<Quality> qualities;
+  std::vector<CostAndError> front;
+  for (std::size_t i : usefulFront(costs)) {
+    qualities.push_back(qualityOf(table, i));
+    front.push_back(costs[i]);
+  }
+  if (!front.empty()) namePresets(front, qualities);
+  return qualities;
+}
+
+void writeTable(std::ostream& out, const TradeOffTable& table,
+                const std::vector<Quality>& qualities) {
+  out << "motion,fabric,elasticity,integrator,time_step,cell_size,newton_iterations,solver,"
+         "tolerance,position_error,force_error,energy_error,position_limited,force_limited,"
+         "energy_limited,relative_error,cpu_ms_per_s,stable,settling_time,front,preset\n";
+  out << std::setprecision(6);
+  for (std::size_t i = 0; i < table.cases.size(); ++i) {
+    const Reference& reference = table.references[i];
+    const TradeOffErrors& own = reference.own_error;
+    out << nameOf(table.cases[i].motion) << ',' << table.cases[i].fabric.name
+        << ",reference,,,,,,,";
+    writeErrors(out, own);
+    out << ",1,1,1,,,1,,0,\n";
+    const std::vector<bool> front = onFront(table, i);
+    for (std::size_t k = 0; k < table.points.size(); ++k) {
+      if (!table.results[k][i].followed) continue;
+      writeResult(out, table, i, k, front[k], presetOf(table.points[k], qualities));
+    }
+  }
+}
+
+void writeQualities(std::ostream& out, const std::vector<Quality>& qualities,
+                    const std::string& machine) {
+  out << "# Written by scripts/update_presets; do not edit. Format: docs/quality.md\n"
+      << "machine: \"" << machine << "\"\n"
+      << "qualities:\n"
+      << std::setprecision(4);
+  for (const Quality& quality : qualities) {
+    out << "  - name: " << quality.name << "\n"
+        << "    cell_size: " << std::setprecision(9) << roundedUp(quality.cell_size) << "  # m\n"
+        << "    time_step: " << quality.time_step << "  # s\n"
+        << "    integrator: " << nameOf(quality.step.method) << "\n"
+        << "    solver: {method: " << nameOf(quality.step.solver)
+        << ", tolerance: " << quality.step.tolerance
+        << ", newton_iterations: " << quality.step.newton_iterations << "}\n"
+        << "    measured:\n"
+        << std::setprecision(4);
+    for (const scene::MeasuredQuality& measured : quality.measured) {
+      out << "      - {motion: " << measured.motion << ", fabric: " << measured.fabric
+          << ", position_error: " << measured.position_error
+          << ", force_error: " << measured.force_error
+          << ", energy_error: " << measured.energy_error << ", cost: " << measured.cost << "}\n";
+    }
+  }
+}
+
+}  // namespace haptex::studies

@@ -1,0 +1,108 @@
+// Devices at the other end of a real pseudo-terminal.
+#pragma once
+
+#include <stdlib.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "../exoskeleton/shipped_urdf.h"
+#include "haptex/exoskeleton/emulator/emulated_device.h"
+#include "haptex/exoskeleton/protocol/device_end.h"
+#include "haptex/exoskeleton/protocol/pseudo_terminal.h"
+#include "haptex/realtime/periodic_thread.h"
+
+namespace haptex::exoskeleton {
+
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    std::string name = (std::filesystem::temp_directory_path() / "haptexXXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no directory " + name);
+    path_ = name;
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// The firmware's end of a pseudo-terminal: one period of its life.
+class DeviceOnALine {
+ public:
+  explicit DeviceOnALine(const std::string& link) : terminal_(link), end_(identity()) {}
+
+  const std::string& port() const { return terminal_.path(); }
+
+  static Identity identity() {
+    Identity identity;
+    identity.serial_number = 42;
+    return identity;
+  }
+
+  /// @returns what the motors are to do
+  DeviceCommand listen(Time now) {
+    std::array<std::uint8_t, 1024> bytes{};
+    const std::size_t count = terminal_.read(bytes.data(), bytes.size());
+    end_.receive(bytes.data(), count, now);
+    const Bytes answer = end_.answer();
+    if (!answer.empty()) terminal_.write(answer);
+    return end_.command(now);
+  }
+
+  void report(const DeviceState& state, Time now) {
+    const Bytes bytes = end_.report(state, now);
+    if (!bytes.empty()) terminal_.write(bytes);
+  }
+
+ private:
+  PseudoTerminal terminal_;
+  DeviceEnd end_;
+};
+
+/// Says once per millisecond, on a thread of its own, that nothing moves.
+class StillDevice {
+ public:
+  const std::string& port() const { return line_.port(); }
+
+ private:
+  void live(Time now) {
+    line_.listen(now);
+    line_.report(DeviceState(), now);
+  }
+
+  DeviceOnALine line_{""};
+  realtime::PeriodicThread thread_{std::chrono::milliseconds(1), [this](Time now) { live(now); }};
+};
+
+/// The emulated exoskeleton in real time, on a thread of its own.
+class LivingDevice {
+ public:
+  /// @param link symbolic link to its port
+  explicit LivingDevice(const std::string& link) : line_(link) {}
+
+ private:
+  void live(Time now) {
+    const DeviceCommand command = line_.listen(now);
+    for (int i = 0; i < kSteps; ++i) device_.step(command);
+    line_.report(device_.read(), now);
+  }
+
+  static constexpr int kSteps = static_cast<int>(EmulatedDevice::kRate / 1000.0);
+
+  DeviceOnALine line_;
+  EmulatedDevice device_{exoskeleton::shippedUrdf(), 1};
+  realtime::PeriodicThread thread_{std::chrono::milliseconds(1), [this](Time now) { live(now); }};
+};
+
+}  // namespace haptex::exoskeleton

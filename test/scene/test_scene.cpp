@@ -1,0 +1,289 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "haptex/material/fabric_file.h"
+#include "haptex/scene/scene.h"
+#include "scene_fixtures.h"
+
+namespace haptex::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST_F(SceneFile, ReadsASheet) {
+  const Scene scene = load(kValid);
+  const mesh::ClothMesh expected =
+      mesh::makeRectangle(0.3, 0.2, 3, 2, mesh::Triangulation::kAlternating);
+  EXPECT_EQ(scene.mesh.triangles, expected.triangles);
+  EXPECT_EQ(scene.mesh.rest_coordinates, expected.rest_coordinates);
+  EXPECT_EQ(scene.mesh.initial_positions, expected.initial_positions);
+  EXPECT_EQ(scene.fabric_path, (root_ / "fabrics/silk.yaml").string());
+  EXPECT_EQ(scene.attached_particles, (std::vector<int>{8, 9, 10, 11}));
+  EXPECT_EQ(scene.time_step, 0.0125);
+}
+
+TEST_F(SceneFile, ReadsOneWayDiagonals) {
+  EXPECT_EQ(load(replaced(kValid, "alternating", "one_way")).mesh.triangles,
+            mesh::makeRectangle(0.3, 0.2, 3, 2, mesh::Triangulation::kOneWay).triangles);
+}
+
+TEST_F(SceneFile, ModelsOnlyWhatIsListed) {
+  const Scene both = load(kValid);
+  EXPECT_TRUE(both.effects.viscosity);
+  EXPECT_EQ(both.effects.gravity, Eigen::Vector3d(0, 0, -9.80665));
+  const Scene none = load(replaced(kValid, "[gravity, viscosity]", "[]"));
+  EXPECT_FALSE(none.effects.viscosity);
+  EXPECT_EQ(none.effects.gravity, Eigen::Vector3d::Zero());
+  EXPECT_FALSE(load(replaced(kValid, "[gravity, viscosity]", "[gravity]")).effects.viscosity);
+  EXPECT_FALSE(both.effects.contraction);
+  EXPECT_TRUE(load(replaced(kValid, "viscosity]", "contraction]")).effects.contraction);
+}
+
+TEST_F(SceneFile, MakesRoomForPointLoadsForFingersOnly) {
+  const Scene without = load(kValid);
+  EXPECT_FALSE(without.fingers || without.tactile || without.recording);
+  EXPECT_FALSE(without.effects.point_loads);
+  const Scene touched = load(replaced(kValid, "viscosity]", "fingers, tactile, recording]"));
+  EXPECT_TRUE(touched.fingers && touched.tactile && touched.recording);
+  EXPECT_TRUE(touched.effects.point_loads);
+}
+
+TEST_F(SceneFile, ReadsTheElasticity) {
+  EXPECT_EQ(load(kValid).effects.elasticity, cloth::Elasticity::kGreenLagrange);
+  const auto read = [&](const std::string& name) {
+    return load(kValid + "elasticity: " + name + "\n").effects.elasticity;
+  };
+  EXPECT_EQ(read("green_lagrange"), cloth::Elasticity::kGreenLagrange);
+  EXPECT_EQ(read("mass_spring"), cloth::Elasticity::kMassSpring);
+  EXPECT_EQ(read("corotational"), cloth::Elasticity::kCorotational);
+  EXPECT_EQ(refusalOf(meshScene("corner") + "elasticity: mass_spring\n"),
+            path() +
+                ": elasticity: a spring lattice needs a mesh of rectangles along weft and warp of "
+                "two triangles each; triangle 0 is not half of one");
+}
+
+TEST_F(SceneFile, ReadsGravity) {
+  EXPECT_EQ(load(kValid + "gravity: [1, 0, -1.62]\n").effects.gravity,
+            Eigen::Vector3d(1, 0, -1.62));
+}
+
+TEST_F(SceneFile, ReadsAirAndWind) {
+  EXPECT_FALSE(load(kValid).effects.air);
+  const std::string with_air = replaced(kValid, "viscosity]", "air]");
+  const std::string with_wind = replaced(kValid, "viscosity]", "air, wind]");
+  const cloth::Air still = *load(with_air).effects.air;
+  EXPECT_EQ(still.coefficients.normal, cloth::AirCoefficients().normal);
+  EXPECT_EQ(still.wind.velocity(3.0), Eigen::Vector3d::Zero());
+  const cloth::Air air = *load(with_wind + R"(
+air: {normal: 1.5, tangential: 0.1, lift: 0}
+wind:
+  velocity: [2, 0, 0.5]
+  gusts:
+    - {velocity: [0.5, 0, 0], frequency: 0.5}
+    - {velocity: [0, 1, 0], frequency: 0.25, phase: 1.5}
+)")
+                              .effects.air;
+  EXPECT_EQ(air.coefficients.normal, 1.5);
+  EXPECT_EQ(air.coefficients.tangential, 0.1);
+  EXPECT_EQ(air.coefficients.lift, 0.0);
+  // At 0.5 s the first gust blows fully, the second at sin(pi/4 + 1.5).
+  const Eigen::Vector3d expected(2.0 + 0.5 * std::sin(0.5 * M_PI), std::sin(0.25 * M_PI + 1.5),
+                                 0.5);
+  EXPECT_LT((air.wind.velocity(0.5) - expected).norm(), 1e-15);
+}
+
+TEST_F(SceneFile, ReadsHowBendingIsModelled) {
+  const std::string with_bending = replaced(kValid, "[gravity, viscosity]", "[bending]");
+  const cloth::BendingSettings flat = load(with_bending).effects.bending_settings;
+  EXPECT_EQ(flat.model, cloth::BendingModel::kLinear);
+  EXPECT_EQ(flat.rest_curvature, Eigen::Vector2d::Zero());
+  EXPECT_EQ(load(with_bending + "bending: {model: linear}\n").effects.bending_settings.model,
+            cloth::BendingModel::kLinear);
+  const cloth::BendingSettings curved =
+      load(with_bending + "bending: {model: quadratic, rest_curvature: {weft: 20, warp: -1000}}\n")
+          .effects.bending_settings;
+  EXPECT_EQ(curved.model, cloth::BendingModel::kQuadratic);
+  EXPECT_EQ(curved.rest_curvature, Eigen::Vector2d(20.0, -1000.0));
+}
+
+TEST_F(SceneFile, ModelsHysteresisOnlyIfAsked) {
+  EXPECT_FALSE(
+      load(replaced(kValid, "[gravity, viscosity]", "[bending]")).effects.bending_hysteresis);
+  const cloth::ModelledEffects asked =
+      load(replaced(kValid, "[gravity, viscosity]", "[bending_hysteresis, bending]")).effects;
+  EXPECT_TRUE(asked.bending && asked.bending_hysteresis);
+}
+
+TEST_F(SceneFile, JoinsAttachedSidesAndParticles) {
+  const auto attached = [&](const std::string& list) {
+    return load(replaced(kValid, "[top]", list)).attached_particles;
+  };
+  using Particles = std::vector<int>;
+  EXPECT_EQ(attached("[]"), Particles{});
+  EXPECT_EQ(attached("[bottom]"), (Particles{0, 1, 2, 3}));
+  EXPECT_EQ(attached("[left]"), (Particles{0, 4, 8}));
+  EXPECT_EQ(attached("[right, top]"), (Particles{3, 7, 8, 9, 10, 11}));
+  EXPECT_EQ(attached("[left, {particles: [5, 0, 5]}]"), (Particles{0, 4, 5, 8}));
+}
+
+TEST_F(SceneFile, HasTheDocumentedSolverDefaults) {
+  const cloth::StepSettings step = load(kValid).step;
+  EXPECT_EQ(step.solver, linear::LinearSolverMethod::kAutomatic);
+  EXPECT_EQ(step.tolerance, 1e-6);
+  EXPECT_EQ(step.newton_iterations, 1);
+  EXPECT_EQ(step.threads, 1);
+}
+
+TEST_F(SceneFile, ReadsTheSolver) {
+  const cloth::StepSettings step =
+      load(kValid +
+           "solver: {method: cholesky, tolerance: 1e-9, newton_iterations: 5, threads: 3}\n")
+          .step;
+  EXPECT_EQ(step.solver, linear::LinearSolverMethod::kCholesky);
+  EXPECT_EQ(step.tolerance, 1e-9);
+  EXPECT_EQ(step.newton_iterations, 5);
+  EXPECT_EQ(step.threads, 3);
+  EXPECT_EQ(load(kValid + "solver: {method: conjugate_gradient}\n").step.solver,
+            linear::LinearSolverMethod::kConjugateGradient);
+  EXPECT_EQ(load(kValid + "solver: {method: automatic}\n").step.solver,
+            linear::LinearSolverMethod::kAutomatic);
+}
+
+TEST_F(SceneFile, ReadsTheIntegrator) {
+  EXPECT_EQ(load(kValid).step.method, cloth::IntegrationMethod::kBackwardEuler);
+  for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
+    EXPECT_EQ(load(kValid + "integrator: " + named.name + "\n").step.method, named.method);
+  }
+  const cloth::StepSettings step =
+      load(kValid + "integrator: bdf2\nsolver: {newton_iterations: 2}\n").step;
+  EXPECT_EQ(step.method, cloth::IntegrationMethod::kBdf2);
+  EXPECT_EQ(step.newton_iterations, 2);
+}
+
+TEST_F(SceneFile, FindsMeshesByNameAndByPath) {
+  for (const std::string name : {"corner", "corner.obj", "../meshes/corner.obj"}) {
+    const Scene scene = load(meshScene(name));
+    EXPECT_EQ(scene.mesh.triangles.size(), 1u) << name;
+    EXPECT_EQ(scene.attached_particles, (std::vector<int>{0, 1})) << name;
+  }
+  EXPECT_EQ(load(meshScene((root_ / "meshes/corner.obj").string())).mesh.triangles.size(), 1u);
+}
+
+TEST_F(SceneFile, FindsFabricsByNameAndByPath) {
+  const std::string expected = (root_ / "fabrics/silk.yaml").string();
+  for (const std::string& name : {std::string("silk.yaml"), std::string("../fabrics/silk.yaml"),
+                                  std::string("../fabrics/silk"), expected}) {
+    EXPECT_EQ(load(replaced(kValid, "silk", name)).fabric_path, expected) << name;
+  }
+}
+
+TEST_F(SceneFile, NamesTheFabricsThereAre) {
+  const std::string fabrics = (root_ / "fabrics").string();
+  EXPECT_EQ(refusalOf(replaced(kValid, "silk", "velvet")),
+            path() + ": fabric: 'velvet' must be a name in " + fabrics +
+                " (silk) or a path with a '/'; there is no file " + fabrics + "/velvet.yaml");
+}
+
+TEST_F(SceneFile, NamesTheMeshAndItsLine) {
+  std::ofstream(root_ / "meshes/quad.obj") << "f 1/1 2/2 3/3 4/4\n";
+  EXPECT_EQ(refusalOf(meshScene("quad")), (root_ / "meshes/quad.obj").string() +
+                                              ": line 1: a face has 4 corners, must be a triangle");
+}
+
+TEST_F(SceneFile, RefusesAMeshOfTooManyTriangles) {
+  // A strip of 200001 triangles between two rows of points.
+  std::ofstream obj(root_ / "meshes/strip.obj");
+  const int triangles = 200001;
+  for (int i = 0; i < triangles + 2; ++i) {
+    obj << "v 0 " << i << ' ' << i % 2 << "\nvt " << i << ' ' << i % 2 << '\n';
+  }
+  for (int i = 1; i <= triangles; ++i) {
+    obj << "f " << i << '/' << i << ' ' << i + 1 << '/' << i + 1 << ' ' << i + 2 << '/' << i + 2
+        << '\n';
+  }
+  obj.close();
+  EXPECT_EQ(refusalOf(meshScene("strip")),
+            path() + ": mesh: 200001 triangles, at most 200000 are allowed");
+}
+
+TEST_F(SceneFile, LeavesTheKeyOfTheForceRendererToIt) {
+  EXPECT_TRUE(load(replaced(kValid, "viscosity]", "fingers]") + "haptics: {depth: 3}\n").fingers);
+}
+
+TEST_F(SceneFile, AcceptsValuesAtTheirLimits) {
+  EXPECT_EQ(load(replaced(kValid, "[3, 2]", "[1000, 100]")).mesh.triangles.size(), 200000u);
+  EXPECT_NO_THROW(load(replaced(kValid, "[0.3, 0.2]", "[100, 100]")));
+  EXPECT_NO_THROW(load(replaced(kValid, "0.0125", "1e-6")));
+  EXPECT_NO_THROW(load(replaced(kValid, "0.0125", "10")));
+}
+
+TEST_F(SceneFile, NamesTheFileThatIsNotYaml) {
+  try {
+    load("fabric: [silk\nmodel: 3\n");
+    ADD_FAILURE() << "not refused";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()).rfind(path() + ": line ", 0), 0u) << error.what();
+  }
+  EXPECT_THROW(loadScene((root_ / "scenes/none.yaml").string()), std::runtime_error);
+}
+
+TEST_F(SceneFile, MeshesASheetWithAsFewCellsAsTheCellSizeAllows) {
+  const std::string sheet =
+      "fabric: silk\nsheet: {size: [0.2, 0.1], cells: [3, 2], diagonals: one_way}\n"
+      "model: []\ntime_step: 0.01\n";
+  load(sheet + "attach: [top]\n");
+  EXPECT_TRUE(loadScene(path()).any_cells);
+  EXPECT_EQ(loadScene(path()).mesh.triangles.size(), 2u * 3u * 2u);
+  const Scene fine = loadScene(path(), 0.0125);
+  EXPECT_EQ(fine.mesh.triangles.size(), 2u * 16u * 8u);
+  EXPECT_EQ(fine.attached_particles.size(), 17u);
+  EXPECT_EQ(loadScene(path(), 0.0124).mesh.triangles.size(), 2u * 17u * 9u);
+  EXPECT_EQ(loadScene(path(), 10.0).mesh.triangles.size(), 2u);
+  EXPECT_THROW(loadScene(path(), 1e-6), std::invalid_argument);
+  EXPECT_THROW(loadScene(path(), 1e-300), std::invalid_argument);
+  EXPECT_THROW(loadScene(path(), 0.0), std::invalid_argument);
+  EXPECT_THROW(loadScene(path(), std::nan("")), std::invalid_argument);
+
+  load(sheet + "attach: [top, {particles: [0]}]\n");  // whose places would be others
+  EXPECT_FALSE(loadScene(path()).any_cells);
+  EXPECT_EQ(loadScene(path(), 0.0125).mesh.triangles.size(), 2u * 3u * 2u);
+  load("fabric: silk\nmesh: corner\nattach: []\nmodel: []\ntime_step: 0.01\n");
+  EXPECT_FALSE(loadScene(path()).any_cells);
+  EXPECT_EQ(loadScene(path(), 0.0125).mesh.triangles.size(), 1u);
+}
+
+TEST(ShippedScenes, LoadWithTheirFabrics) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(kConfig / "scenes")) {
+    names.push_back(entry.path().stem().string());
+    const Scene scene = loadScene(entry.path().string());
+    EXPECT_NO_THROW(requireSound(scene.mesh)) << names.back();
+    EXPECT_EQ(scene.mesh.triangles.size(), 2048u) << names.back();
+    EXPECT_EQ(scene.attached_particles.size(), 33u) << names.back();
+    EXPECT_EQ(scene.time_step, 0.0125) << names.back();
+    EXPECT_GT(material::loadFabric(scene.fabric_path).areal_density, 0.0) << names.back();
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{
+                       "acrylic_knit_sample", "cotton_knit_sample", "linear_sheet",
+                       "orbiting_sphere", "wool_among_obstacles", "wool_in_wind", "wool_sample"}));
+}
+
+TEST(ShippedScenes, WoolSampleIsTheTwoHundredMillimetreSquare) {
+  const Scene scene = loadScene((kConfig / "scenes/wool_sample.yaml").string());
+  EXPECT_EQ(fs::path(scene.fabric_path).filename(), "wool.yaml");
+  EXPECT_EQ(scene.mesh.rest_coordinates.back(), Eigen::Vector2d(0.2, 0.2));
+  EXPECT_EQ(scene.attached_particles.front(), 32 * 33);
+  EXPECT_TRUE(scene.effects.viscosity);
+  EXPECT_EQ(scene.effects.gravity.z(), -9.80665);
+}
+
+}  // namespace
+}  // namespace haptex::scene

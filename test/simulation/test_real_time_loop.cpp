@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <stdexcept>
+
+#include "haptex/simulation/real_time_loop.h"
+#include "small_scene.h"
+
+namespace haptex::simulation {
+namespace {
+
+void ignore(const SimulatedCloth& /*simulation*/, bool /*rests*/) {}
+
+cloth::ClothState stateOf(RealTimeLoop& loop) {
+  cloth::ClothState state;
+  loop.execute([&](SimulatedCloth& simulation) { state = simulation.state(); });
+  return state;
+}
+
+// So stiff that its forces overflow a double.
+void setOverflowingFabric(SimulatedCloth& simulation) {
+  material::Fabric fabric = simulation.cloth().fabric();
+  fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(1e308);
+  simulation.setFabric(fabric);
+}
+
+TEST(RealTimeLoop, StandsStillWhilePaused) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.setPaused(true);
+  const cloth::ClothState before = stateOf(loop);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // ten steps, if it ran
+  const cloth::ClothState after = stateOf(loop);
+  EXPECT_EQ(before.time, after.time);
+  EXPECT_EQ(before.positions, after.positions);
+  EXPECT_TRUE(loop.status().paused);
+}
+
+TEST(RealTimeLoop, TakesExactlyTheStepsAskedFor) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.setPaused(true);
+  loop.execute([](SimulatedCloth& simulation) { simulation.reset(); });
+  const StepsTaken taken = loop.takeSteps(17);
+  EXPECT_EQ(taken.steps, 17u);
+  EXPECT_EQ(taken.end, StepsTaken::End::kAllTaken);
+  SimulatedCloth alone = smallSimulation();
+  for (int i = 0; i < 17; ++i) alone.step();
+  EXPECT_EQ(stateOf(loop).positions, alone.state().positions);
+  EXPECT_EQ(loop.status().steps, 17u);
+}
+
+TEST(RealTimeLoop, RefusesStepsWhileRunning) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  EXPECT_THROW(loop.takeSteps(1), std::invalid_argument);
+}
+
+TEST(RealTimeLoop, CarriesOutCommandsBetweenRequestedSteps) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.setPaused(true);
+  auto steps = std::async(std::launch::async, [&] { return loop.takeSteps(4000000000u); });
+  while (loop.status().steps < 10) std::this_thread::yield();
+  EXPECT_THROW(loop.takeSteps(1), std::invalid_argument);  // one caller at once
+  loop.setPaused(false);
+  EXPECT_EQ(steps.get().end, StepsTaken::End::kInterrupted);
+}
+
+TEST(RealTimeLoop, RethrowsWhatACommandThrows) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  EXPECT_THROW(loop.execute([](SimulatedCloth&) { throw std::domain_error("no"); }),
+               std::domain_error);
+  EXPECT_NO_THROW(stateOf(loop));
+}
+
+TEST(RealTimeLoop, StepsOnUnderAStreamOfCommands) {
+  std::atomic<bool> stop{false};
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  auto stream = std::async(std::launch::async, [&] {
+    while (!stop) loop.execute([](SimulatedCloth&) {});
+  });
+  while (loop.status().steps < 20) std::this_thread::yield();  // a starved loop would hang here
+  stop = true;
+}
+
+TEST(RealTimeLoop, KeepsTheLastGoodStateWhenAStepIsRejected) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.setPaused(true);
+  loop.takeSteps(3);
+  const cloth::ClothState good = stateOf(loop);
+  loop.execute(setOverflowingFabric);
+  const StepsTaken taken = loop.takeSteps(5);
+  EXPECT_EQ(taken.steps, 0u);
+  EXPECT_EQ(taken.end, StepsTaken::End::kRejected);
+  EXPECT_EQ(stateOf(loop).positions, good.positions);
+  EXPECT_TRUE(loop.status().last_step_rejected);
+  EXPECT_EQ(loop.status().rejected_steps, 1u);
+}
+
+TEST(RealTimeLoop, ShowsTheLastGoodStateAfterCommandsWhileStepsAreRejected) {
+  std::atomic<int> shown{0};
+  RealTimeLoop loop(smallSimulation(),
+                    [&](const SimulatedCloth& /*simulation*/, bool rests) { shown += rests; });
+  loop.start();
+  loop.execute(setOverflowingFabric);
+  while (!loop.status().last_step_rejected) std::this_thread::yield();
+  loop.execute([](SimulatedCloth&) {});
+  while (shown == 0) std::this_thread::yield();  // a loop that shows nothing would hang here
+}
+
+TEST(RealTimeLoop, ShowsEveryAcceptedStepOnce) {
+  std::vector<std::uint64_t> seen;
+  RealTimeLoop loop(smallSimulation(), [&](const SimulatedCloth& simulation, bool rests) {
+    if (!rests) seen.push_back(simulation.steps());
+  });
+  loop.start();
+  while (loop.status().steps < 10) std::this_thread::yield();
+  loop.stop();
+  for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i + 1);
+  EXPECT_GE(seen.size(), 10u);
+}
+
+TEST(RealTimeLoop, RefusesCommandsAfterItsEnd) {
+  RealTimeLoop loop(smallSimulation(), ignore);
+  loop.start();
+  loop.stop();
+  EXPECT_THROW(loop.execute([](SimulatedCloth&) {}), std::runtime_error);
+}
+
+/// The second plan takes one step of the scene at once, the first, cheaper one takes two.
+SimulatedCloth governedSimulation() {
+  scene::Scene scene = smallScene();
+  const double cycle = scene.time_step;
+  const cloth::StepSettings step = scene.step;
+  SimulatedCloth simulation(std::move(scene), smallFabric(), {{step, 1, 2}, {step, 1, 1}});
+  simulation.setController(QualityController({0.1 * cycle, 0.2 * cycle}, 0.8 * cycle, cycle, 1));
+  return simulation;
+}
+
+TEST(RealTimeLoop, GivesUpNoTimeWhileALowerQualityIsLeft) {
+  std::promise<std::size_t> plan_of_second;
+  std::promise<void> second, third;
+  int steps = 0;
+  const auto beyond_backlog = std::chrono::duration<double>(1.5 * RealTimeLoop::kLargestBacklog);
+  RealTimeLoop loop(governedSimulation(), ignore, [&](SimulatedCloth& simulation) {
+    ++steps;
+    if (steps == 2) {  // the first one has been accounted for
+      plan_of_second.set_value(simulation.plan());
+      second.get_future().wait();
+    }
+    if (steps == 3) third.get_future().wait();
+    if (steps <= 2) std::this_thread::sleep_for(beyond_backlog);
+  });
+  loop.start();
+  EXPECT_EQ(plan_of_second.get_future().get(), 0u);
+  EXPECT_EQ(loop.status().dropped_seconds, 0.0);
+  second.set_value();
+  while (loop.status().steps < 2) std::this_thread::yield();
+  EXPECT_GT(loop.status().simulated_time, 0.0);
+  third.set_value();
+  while (loop.status().steps < 3) std::this_thread::yield();
+  EXPECT_GT(loop.status().dropped_seconds, 0.0);  // the cheapest was as late
+}
+
+TEST(RealTimeLoop, CountsTheWaitForItsTurnAsComputingTime) {
+  std::promise<double> worst;
+  int steps = 0;
+  RealTimeLoop loop(governedSimulation(), ignore, [&](SimulatedCloth& simulation) {
+    ++steps;
+    if (steps == 1) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (steps == 2) worst.set_value(simulation.controller()->times().worst);
+  });
+  loop.start();
+  EXPECT_GE(worst.get_future().get(), 0.020);
+}
+
+}  // namespace
+}  // namespace haptex::simulation

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "haptex/simulation/simulated_cloth.h"
+#include "small_scene.h"
+
+namespace haptex::simulation {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Runs a request that has to be refused with a message containing `expected`, and checks that the
+// simulation goes on as one that never had the request.
+void expectRefused(const std::function<void(SimulatedCloth&)>& request,
+                   const std::string& expected) {
+  SimulatedCloth simulation = smallSimulation();
+  SimulatedCloth untouched = smallSimulation();
+  try {
+    request(simulation);
+    FAIL() << "accepted, instead of: " << expected;
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+  }
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(simulation.step());
+    ASSERT_TRUE(untouched.step());
+  }
+  EXPECT_EQ(simulation.state().positions, untouched.state().positions);
+}
+
+TEST(SimulatedCloth, RefusesParticlesThatAreNotThereOrNamedTwice) {
+  const auto attach = [](std::vector<std::uint32_t> particles) {
+    return [particles](SimulatedCloth& simulation) { simulation.attach(particles); };
+  };
+  expectRefused(attach({}), "particles is empty");
+  expectRefused(attach({0, kSmallParticles}),
+                "particles[1] = 25 does not exist: allowed are 0 to 24");
+  expectRefused(attach({0, 4294967295u}), "particles[1] = 4294967295 does not exist");
+  expectRefused(attach({0, 1, 0}), "particles[2] = 0 is named twice");
+}
+
+TEST(SimulatedCloth, RefusesPlacesThatAreNotFiniteNotForEachOrTooFar) {
+  const auto attach = [](std::vector<Eigen::Vector3d> places) {
+    return [places](SimulatedCloth& simulation) { simulation.attach({0, 1}, places); };
+  };
+  expectRefused(attach({Eigen::Vector3d::Zero()}), "positions has 1 elements and particles 2");
+  expectRefused(attach({{0, 0, 0}, {0, kNaN, 0}}), "positions[1] = (0, nan, 0) m");
+  expectRefused(attach({{0, 0, kInfinity}, {0, 0, 0}}), "positions[0] = (0, 0, inf) m");
+  expectRefused(attach({{0, 0, 0}, {-101, 0, 0}}), "from -100 to 100 m");
+}
+
+TEST(SimulatedCloth, RefusesMovesItCannotMake) {
+  const auto move = [](std::vector<std::uint32_t> particles, Eigen::Vector3d by, double duration) {
+    return [=](SimulatedCloth& simulation) { simulation.move(particles, by, duration); };
+  };
+  expectRefused(move({kSmallTop, 0}, {0, 0, 0.1}, 1), "particles[1] = 0 is not attached");
+  expectRefused(move({kSmallTop}, {kNaN, 0, 0}, 1), "displacement = (nan, 0, 0) m");
+  expectRefused(move({kSmallTop}, {0, 0, 0}, -1), "duration = -1 s: allowed are finite");
+  expectRefused(move({kSmallTop}, {0, 0, 0}, kNaN), "duration = nan s");
+  expectRefused(move({kSmallTop}, {0, 0, 0}, kInfinity), "duration = inf s");
+  expectRefused(move({kSmallTop}, {0, 100.5, 0}, 1), "the end of the path of particles[0]");
+}
+
+TEST(SimulatedCloth, RefusesToReleaseWhatIsNotAttached) {
+  expectRefused(
+      [](SimulatedCloth& simulation) {
+        simulation.release({kSmallTop, 0});
+      },
+      "particles[1] = 0 is not attached");
+}
+
+TEST(SimulatedCloth, MovesAttachedParticlesExactlyToTheEndOfTheirPaths) {
+  SimulatedCloth simulation = smallSimulation();
+  const Eigen::Vector3d start = simulation.state().positions[kSmallTop];
+  const Eigen::Vector3d displacement(0.01, -0.02, 0.03);
+  simulation.move({kSmallTop}, displacement, 7.5 * simulation.timeStep());
+  for (int i = 0; i < 7; ++i) ASSERT_TRUE(simulation.step());
+  EXPECT_NE(simulation.state().positions[kSmallTop], start + displacement);
+  ASSERT_TRUE(simulation.step());
+  EXPECT_EQ(simulation.state().positions[kSmallTop], start + displacement);
+}
+
+TEST(SimulatedCloth, RunsAgainBitByBitAfterReset) {
+  SimulatedCloth simulation = smallSimulation();
+  SimulatedCloth fresh = smallSimulation();
+  simulation.attach({0}, {Eigen::Vector3d(0.05, 0, -0.1)});
+  simulation.release({kSmallTop});
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(simulation.step());
+  simulation.reset();
+  EXPECT_EQ(simulation.steps(), 0u);
+  EXPECT_EQ(simulation.state().time, 0.0);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(simulation.step());
+    ASSERT_TRUE(fresh.step());
+  }
+  EXPECT_EQ(simulation.state().positions, fresh.state().positions);
+  EXPECT_EQ(simulation.state().velocities, fresh.state().velocities);
+}
+
+TEST(SimulatedCloth, KeepsPositionsAndVelocitiesWhenTheFabricChanges) {
+  SimulatedCloth simulation = smallSimulation();
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(simulation.step());
+  const cloth::ClothState before = simulation.state();
+  material::Fabric heavy = simulation.cloth().fabric();
+  heavy.areal_density *= 2;
+  const double mass = simulation.cloth().masses()[0];
+  simulation.setFabric(heavy);
+  EXPECT_EQ(simulation.state().positions, before.positions);
+  EXPECT_EQ(simulation.state().velocities, before.velocities);
+  EXPECT_DOUBLE_EQ(simulation.cloth().masses()[0], 2 * mass);
+}
+
+// Friction remembers how the cloth was bent; another fabric and a reset do not.
+TEST(SimulatedCloth, AnotherFabricAndAResetForgetHowTheClothWasBent) {
+  SimulatedCloth simulation = smallSimulation(true);
+  const cloth::PlasticBends flat = simulation.state().plastic_bends;
+  ASSERT_FALSE(flat.empty());
+  simulation.move({kSmallTop}, {0.05, 0.1, 0.0}, 0.1);
+  for (int i = 0; i < 40; ++i) ASSERT_TRUE(simulation.step());
+  EXPECT_NE(simulation.state().plastic_bends, flat);
+  material::Fabric other = simulation.cloth().fabric();
+  other.bending_hysteresis->warp = 0.0;  // fewer hinges with friction
+  simulation.setFabric(other);
+  EXPECT_LT(simulation.state().plastic_bends.size(), flat.size());
+  ASSERT_TRUE(simulation.step());
+  simulation.setFabric(smallSimulation(true).cloth().fabric());
+  simulation.reset();
+  EXPECT_EQ(simulation.state().plastic_bends, flat);
+}
+
+}  // namespace
+}  // namespace haptex::simulation

@@ -1,0 +1,33 @@
+// An executable of its own, because it counts every call of malloc in the process.
+#include <gtest/gtest.h>
+
+#include "../malloc_counter.h"
+#include "step_plans.h"
+
+namespace haptex::simulation {
+namespace {
+
+TEST(StepPlanAllocation, StepsAndChangesAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  SimulatedCloth simulation = plannedSimulation(severalPlans(), true);
+  simulation.setController(QualityController({1, 2, 3, 4}, 1e9, 0.005, 0));
+  const std::size_t plans = severalPlans().size();
+  const long before = allocations;
+  bool accepted = true;
+  for (int i = 0; i < 400; ++i) accepted = simulation.step() && accepted;
+  for (int i = 0; i < 40; ++i) {
+    simulation.use(static_cast<std::size_t>(i) % plans);
+    accepted = simulation.step() && accepted;
+  }
+  const CycleTimes times = simulation.controller()->times();
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_TRUE(accepted);
+  EXPECT_EQ(simulation.controller()->changes(), 3u);
+  EXPECT_EQ(times.cycles, 200u);
+  EXPECT_GT(before, 0) << "the count does not work";
+}
+
+}  // namespace
+}  // namespace haptex::simulation
