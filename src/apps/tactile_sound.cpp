@@ -1,4 +1,5 @@
-// The program tactile_sound: a sound file of one contactor, see haptex/nodes/sound_request.h.
+// The program tactile_sound: a sound file of one contactor, see
+// haptex/nodes/tactile_renderer/sound_request.h.
 #include <cstdio>
 #include <exception>
 #include <string>

@@ -74,8 +74,7 @@ const std::vector<KesTest>& kesTests();
 /// error", separated by tabs; comments start with #.
 /// @param test empty: all
 /// @throws std::invalid_argument if there is no such test, naming those that there are; and what
-/// the
-///   tests throw
+/// the tests throw
 void printKes(const material::Fabric& fabric, const std::string& test, std::ostream& out);
 
 }  // namespace haptex::kes

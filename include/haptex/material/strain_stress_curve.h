@@ -62,10 +62,9 @@ class StrainStressCurve {
   /// @param knots        n+1 strictly increasing, finite strains, n >= 1
   /// @param coefficients n rows (c0, c1, c2, c3) as in the class description, finite
   /// @throws std::invalid_argument naming the first offending knot or coefficient by index and
-  /// value
-  ///   if sizes or order are wrong, a number is not finite, stress or slope jump at an inner knot
-  ///   by more than kJumpTolerance of its largest magnitude at the knots, the stress at zero strain
-  ///   is not zero to the same tolerance, or the numbers are too large for double arithmetic
+  /// value if sizes or order are wrong, a number is not finite, stress or slope jump at an inner
+  /// knot by more than kJumpTolerance of its largest magnitude at the knots, the stress at zero
+  /// strain is not zero to the same tolerance, or the numbers are too large for double arithmetic
   static StrainStressCurve fromPolynomials(const std::vector<double>& knots,
                                            const std::vector<std::array<double, 4>>& coefficients);
 

@@ -41,8 +41,7 @@ Scene loadScene(const std::string& path);
 /// The same, but a sheet of a scene with any_cells has as few cells as make no edge along weft or
 /// warp longer than `cell_size` (m). Other scenes keep their mesh.
 /// @throws std::invalid_argument also if the cell size is not finite and > 0, or so small that
-/// there
-///   would be too many triangles
+/// there would be too many triangles
 Scene loadScene(const std::string& path, double cell_size);
 
 }  // namespace haptex::scene

@@ -12,7 +12,7 @@ namespace haptex::simulation {
 /// Moves the cloth of a scene, with the cells of the quality if it may have any, for a few cycles.
 /// @param substeps in a cycle, > 0
 /// @returns the median time of a cycle, infinity if a step was not finite, and the time of it all
-/// @throws what cloth::loadScene() and SimulatedCloth throw
+/// @throws what scene::loadScene() and SimulatedCloth throw
 MeasuredCycle measureCycle(const std::string& scene_path, const material::Fabric& fabric,
                            const scene::Quality& quality, int substeps);
 

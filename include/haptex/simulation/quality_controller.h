@@ -45,8 +45,7 @@ class QualityController {
   /// @param cycle  s between the beginnings of two cycles
   /// @param first  the quality to begin with
   /// @throws std::invalid_argument naming what is not so; costs and cycle finite and > 0, the
-  /// budget
-  ///   > 0
+  ///   budget > 0
   QualityController(std::vector<double> costs, double budget, double cycle, std::size_t first);
 
   std::size_t size() const { return costs_.size(); }

@@ -16,7 +16,7 @@ namespace haptex::studies {
 struct DrapeTest {
   double fabric_radius = 0.127;    ///< m
   double support_radius = 0.0635;  ///< m
-  int rings = 24;                  ///< of the mesh (cloth::makeDisc()), even
+  int rings = 24;                  ///< of the mesh (mesh::makeDisc()), even
   double time_step = 0.01;         ///< s
   double most_time = 6.0;          ///< s, simulated
   double rest_speed = 5e-4;        ///< m/s: done when the fastest particle is slower than that

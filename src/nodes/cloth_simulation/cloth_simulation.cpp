@@ -1,4 +1,4 @@
-// The node cloth_simulation, see haptex/nodes/cloth_node.h.
+// The node cloth_simulation, see haptex/nodes/cloth_simulation/cloth_node.h.
 #include "haptex/nodes/cloth_simulation/cloth_node.h"
 #include "haptex/nodes/common/node_process.h"
 

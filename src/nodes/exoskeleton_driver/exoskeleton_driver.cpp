@@ -1,4 +1,4 @@
-// The node exoskeleton_driver, see haptex/nodes/driver_node.h.
+// The node exoskeleton_driver, see haptex/nodes/exoskeleton_driver/driver_node.h.
 #include "haptex/nodes/common/node_process.h"
 #include "haptex/nodes/exoskeleton_driver/driver_node.h"
 

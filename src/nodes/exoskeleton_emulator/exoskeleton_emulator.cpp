@@ -1,4 +1,4 @@
-// The node exoskeleton_emulator, see haptex/nodes/emulator_node.h.
+// The node exoskeleton_emulator, see haptex/nodes/exoskeleton_emulator/emulator_node.h.
 #include "haptex/nodes/common/node_process.h"
 #include "haptex/nodes/exoskeleton_emulator/emulator_node.h"
 

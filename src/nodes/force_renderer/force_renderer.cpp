@@ -1,4 +1,4 @@
-// The node force_renderer, see haptex/nodes/force_renderer_node.h.
+// The node force_renderer, see haptex/nodes/force_renderer/force_renderer_node.h.
 #include "haptex/nodes/common/node_process.h"
 #include "haptex/nodes/force_renderer/force_renderer_node.h"
 

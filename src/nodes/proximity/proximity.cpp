@@ -1,4 +1,4 @@
-// The node proximity, see haptex/nodes/proximity_node.h.
+// The node proximity, see haptex/nodes/proximity/proximity_node.h.
 #include "haptex/nodes/common/node_process.h"
 #include "haptex/nodes/proximity/proximity_node.h"
 

@@ -1,4 +1,4 @@
-// record_topics BAG [--exclude REGEX]... REGEX...: see haptex/nodes/bag_recorder.h.
+// record_topics BAG [--exclude REGEX]... REGEX...: see haptex/nodes/record_topics/bag_recorder.h.
 #include <ros/ros.h>
 
 #include <cstdio>

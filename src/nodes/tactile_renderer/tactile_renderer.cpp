@@ -1,4 +1,4 @@
-// The node tactile_renderer, see haptex/nodes/tactile_node.h.
+// The node tactile_renderer, see haptex/nodes/tactile_renderer/tactile_node.h.
 #include "haptex/nodes/common/node_process.h"
 #include "haptex/nodes/tactile_renderer/tactile_node.h"
 

@@ -20,8 +20,7 @@ namespace haptex::nodes {
 ///   particles with the rest areas of the triangles around. rviz does not light triangles that
 ///   have colours of their own, so the shading of a fixed light is part of the colours.
 /// "scale": the colours of the last four decades to the full scale with numbers in percent, beside
-/// the place
-///   where the cloth starts.
+///   the place where the cloth starts.
 /// "obstacles": those that move; the proximity node shows those that rest.
 /// "attachments": attached particles as bars along the edges that join them, or as balls.
 class ClothMarkers {

@@ -16,7 +16,7 @@ class LayerBuilder {
  public:
   /// @param scene_path the scene of the large-scale layer, for its effects, its fabric, and how the
   ///   small-scale layer is computed
-  /// @throws std::exception what cloth::loadScene() and contact::loadHapticSettings() throw
+  /// @throws std::exception what scene::loadScene() and contact::loadHapticSettings() throw
   explicit LayerBuilder(const std::string& scene_path);
 
   const contact::HapticSettings& settings() const { return settings_; }
