@@ -91,7 +91,7 @@ inline void printWallStiffness(const std::string& urdf, const std::string& perso
   for (const Finger finger : kFingers) {
     std::ostringstream name;
     name << '/' << (wall.linearised ? "linearised" : "sample") << "_delay_" << wall.delay
-         << "ms_damping_" << wall.damping << '_' << person << '_' << exoskeleton::name(finger);
+         << "ms_damping_" << wall.damping << '_' << person << '_' << base::name(finger);
     const Limit& limit = steady[finger];
     printLine("exoskeleton/wall_stiffness" + name.str(), passive[finger].stiffness, "N/m");
     printLine("exoskeleton/wall_steady" + name.str(), limit.stiffness, "N/m");

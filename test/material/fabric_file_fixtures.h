@@ -96,4 +96,10 @@ inline void expectRefusal(const std::string& valid, const Refusal& refusal) {
   EXPECT_TRUE(fabric.provenance.empty());
 }
 
+/// As a key of the bending.
+inline std::string hysteresisOf(const std::string& unit, const std::string& weft) {
+  return "hysteresis: {unit: " + unit + ", provenance: measured, source: its loops, weft: " + weft +
+         ", warp: 2e-4}";
+}
+
 }  // namespace haptex::material

@@ -55,7 +55,7 @@ TEST(TargetMarkers, ShowTheTargetsInTheFrameOfTheHand) {
   ASSERT_EQ(markers.markers.size(), 2u);
   for (const Finger finger : base::kFingers) {
     const auto& marker = markers.markers[static_cast<std::size_t>(finger)];
-    EXPECT_EQ(marker.ns, exoskeleton::name(finger));
+    EXPECT_EQ(marker.ns, base::name(finger));
     EXPECT_EQ(marker.header.frame_id, "hand_base");
     EXPECT_EQ(position(marker.pose), place.fingertips[finger]);
     EXPECT_EQ(marker.pose.orientation.w, 1.0);
@@ -97,7 +97,7 @@ TEST(TargetMarkers, FingertipsCanBeDraggedButNotTurned) {
   for (const Finger finger : base::kFingers) {
     const InteractiveMarker marker = fingertipMarker(finger, place);
     expectSound(marker);
-    EXPECT_EQ(marker.name, exoskeleton::name(finger));
+    EXPECT_EQ(marker.name, base::name(finger));
     EXPECT_EQ(marker.header.frame_id, "hand_base");
     EXPECT_EQ(position(marker.pose), place.fingertips[finger]);
     EXPECT_EQ(countOf(marker, InteractiveMarkerControl::MOVE_AXIS), 3);

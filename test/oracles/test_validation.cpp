@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
 #include <set>
-#include <sstream>
 
 #include "haptex/base/workload.h"
 #include "haptex/kes/equilibrium.h"
@@ -15,35 +12,6 @@
 
 namespace haptex::oracles {
 namespace {
-
-TEST(Quantity, FailsBeyondItsToleranceAndOnNaN) {
-  EXPECT_TRUE(base::relativeTo(2.0, "a", 2.0, 2.0002, 1.1e-4).pass());
-  EXPECT_FALSE(base::relativeTo(2.0, "a", 2.0, 2.0002, 0.9e-4).pass());
-  EXPECT_FALSE(
-      base::relativeTo(2.0, "a", 2.0, std::numeric_limits<double>::quiet_NaN(), 1.0).pass());
-}
-
-TEST(Quantity, NaNIsNeverHiddenByALargerNumber) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(base::largerOrNaN(1.0, 2.0), 2.0);
-  EXPECT_EQ(base::largerOrNaN(2.0, 1.0), 2.0);
-  EXPECT_TRUE(std::isnan(base::largerOrNaN(nan, 1.0)));
-  EXPECT_TRUE(std::isnan(base::largerOrNaN(1.0, nan)));
-  base::Quantity worst{"", 0.0, 0.0, -1.0, 1.0};
-  for (double measured : {0.1, nan, 0.3})
-    base::keepWorse(worst, base::relativeTo(1.0, "a", 0.0, measured, 1.0));
-  EXPECT_FALSE(worst.pass());
-  worst = {"", 0.0, 0.0, -1.0, 1.0};
-  for (double measured : {0.1, 0.3, 0.2})
-    base::keepWorse(worst, base::relativeTo(1.0, "a", 0.0, measured, 1.0));
-  EXPECT_EQ(worst.error, 0.3);
-}
-
-TEST(Quantity, PrintsSixFieldsSeparatedByTabs) {
-  std::ostringstream out;
-  base::print(out, {"room/what", 1.5, 1.25, 0.25, 0.125});
-  EXPECT_EQ(out.str(), "room/what\t1.5\t1.25\t0.25\t0.125\tFAIL\n");
-}
 
 material::Fabric linearFabric() {
   material::Fabric fabric;

@@ -7,10 +7,7 @@
 
 #include <cstddef>
 
-// Every function that touches a wide register carries the attribute and is inlined, so that no
-// wide value crosses a call: the rest of the library keeps the ABI of the baseline.
 #define HAPTEX_AVX2 [[gnu::target("avx2,fma")]]
-#define HAPTEX_AVX2_INLINE [[gnu::target("avx2,fma"), gnu::always_inline]] inline
 
 namespace haptex::cloth::kernels {
 namespace {

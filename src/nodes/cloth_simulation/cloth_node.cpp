@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/loop_diagnostics.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/realtime/steady_clock.h"
@@ -105,8 +106,7 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   diagnostics_.add("cloth simulation", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     diagnose(status);
   });
-  diagnostics_timer_ = node_.createTimer(
-      ros::Duration(1.0), [this](const ros::TimerEvent&) { diagnostics_.force_update(); });
+  diagnostics_timer_ = publishOnceASecond(node_, diagnostics_);
   // Whoever judges by the age of the messages whether this node lives shall see that it does.
   rest_timer_ =
       node_.createSteadyTimer(ros::WallDuration(kRestPeriod),

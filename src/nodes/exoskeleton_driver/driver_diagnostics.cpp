@@ -2,6 +2,7 @@
 #include <string>
 
 #include "haptex/exoskeleton/control/driver_announcement.h"
+#include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/hand_markers.h"
 #include "haptex/nodes/exoskeleton_driver/driver_node.h"
 #include "haptex/realtime/steady_clock.h"
@@ -17,7 +18,6 @@ using exoskeleton::LinkStatus;
 using exoskeleton::Mode;
 using exoskeleton::NoForceReason;
 
-constexpr double kDiagnosticsPeriod = 1.0;  // s
 constexpr Time kRecent = std::chrono::seconds(1);
 
 /// Frames that were lost or spoilt, no unit.
@@ -36,9 +36,7 @@ void DriverNode::addDiagnostics() {
                      [this, finger](Status& status) { diagnoseForce(finger, status); });
   }
   diagnosed_time_ = realtime::steadyNow();
-  diagnostics_timer_ = node_.createSteadyTimer(
-      ros::WallDuration(kDiagnosticsPeriod),
-      [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
+  diagnostics_timer_ = publishOnceASecond(node_, diagnostics_);
 }
 
 std::string DriverNode::whyNoDevice(const exoskeleton::DriverSnapshot& snapshot) const {

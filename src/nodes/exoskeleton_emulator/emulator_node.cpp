@@ -11,6 +11,7 @@
 
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/config_files.h"
+#include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/ros_time.h"
@@ -28,7 +29,6 @@ constexpr char kPathDirectory[] = "paths";
 constexpr char kRestPath[] = "rest";
 constexpr double kHandPeriod = 0.01;        // s, of the pose of the hand
 constexpr std::uint64_t kHandsPerShow = 4;  // of its markers
-constexpr double kDiagnosticsPeriod = 1.0;  // s
 constexpr std::uint32_t kTruthQueue = 100;  // messages
 constexpr Time kPatience = std::chrono::milliseconds(100);
 
@@ -121,9 +121,7 @@ void EmulatorNode::advertise() {
       ros::WallDuration(kHandPeriod), [this](const ros::SteadyTimerEvent&) { publishHand(); });
   diagnostics_.setHardwareID("none");
   diagnostics_.add("exoskeleton emulator", [this](Status& status) { diagnose(status); });
-  diagnostics_timer_ = node_.createSteadyTimer(
-      ros::WallDuration(kDiagnosticsPeriod),
-      [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
+  diagnostics_timer_ = publishOnceASecond(node_, diagnostics_);
 }
 
 /// On the emulator's thread.

@@ -2,6 +2,7 @@
 // finger why it feels no force.
 #include <string>
 
+#include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/force_renderer/force_renderer_node.h"
 #include "haptex/realtime/steady_clock.h"
 
@@ -12,8 +13,6 @@ using base::Finger;
 using base::kFingers;
 using base::Time;
 using diagnostic_msgs::DiagnosticStatus;
-
-constexpr double kDiagnosticsPeriod = 1.0;  // s
 
 std::string ageText(const std::optional<Time>& last, Time now) {
   return last ? std::to_string(1e3 * base::seconds(now - *last)) : "never";
@@ -39,9 +38,7 @@ void ForceRendererNode::addDiagnostics() {
     diagnostics_.add(std::string("contact force of the ") + base::name(finger),
                      [this, finger](Status& status) { diagnoseForce(finger, status); });
   }
-  diagnostics_timer_ = node_.createSteadyTimer(
-      ros::WallDuration(kDiagnosticsPeriod),
-      [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
+  diagnostics_timer_ = publishOnceASecond(node_, diagnostics_);
 }
 
 void ForceRendererNode::diagnoseLoop(Status& status) {

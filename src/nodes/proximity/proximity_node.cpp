@@ -6,6 +6,7 @@
 
 #include "haptex/contact/obstacles.h"
 #include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/scene/scene.h"
@@ -15,7 +16,6 @@ namespace {
 
 constexpr double kDefaultStaleAfter = 0.5;  // s
 constexpr double kMarkerPeriod = 0.1;       // s
-constexpr double kDiagnosticsPeriod = 1.0;  // s
 constexpr int kServiceThreads = 2;          // for the force renderer, and for others
 
 /// dynamic_reconfigure would silently take another value for one that it does not understand.
@@ -95,9 +95,7 @@ ProximityNode::ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle&
                                                                    &ProximityNode::query, this);
   marker_timer_ = node_.createSteadyTimer(
       ros::WallDuration(kMarkerPeriod), [this](const ros::SteadyTimerEvent&) { publishMarkers(); });
-  diagnostics_timer_ = node_.createSteadyTimer(
-      ros::WallDuration(kDiagnosticsPeriod),
-      [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
+  diagnostics_timer_ = publishOnceASecond(node_, diagnostics_);
   input_thread_.start();
   service_threads_.start(kServiceThreads);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/loop_diagnostics.h"
 #include "haptex/nodes/tactile_renderer/tactile_node.h"
 #include "haptex/realtime/steady_clock.h"
@@ -16,7 +17,6 @@ using base::kFingers;
 using base::Time;
 using diagnostic_msgs::DiagnosticStatus;
 
-constexpr double kDiagnosticsPeriod = 1.0;  // s
 /// Without a contact for so long they are said to be absent.
 constexpr Time kStale = std::chrono::milliseconds(250);
 
@@ -46,9 +46,7 @@ void TactileNode::addDiagnostics() {
     diagnostics_.add(std::string("tactile array of the ") + base::name(finger),
                      [this, finger](Status& status) { diagnoseArray(finger, status); });
   }
-  diagnostics_timer_ = node_.createSteadyTimer(
-      ros::WallDuration(kDiagnosticsPeriod),
-      [this](const ros::SteadyTimerEvent&) { diagnostics_.force_update(); });
+  diagnostics_timer_ = publishOnceASecond(node_, diagnostics_);
 }
 
 void TactileNode::diagnoseSurface(Status& status) {

@@ -232,7 +232,7 @@ void validateForces(const std::string& urdf, const Sink& sink) {
   for (const Finger finger : kFingers) {
     for (const double force : forces) {
       std::ostringstream name;
-      name << "exoskeleton/" << exoskeleton::name(finger) << "/static_force_" << force << "_N";
+      name << "exoskeleton/" << base::name(finger) << "/static_force_" << force << "_N";
       base::Quantity worst{name.str(), force, force, -1.0, kForceTolerance};
       for (const StaticForce& one : all) {
         if (one.finger != finger || std::abs(one.commanded.norm() - force) > 1e-9) continue;

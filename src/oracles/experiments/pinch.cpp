@@ -30,7 +30,7 @@ constexpr double kLongestStep = 5.0;  // rad of a motor in a Newton step: a bit 
 
 /// Pose of <finger>_tactile in <finger>_tip.
 Isometry3d tactileInTip(const std::string& urdf, Finger finger) {
-  const std::string prefix = exoskeleton::name(finger);
+  const std::string prefix = base::name(finger);
   const auto model = urdf::parseURDF(urdf);
   const auto link = model->getLink(prefix + "_tactile");
   if (!link || !link->parent_joint || link->parent_joint->type != urdf::Joint::FIXED ||

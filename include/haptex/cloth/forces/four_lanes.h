@@ -4,6 +4,8 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
+// Every function that touches a wide register carries the attribute and is inlined, so that no
+// wide value crosses a call: the rest of the library keeps the ABI of the baseline.
 #define HAPTEX_AVX2_INLINE [[gnu::target("avx2,fma"), gnu::always_inline]] inline
 
 namespace haptex::cloth::kernels {
@@ -92,5 +94,4 @@ HAPTEX_AVX2_INLINE Block full(const Symmetric& s) {
 
 }  // namespace haptex::cloth::kernels
 
-#undef HAPTEX_AVX2_INLINE
 #endif

@@ -106,7 +106,7 @@ class ClothNode {
   ros::Publisher marker_publisher_;
   ros::Publisher quality_publisher_;
   diagnostic_updater::Updater diagnostics_;
-  ros::Timer diagnostics_timer_;
+  ros::SteadyTimer diagnostics_timer_;
   ros::SteadyTimer rest_timer_;
   double diagnosed_drop_ = 0.0;  // s of simulated time, at the last diagnostics
 

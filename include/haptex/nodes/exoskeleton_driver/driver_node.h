@@ -19,8 +19,8 @@
 #include "haptex/exoskeleton/control/finger_kinematics.h"
 #include "haptex/nodes/common/immediate_queue.h"
 #include "haptex/nodes/common/loop_diagnostics.h"
+#include "haptex/nodes/common/message_pool.h"
 #include "haptex/nodes/exoskeleton_driver/servo_force_filter.h"
-#include "haptex/realtime/message_pool.h"
 #include "haptex/realtime/periodic_thread.h"
 
 namespace haptex::nodes {
@@ -117,7 +117,7 @@ class DriverNode {
   // Used by the loop's thread only.
   base::PerFinger<exoskeleton::FingerKinematics> loop_kinematics_;
   ros::Publisher fingertip_publisher_;
-  realtime::MessagePool<haptex::Fingertips> fingertip_messages_;
+  MessagePool<haptex::Fingertips> fingertip_messages_;
 
   // Used by the publishing thread only.
   base::PerFinger<exoskeleton::FingerKinematics> kinematics_;

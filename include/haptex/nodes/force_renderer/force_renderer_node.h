@@ -25,12 +25,12 @@
 #include "haptex/base/finger.h"
 #include "haptex/nodes/common/immediate_queue.h"
 #include "haptex/nodes/common/loop_diagnostics.h"
+#include "haptex/nodes/common/message_pool.h"
 #include "haptex/nodes/common/message_threads.h"
 #include "haptex/nodes/force_renderer/contact_markers.h"
 #include "haptex/nodes/force_renderer/fingertip_filter.h"
 #include "haptex/nodes/force_renderer/patch_supplier.h"
 #include "haptex/realtime/duration_histogram.h"
-#include "haptex/realtime/message_pool.h"
 #include "haptex/realtime/periodic_thread.h"
 #include "haptex/realtime/rate_meter.h"
 #include "haptex/simulation/force_loop.h"
@@ -84,7 +84,7 @@ class ForceRendererNode {
     std::atomic<std::uint64_t> poses{0};  // taken
     bool has_array = false;               // of the thread of what comes in
     // Of the loop's thread.
-    realtime::MessagePool<haptex::ServoForce> force_messages;
+    MessagePool<haptex::ServoForce> force_messages;
     haptex::Contact contact_message;
   };
 

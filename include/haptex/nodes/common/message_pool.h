@@ -6,7 +6,7 @@
 #include <boost/shared_ptr.hpp>
 #include <cstddef>
 
-namespace haptex::realtime {
+namespace haptex::nodes {
 
 /// Shared messages in turn, so that a subscriber of the same process takes a message without a
 /// copy. One that somebody still holds is left to him, and another one made.
@@ -30,4 +30,4 @@ class MessagePool {
   std::size_t next_ = 0;
 };
 
-}  // namespace haptex::realtime
+}  // namespace haptex::nodes

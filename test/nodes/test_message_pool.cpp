@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "haptex/realtime/message_pool.h"
+#include "haptex/nodes/common/message_pool.h"
 
-namespace haptex::realtime {
+namespace haptex::nodes {
 namespace {
 
 TEST(MessagePool, GivesTheSameMessagesInTurnWhileNobodyHoldsThem) {
@@ -24,4 +24,4 @@ TEST(MessagePool, LeavesAMessageToWhoeverHoldsIt) {
 }
 
 }  // namespace
-}  // namespace haptex::realtime
+}  // namespace haptex::nodes
