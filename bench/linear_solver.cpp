@@ -46,10 +46,8 @@ System makeSystem(int cells) {
   for (Eigen::Vector3d& position : state.positions) position *= 1.02;
   for (int i = 0; i < size; ++i) {
     system.matrix.diagonal(i).diagonal().setConstant(cloth.masses()[i]);
-    system.rhs.col(i) = 0.0125 * cloth.masses()[i] * effects.gravity;
   }
-  cloth.membrane().addStep(state.positions, state.velocities, {0.0125, 0.0125}, system.matrix,
-                           system.rhs);
+  cloth.forces().assembleLinearised(state.ofForces(), {0.0125, 0.0125}, system.matrix, system.rhs);
   return system;
 }
 
@@ -106,11 +104,8 @@ struct Patch {
       system.matrix.diagonal(i).diagonal().setConstant(cloth.masses()[i]);
     }
     system.rhs.setZero();
-    cloth.membrane().addStep(state.positions, state.velocities, {kPatchStep, kPatchStep},
-                             system.matrix, system.rhs);
-    if (!cloth.bending()) return;
-    cloth.bending()->addStep(state.positions, state.velocities, {kPatchStep, kPatchStep},
-                             system.matrix, system.rhs);
+    cloth.forces().assembleLinearised(state.ofForces(), {kPatchStep, kPatchStep}, system.matrix,
+                                      system.rhs);
   }
 
  private:

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptex/cloth/forces/bending/bending.h"
+#include "haptex/cloth/forces/constant_forces.h"
+#include "haptex/cloth/forces/membrane.h"
+
 namespace haptex::contact {
 namespace {
 
@@ -20,12 +24,20 @@ constexpr double kLastTether = 1e-3;   // N/m, then none
 // s: the next matrix of longer steps has little in common with the last one.
 constexpr double kLongestKept = 4e-3;
 
-std::vector<double> tributaryAreas(const cloth::Membrane& membrane, std::size_t particles) {
-  std::vector<double> areas(particles, 0.0);
-  for (const cloth::MembraneElement& element : membrane.elements()) {
-    for (int particle : element.particles) areas[particle] += element.area / 3.0;
-  }
-  return areas;
+/// Gravity, membrane and bending on the particles of a cut.
+cloth::ForceSum forcesOn(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
+                         const cloth::ModelledEffects& effects, const std::vector<double>& masses) {
+  cloth::ForceSum forces;
+  forces.add(std::make_unique<cloth::ConstantForces>(masses, effects.gravity));
+  forces.add(std::make_unique<cloth::Membrane>(cloth::restElements(mesh), fabric, effects.viscosity,
+                                               effects.contraction));
+  forces.add(std::make_unique<cloth::Bending>(mesh, *fabric.bending, effects.bending_settings));
+  return forces;
+}
+
+std::vector<double> scaled(double factor, std::vector<double> values) {
+  for (double& value : values) value *= factor;
+  return values;
 }
 
 linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& matrix, int size) {
@@ -44,19 +56,17 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabr
              const cloth::ModelledEffects& effects, const ContactLaw& law)
     : cut_(std::move(cut)),
       effects_(effects),
-      membrane_(cut_.mesh, fabric, effects.viscosity, effects.contraction),
-      bending_(cut_.mesh, *fabric.bending, effects.bending_settings),
-      matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, bending_.pairs()),
+      areas_(cloth::tributaryAreas(cloth::restElements(cut_.mesh), cut_.supports.size())),
+      masses_(scaled(fabric.areal_density, areas_)),
+      forces_(forcesOn(cut_.mesh, fabric, effects, masses_)),
+      matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, forces_.pairs()),
       solver_(leadingPattern(matrix_, cut_.free_count)),
-      areas_(tributaryAreas(membrane_, cut_.supports.size())),
       contacts_{SphereContact(law, cut_.free_count), SphereContact(law, cut_.free_count)},
       rhs_(3, cut_.supports.size()),
       solution_(3, cut_.free_count) {
-  membrane_.bind(matrix_);
-  bending_.bind(matrix_);
+  forces_.bind(matrix_);
   const std::size_t count = cut_.supports.size();
   for (int owner : cut_.owners) corners_.push_back(coarse.triangles[owner]);
-  for (double area : areas_) masses_.push_back(fabric.areal_density * area);
   state_.positions.assign(count, Vector3d::Zero());
   state_.velocities.assign(count, Vector3d::Zero());
   predicted_ = state_.positions;
@@ -126,9 +136,9 @@ void Patch::assemble(const LargeScaleMotion& motion, double h) {
   const double detour_left = std::exp(-h / kDetourTime);
   const double tether_left = std::exp(-h / kTetherTime);
   matrix_.setZero();
+  rhs_.setZero();
   for (int i = 0; i < cut_.free_count; ++i) {
     matrix_.diagonal(i).diagonal().setConstant(masses_[i]);
-    rhs_.col(i) = h * masses_[i] * effects_.gravity;
     if (tethers_[i] == 0.0) continue;
     detours_[i] *= detour_left;
     const Vector3d end = state_.positions[i] + h * state_.velocities[i];
@@ -141,8 +151,7 @@ void Patch::assemble(const LargeScaleMotion& motion, double h) {
     const Vector3d end = placeOnCloth(i, motion) + detours_[i];
     state_.velocities[i] = (end - state_.positions[i]) / h;
   }
-  membrane_.addStep(state_.positions, state_.velocities, {h, h}, matrix_, rhs_);
-  bending_.addStep(state_.positions, state_.velocities, {h, h}, matrix_, rhs_);
+  forces_.assembleLinearised(state_.ofForces(), {h, h}, matrix_, rhs_);
 }
 
 void Patch::addContact(const PerFingertip<const Fingertip*>& fingertips, double h) {

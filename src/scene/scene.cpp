@@ -9,6 +9,7 @@
 
 #include "haptex/base/constants.h"
 #include "haptex/base/yaml_reader.h"
+#include "haptex/cloth/forces/lattice_springs.h"
 #include "haptex/mesh/obj_file.h"
 #include "haptex/scene/obstacle_file.h"
 #include "haptex/scene/scene_values.h"

@@ -156,6 +156,7 @@ void SimulatedCloth::relieve() {
 void SimulatedCloth::reset() {
   cloth_.releaseAll();
   cloth_.setPointLoads({});
+  loaded_ = false;
   attachInitially();
   state_ = cloth_.initialState();
   makeIntegrators();  // the old ones remember their last solutions and factors
@@ -178,14 +179,15 @@ void SimulatedCloth::makeIntegrators() {
 void SimulatedCloth::setFabric(material::Fabric fabric) {
   if (collision_) collision_->requireFriction(fabric);
   cloth_.setFabric(std::move(fabric));
-  cloth_.forgetBending(state_);
-  if (cloth_.bending()) makeIntegrators();
+  cloth_.forget(state_);
+  if (!cloth_.forces().pairs().empty()) makeIntegrators();
   wake();
 }
 
 void SimulatedCloth::setPointLoads(const std::vector<cloth::PointLoad>& loads) {
-  const bool changes = !loads.empty() || !cloth_.pointLoads().empty();
+  const bool changes = !loads.empty() || loaded_;
   cloth_.setPointLoads(loads);
+  loaded_ = !loads.empty();
   if (changes) wake();
 }
 

@@ -88,7 +88,7 @@ class TouchedRun {
     constexpr double kSpeed = 340.0;  // m/s
     const contact::ContactLaw& law = loop_.layer().law();
     double area = 0.0;
-    for (const cloth::MembraneElement& element : untouched_.membrane().elements()) {
+    for (const cloth::MembraneElement& element : cloth::restElements(untouched_.mesh())) {
       area += element.area;
     }
     return law.pressure(oracles::kThumbRadius + law.halfThickness()).stress *

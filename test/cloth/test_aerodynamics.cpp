@@ -5,6 +5,7 @@
 
 #include "air_fixtures.h"
 #include "fixtures.h"
+#include "force_fixtures.h"
 
 namespace haptex::cloth {
 namespace {
@@ -80,7 +81,7 @@ TEST(Aerodynamics, AirAtRestNeverFeedsEnergy) {
       if (coefficients.normal > 0.0) {
         EXPECT_LT(power, -0.1 * scale);
       }
-      EXPECT_EQ(cloth.windPower(state), 0.0);
+      EXPECT_EQ(cloth.forces().drivingPower(state.ofForces()), 0.0);
     }
   }
 }
@@ -141,8 +142,8 @@ struct OneTriangle {
         rhs(linear::BlockVector::Zero(3, 3)) {
     state = randomState(cloth, 0.05, 3.0, seed);
     matrix.setZero();
-    cloth.air()->addStep(cloth.membrane().elements(), state.positions, state.velocities,
-                         {kA, 0.0, state.time}, matrix, rhs);
+    cloth.forces().find<Aerodynamics>()->assembleLinearised(state.ofForces(), {kA, 0.0}, matrix,
+                                                            rhs);
     by_velocity = 9.0 * cloth.jacobian(state, {0}).front().by_velocity;
   }
   static mesh::ClothMesh mesh() {
@@ -190,19 +191,17 @@ TEST(Aerodynamics, TheStepTakesTheNearestDampingThatTakesEnergyOut) {
 
 TEST(Aerodynamics, ANewtonIterationDescendsThePotentialOfFixedNormals) {
   const Cloth cloth(square(2), limpFabric(), effectsOf(gusty(kWithLift)));
-  const Aerodynamics& air = *cloth.air();
-  const auto& elements = cloth.membrane().elements();
+  const Aerodynamics& air = *cloth.forces().find<Aerodynamics>();
   const ClothState at = randomState(cloth, 5e-3, 1.0, 1);
   ClothState state = randomState(cloth, 5e-3, 1.0, 2);
-  FixedAir fixed;
-  fixed.panels.resize(elements.size());
-  air.fix(elements, at.positions, at.velocities, 0.3, fixed);
+  const std::vector<Vector3d> held = heldBefore(air, {at.positions, at.velocities, 0.3}, 1.0);
   constexpr double kA = 0.004;
   const auto gradient = [&](const Velocities& velocities, Eigen::MatrixXd* hessian) {
     linear::SymmetricBlockMatrix matrix = cloth.pattern();
     matrix.setZero();
     linear::BlockVector rhs = linear::BlockVector::Zero(3, cloth.particleCount());
-    air.addNewton(elements, velocities, fixed, kA, matrix, rhs);
+    air.assembleNewton({state.positions, velocities}, held.data(), kA, Hessian::kExact, matrix,
+                       rhs);
     if (hessian != nullptr) *hessian = dense(matrix);
     return Eigen::VectorXd(-stacked(rhs));
   };
@@ -214,10 +213,10 @@ TEST(Aerodynamics, ANewtonIterationDescendsThePotentialOfFixedNormals) {
     double& coordinate = state.velocities[i / 3][i % 3];
     const double middle = coordinate;
     coordinate = middle + kStep;
-    const double above = air.incrementalPotential(elements, state.velocities, fixed, kA);
+    const double above = air.incrementalPotential(state.ofForces(), held.data(), kA);
     const Eigen::VectorXd gradient_above = gradient(state.velocities, nullptr);
     coordinate = middle - kStep;
-    const double below = air.incrementalPotential(elements, state.velocities, fixed, kA);
+    const double below = air.incrementalPotential(state.ofForces(), held.data(), kA);
     const Eigen::VectorXd gradient_below = gradient(state.velocities, nullptr);
     coordinate = middle;
     EXPECT_NEAR((above - below) / (2.0 * kStep), exact[i], 1e-7 * exact.norm());

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "fixtures.h"
+#include "force_fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/cloth/dynamics/stage_solver.h"
 
@@ -158,13 +159,12 @@ TEST(BackwardEuler, NewtonReachesItsToleranceWhereOneSolveDoesNot) {
   EXPECT_LE(report.newton_residual, 1e-12);
   EXPECT_GT(report.newton_iterations, 2);
   // The state solves M (v - v0) = h F(x, rate) with the discrete strain rate.
-  std::vector<MembraneStrain> begin;
-  cloth.membrane().computeStrains(start.positions, begin);
+  const auto begin = heldSince(membraneOf(cloth), start.positions);
   linear::SymmetricBlockMatrix unused(static_cast<int>(cloth.particleCount()),
                                       cloth.mesh().triangles);
   linear::BlockVector impulse = linear::BlockVector::Zero(3, cloth.particleCount());
-  cloth.membrane().addNewton(state.positions, begin, 0.01, Membrane::Hessian::kExact, unused,
-                             impulse);
+  membraneOf(cloth).assembleNewton(state.ofForces(), begin.data(), 0.01, Hessian::kExact, unused,
+                                   impulse);
   double scale = impulse.norm();
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     if (cloth.isAttached(static_cast<int>(i))) continue;
@@ -180,8 +180,7 @@ TEST(BackwardEuler, ANewtonIterationNeverRaisesTheIncrementalPotential) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     ClothState start = randomState(cloth, 0.02, 5.0, seed);
     for (Vector3d& position : start.positions) position *= 0.5;
-    std::vector<MembraneStrain> begin;
-    cloth.membrane().computeStrains(start.positions, begin);
+    const auto begin = heldSince(membraneOf(cloth), start.positions);
     std::vector<double> potentials;
     for (int iterations : {1, 2}) {
       StepSettings settings;
@@ -191,7 +190,7 @@ TEST(BackwardEuler, ANewtonIterationNeverRaisesTheIncrementalPotential) {
       StageSolver(cloth, settings)
           .solve(cloth, {start, h, h, 1.0, Stage::Rates::kSinceBase},
                  {start.positions, start.velocities, h}, state, report);
-      double potential = cloth.membrane().incrementalPotential(state.positions, begin, h);
+      double potential = membraneOf(cloth).incrementalPotential(state.ofForces(), begin.data(), h);
       for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
         potential +=
             0.5 * cloth.masses()[i] * (state.velocities[i] - start.velocities[i]).squaredNorm();

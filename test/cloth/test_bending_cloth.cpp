@@ -6,6 +6,7 @@
 
 #include "derivatives.h"
 #include "fixtures.h"
+#include "force_fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
 namespace haptex::cloth {
@@ -114,7 +115,7 @@ TEST(BendingCloth, ACylinderOfTheRestCurvatureIsAtRest) {
         state.positions[i] = {(1.0 - std::cos(angle)) / curvature, std::sin(angle) / curvature,
                               rest.y()};
       }
-      return cloth.bending()->energy(state.positions);
+      return cloth.forces().find<Bending>()->energy(state.ofForces());
     };
     const double flat = energyOf(1e-9);
     // Across a free edge nothing is resisted: half a cell along both has no energy.
@@ -128,7 +129,7 @@ TEST(BendingCloth, ACylinderOfTheRestCurvatureIsAtRest) {
 
 TEST(BendingCloth, ARestCurvatureThatIsNotGivenIsNotThere) {
   const Cloth flat(square(4), stiffFabric(), bendingAnd(Vector3d::Zero()));
-  EXPECT_EQ(flat.bending()->restCurvature(), nullptr);
+  EXPECT_EQ(flat.forces().find<Bending>()->restCurvature(), nullptr);
   ModelledEffects effects = bendingAnd(Vector3d::Zero());
   effects.bending_settings.rest_curvature.x() = std::nan("");
   EXPECT_THROW(Cloth(square(4), stiffFabric(), effects), std::invalid_argument);

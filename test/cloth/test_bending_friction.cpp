@@ -8,8 +8,9 @@
 
 #include "derivatives.h"
 #include "fixtures.h"
+#include "force_fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/cloth/forces/bending_friction.h"
+#include "haptex/cloth/forces/bending/bending_friction.h"
 
 namespace haptex::cloth {
 namespace {
@@ -61,14 +62,16 @@ Positions bent(const mesh::ClothMesh& mesh, const Vector3d& w) {
 
 /// What friction that yields adds to the energy per curvature (N.m2) as the sheet is bent like `w`.
 /// The displacement is so small that no normal turns; the past lies far on the other side.
-double yieldMoment(const mesh::ClothMesh& mesh, const Bending& bending, const Vector3d& w) {
+double yieldMoment(const mesh::ClothMesh& mesh, const BendingFriction& friction,
+                   const Vector3d& w) {
   constexpr double kSmall = 1e-3;
-  const BendingFriction& friction = *bending.friction();
-  PlasticBends past = friction.withoutFriction(bent(mesh, kSmall * w));
+  std::vector<double> past(friction.memorySize());
+  friction.forget(bent(mesh, kSmall * w), past.data());
   for (double& bend : past) bend *= -1e4;
-  return (friction.energy(bent(mesh, kSmall * w), past) -
-          friction.energy(bent(mesh, Vector3d::Zero()), past)) /
-         kSmall;
+  const auto energy = [&](const Positions& positions) {
+    return friction.energy({positions, positions, 0.0, past.data()});
+  };
+  return (energy(bent(mesh, kSmall * w)) - energy(bent(mesh, Vector3d::Zero()))) / kSmall;
 }
 
 struct NamedSheet {
@@ -85,18 +88,20 @@ std::array<NamedSheet, 3> sheets() {
 TEST(BendingFriction, CylindersMeetHalfOfTheHysteresisOnEveryMesh) {
   for (const NamedSheet& on : sheets()) {
     for (BendingModel model : kModels) {
-      const Bending bending(on.mesh, kRigidity, {model, {0.0, 0.0}}, kHysteresis);
+      const Bending bending(on.mesh, kRigidity, {model, {0.0, 0.0}});
+      const BendingFriction friction(on.mesh, bending.hinges(), bending.corners(), kRigidity,
+                                     kHysteresis);
       const auto areaOf = [&](const Vector3d& w, double rigidity) {
-        return 2.0 * bending.energy(bent(on.mesh, w)) / rigidity;
+        return 2.0 * bending.energy(resting(bent(on.mesh, w))) / rigidity;
       };
       const double weft = 0.5 * kHysteresis.weft * areaOf(Vector3d::UnitX(), kRigidity.weft);
       const double warp = 0.5 * kHysteresis.warp * areaOf(Vector3d::UnitY(), kRigidity.warp);
-      EXPECT_NEAR(yieldMoment(on.mesh, bending, Vector3d::UnitX()), weft, 1e-6 * weft) << on.name;
-      EXPECT_NEAR(yieldMoment(on.mesh, bending, Vector3d::UnitY()), warp, 1e-6 * warp) << on.name;
+      EXPECT_NEAR(yieldMoment(on.mesh, friction, Vector3d::UnitX()), weft, 1e-6 * weft) << on.name;
+      EXPECT_NEAR(yieldMoment(on.mesh, friction, Vector3d::UnitY()), warp, 1e-6 * warp) << on.name;
       // In between: cos^2 of the one and sin^2 of the other, and twist meets nothing.
       const double oblique = 0.75 * weft + 0.25 * warp, root = std::sqrt(0.1875);
-      EXPECT_NEAR(yieldMoment(on.mesh, bending, {0.75, 0.25, root}), oblique, 1e-6 * oblique);
-      EXPECT_NEAR(yieldMoment(on.mesh, bending, Vector3d::UnitZ()), 0.0, 1e-6 * weft);
+      EXPECT_NEAR(yieldMoment(on.mesh, friction, {0.75, 0.25, root}), oblique, 1e-6 * oblique);
+      EXPECT_NEAR(yieldMoment(on.mesh, friction, Vector3d::UnitZ()), 0.0, 1e-6 * weft);
     }
   }
 }
@@ -110,20 +115,20 @@ TEST(BendingFriction, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce)
     limp.bending_hysteresis = kHysteresis;
     const Cloth cloth(square(4), limp, hysteresis(model));
     ClothState state = randomState(cloth, 2e-3, 0.0);
-    cloth.forgetBending(state);
+    cloth.forget(state);
     std::mt19937 random(2);
     std::normal_distribution<double> normal(0.0, 8e-4);
     for (Vector3d& place : state.positions) {
       place += Vector3d(normal(random), normal(random), normal(random));
     }
     ClothState followed = state;
-    cloth.yieldBending(followed);
+    cloth.remember(followed);
     int yielding = 0;
-    for (std::size_t i = 0; i < state.plastic_bends.size(); ++i) {
-      yielding += followed.plastic_bends[i] != state.plastic_bends[i];
+    for (std::size_t i = 0; i < state.memory.size(); ++i) {
+      yielding += followed.memory[i] != state.memory[i];
     }
     ASSERT_GT(yielding, 3);
-    ASSERT_LT(yielding, static_cast<int>(state.plastic_bends.size()) - 3);
+    ASSERT_LT(yielding, static_cast<int>(state.memory.size()) - 3);
     expectExactDerivatives(cloth, state, {0, 7, 12});
   }
 }
@@ -133,8 +138,8 @@ TEST(BendingFriction, YieldingTakesEnergyOutAndLeavesTheForces) {
   ClothState state = cloth.initialState();
   state.positions = randomState(cloth, 2e-3, 0.0).positions;
   const ClothState before = state;
-  cloth.yieldBending(state);
-  ASSERT_NE(state.plastic_bends, before.plastic_bends);
+  cloth.remember(state);
+  ASSERT_NE(state.memory, before.memory);
   EXPECT_LT(cloth.potentialEnergy(state), cloth.potentialEnergy(before));
   std::vector<Vector3d> forces, forces_before;
   cloth.computeForces(state, forces);
@@ -145,9 +150,9 @@ TEST(BendingFriction, YieldingTakesEnergyOutAndLeavesTheForces) {
     EXPECT_LT((forces[i] - forces_before[i]).norm(), 1e-12 * scale);
   }
   const ClothState once = state;
-  cloth.yieldBending(state);  // what has yielded does not again, but for rounding
-  for (std::size_t i = 0; i < once.plastic_bends.size(); ++i) {
-    EXPECT_NEAR(state.plastic_bends[i], once.plastic_bends[i], 1e-15);
+  cloth.remember(state);  // what has yielded does not again, but for rounding
+  for (std::size_t i = 0; i < once.memory.size(); ++i) {
+    EXPECT_NEAR(state.memory[i], once.memory[i], 1e-15);
   }
 }
 
@@ -166,7 +171,7 @@ struct FreeStrip {
       state.positions[i] = {std::sin(angle) / curvature, rest.y(),
                             (1.0 - std::cos(angle)) / curvature};
     }
-    cloth.yieldBending(state);
+    cloth.remember(state);
   }
   double energy() const { return cloth.potentialEnergy(state) + cloth.kineticEnergy(state); }
   /// 1/m, of the circle through the ends and the middle of a side.
@@ -249,7 +254,7 @@ TEST(BendingFriction, ARejectedStepLeavesThePastAlone) {
   strip.cloth.setExternalForce(3, Vector3d::Constant(std::numeric_limits<double>::max()));
   Integrator integrator(strip.cloth, StepSettings());
   EXPECT_FALSE(integrator.step(strip.cloth, strip.state, 0.01).accepted);
-  EXPECT_EQ(strip.state.plastic_bends, before.plastic_bends);
+  EXPECT_EQ(strip.state.memory, before.memory);
   EXPECT_EQ(strip.state.positions, before.positions);
 }
 
@@ -262,9 +267,8 @@ TEST(BendingFriction, AnotherFabricHasNoPast) {
   EXPECT_THROW(strip.cloth.computeForces(strip.state, forces), std::invalid_argument);
   Integrator integrator(strip.cloth, StepSettings());
   EXPECT_THROW(integrator.step(strip.cloth, strip.state, 0.01), std::invalid_argument);
-  strip.cloth.forgetBending(strip.state);
-  EXPECT_EQ(strip.cloth.bendingFriction()->energy(strip.state.positions, strip.state.plastic_bends),
-            0.0);
+  strip.cloth.forget(strip.state);
+  EXPECT_EQ(strip.cloth.forces().find<BendingFriction>()->energy(strip.state.ofForces()), 0.0);
   EXPECT_TRUE(integrator.step(strip.cloth, strip.state, 0.01).accepted);
 }
 
@@ -272,11 +276,11 @@ TEST(BendingFriction, ThatIsNotModelledIsNotThere) {
   ModelledEffects elastic = hysteresis();
   elastic.bending_hysteresis = false;
   const Cloth cloth(square(4), frictionFabric(), elastic);
-  EXPECT_EQ(cloth.bendingFriction(), nullptr);
-  EXPECT_TRUE(cloth.initialState().plastic_bends.empty());
+  EXPECT_EQ(cloth.forces().find<BendingFriction>(), nullptr);
+  EXPECT_TRUE(cloth.initialState().memory.empty());
   material::Fabric smooth = frictionFabric();
   smooth.bending_hysteresis = {0.0, 0.0};
-  EXPECT_EQ(Cloth(square(4), smooth, hysteresis()).bendingFriction(), nullptr);
+  EXPECT_EQ(Cloth(square(4), smooth, hysteresis()).forces().find<BendingFriction>(), nullptr);
 }
 
 std::string refusal(const material::Fabric& fabric, const ModelledEffects& effects) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fixtures.h"
+#include "force_fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/contraction.h"
 
@@ -92,7 +93,7 @@ struct System {
   System(const Cloth& cloth, const ClothState& state, const StageTimes& times)
       : matrix(cloth.pattern()), rhs(linear::BlockVector::Zero(3, cloth.particleCount())) {
     matrix.setZero();
-    cloth.membrane().addStep(state.positions, state.velocities, times, matrix, rhs);
+    membraneOf(cloth).assembleLinearised(state.ofForces(), times, matrix, rhs);
   }
   linear::SymmetricBlockMatrix matrix;
   linear::BlockVector rhs;
@@ -112,9 +113,9 @@ TEST(Contraction, BatchesAddWhatTrianglesAloneAdd) {
         for (const std::array<int, 3>& triangle : cloth.mesh().triangles) {
           mesh::ClothMesh one = cloth.mesh();
           one.triangles = {triangle};
-          Membrane membrane(one, fabric, viscosity, true);
+          Membrane membrane(restElements(one), fabric, viscosity, true);
           membrane.bind(matrix);
-          membrane.addStep(state.positions, state.velocities, times, matrix, rhs);
+          membrane.assembleLinearised(state.ofForces(), times, matrix, rhs);
         }
         EXPECT_LT((dense(batched.matrix) - dense(matrix)).norm(), 1e-13 * dense(matrix).norm());
         EXPECT_LT((batched.rhs - rhs).norm(), 1e-13 * rhs.norm());
@@ -137,14 +138,13 @@ TEST(Contraction, TheStepsMatrixIsSemidefiniteWhateverTheTangentIs) {
     linear::SymmetricBlockMatrix exact = cloth.pattern();
     exact.setZero();
     linear::BlockVector rhs = linear::BlockVector::Zero(3, cloth.particleCount());
-    std::vector<MembraneStrain> strains;
-    cloth.membrane().computeStrains(state.positions, strains);
-    cloth.membrane().addNewton(state.positions, strains, 0.01, Membrane::Hessian::kExact, exact,
-                               rhs);
+    const auto strains = heldSince(membraneOf(cloth), state.positions);
+    membraneOf(cloth).assembleNewton(state.ofForces(), strains.data(), 0.01, Hessian::kExact, exact,
+                                     rhs);
     indefinite += least(dense(exact)) < -1e-3;
     exact.setZero();
-    cloth.membrane().addNewton(state.positions, strains, 0.01, Membrane::Hessian::kProjected, exact,
-                               rhs);
+    membraneOf(cloth).assembleNewton(state.ofForces(), strains.data(), 0.01, Hessian::kProjected,
+                                     exact, rhs);
     EXPECT_GT(least(dense(exact)), -1e-13);
   }
   EXPECT_GT(indefinite, 5);

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "elasticity_fixtures.h"
+#include "force_fixtures.h"
 #include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth {
@@ -178,12 +179,10 @@ TEST_P(EveryElasticity, StepMatrixIsPositiveSemidefiniteForEveryState) {
       for (Vector3d& position : state.positions) position *= 0.3;
     }
     System step(cloth), newton(cloth);
-    cloth.addStep(state.positions, state.velocities, state.plastic_bends, {0.0125, 0.0125},
-                  step.matrix, step.rhs);
-    std::vector<MembraneStrain> strains;
-    cloth.computeStrains(cloth.initialState().positions, strains);
-    cloth.addNewton(state.positions, state.velocities, state.plastic_bends, strains, FixedAir(),
-                    0.0125, Membrane::Hessian::kProjected, newton.matrix, newton.rhs);
+    cloth.forces().assembleLinearised(state.ofForces(), {0.0125, 0.0125}, step.matrix, step.rhs);
+    const auto held = heldSince(cloth.forces(), cloth.initialState().positions);
+    cloth.forces().assembleNewton(state.ofForces(), held.data(), 0.0125, Hessian::kProjected,
+                                  newton.matrix, newton.rhs);
     for (const System* system : {&step, &newton}) {
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(dense(system->matrix));
       EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-13 * eigen.eigenvalues().maxCoeff());
@@ -200,8 +199,7 @@ TEST_P(EveryElasticity, StepIsTheExactLinearisationInTension) {
     ClothState state = randomState(cloth, 1e-5, viscosity ? 0.0 : 1.0);
     for (Vector3d& position : state.positions) position *= 1.06;
     System system(cloth);
-    cloth.addStep(state.positions, state.velocities, state.plastic_bends, {h, h}, system.matrix,
-                  system.rhs);
+    cloth.forces().assembleLinearised(state.ofForces(), {h, h}, system.matrix, system.rhs);
     const Eigen::MatrixXd assembled = dense(system.matrix);
     linear::BlockVector rhs(3, cloth.particleCount());
     const std::vector<Vector3d> forces = forcesOf(cloth, state);
@@ -220,14 +218,12 @@ TEST_P(EveryElasticity, NewtonsGradientAndHessianAreThoseOfTheIncrementalPotenti
   const Cloth cloth = clothOf(GetParam(), true);
   ClothState state = randomState(cloth, 0.004, 0.5);
   const double h = 0.01;
-  std::vector<MembraneStrain> begin;
-  cloth.computeStrainsBefore(state.positions, state.velocities, h, begin);
-  ASSERT_EQ(begin.size(), cloth.strainCount());
+  const auto begin = heldBefore(cloth.forces(), state.ofForces(), h);
   for (Vector3d& position : state.positions) position += 1e-4 * Vector3d(0.3, position.y() * 20, 1);
   const auto systemAt = [&](const ClothState& at) {
     System system(cloth);
-    cloth.addNewton(at.positions, at.velocities, at.plastic_bends, begin, FixedAir(), h,
-                    Membrane::Hessian::kExact, system.matrix, system.rhs);
+    cloth.forces().assembleNewton(at.ofForces(), begin.data(), h, Hessian::kExact, system.matrix,
+                                  system.rhs);
     return system;
   };
   const System system = systemAt(state);
@@ -238,11 +234,10 @@ TEST_P(EveryElasticity, NewtonsGradientAndHessianAreThoseOfTheIncrementalPotenti
       ClothState above = state, below = state;
       above.positions[particle][axis] += kStep;
       below.positions[particle][axis] -= kStep;
-      const double slope = (cloth.incrementalPotential(above.positions, above.velocities,
-                                                       above.plastic_bends, begin, FixedAir(), h) -
-                            cloth.incrementalPotential(below.positions, below.velocities,
-                                                       below.plastic_bends, begin, FixedAir(), h)) /
-                           (2.0 * kStep);
+      const auto potential = [&](const ClothState& at) {
+        return cloth.forces().incrementalPotential(at.ofForces(), begin.data(), h);
+      };
+      const double slope = (potential(above) - potential(below)) / (2.0 * kStep);
       EXPECT_NEAR(system.rhs(axis, particle), -h * slope, 1e-6 * system.rhs.norm());
       const Eigen::VectorXd column =
           -h * (stacked(systemAt(above).rhs) - stacked(systemAt(below).rhs)) / (2.0 * kStep);
@@ -259,9 +254,9 @@ TEST_P(EveryElasticity, StrainsBeforeGoBackAtThePresentRate) {
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     earlier.positions[i] -= kInterval * state.velocities[i];
   }
-  std::vector<MembraneStrain> before, exact;
-  cloth.computeStrainsBefore(state.positions, state.velocities, kInterval, before);
-  cloth.computeStrains(earlier.positions, exact);
+  const Force& elastic = elasticityOf(cloth);
+  const auto before = heldBefore(elastic, state.ofForces(), kInterval);
+  const auto exact = heldSince(elastic, earlier.positions);
   for (std::size_t t = 0; t + 1 < before.size(); ++t) {  // the last may have unused entries
     EXPECT_LT((before[t] - exact[t]).norm(), 1e-7);      // (speed interval / cell)^2
   }
@@ -279,8 +274,7 @@ TEST_P(EveryElasticity, CollapsedClothHasFiniteForcesAndSteps) {
     }
     for (const Vector3d& force : forcesOf(cloth, state)) EXPECT_TRUE(force.allFinite());
     System system(cloth);
-    cloth.addStep(state.positions, state.velocities, state.plastic_bends, {0.01, 0.01},
-                  system.matrix, system.rhs);
+    cloth.forces().assembleLinearised(state.ofForces(), {0.01, 0.01}, system.matrix, system.rhs);
     EXPECT_TRUE(dense(system.matrix).allFinite());
     EXPECT_TRUE(system.rhs.allFinite());
   }

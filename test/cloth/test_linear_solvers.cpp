@@ -239,8 +239,7 @@ class FoldedSystem {
     for (int i = 0; i < matrix_.size(); ++i) {
       matrix_.diagonal(i).diagonal().setConstant(cloth_.masses()[i]);
     }
-    cloth_.addStep(state.positions, state.velocities, state.plastic_bends, {0.0125, 0.0125, 0.0},
-                   matrix_, rhs);
+    cloth_.forces().assembleLinearised(state.ofForces(), {0.0125, 0.0125}, matrix_, rhs);
   }
   const linear::SymmetricBlockMatrix& matrix() const { return matrix_; }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "fixtures.h"
+#include "force_fixtures.h"
 #include "haptex/cloth/forces/membrane.h"
 #include "membrane_fixtures.h"
 
@@ -24,7 +25,7 @@ ModelledEffects viscous() {
 
 std::vector<Vector3d> membraneForces(const Cloth& cloth, const ClothState& state) {
   std::vector<Vector3d> forces(cloth.particleCount(), Vector3d::Zero());
-  cloth.membrane().addForces(state.positions, state.velocities, forces);
+  membraneOf(cloth).addForces(state.ofForces(), forces);
   return forces;
 }
 
@@ -32,7 +33,7 @@ TEST(Membrane, RestHasNoForceAndNoEnergy) {
   const Cloth cloth(square(5), stiffeningFabric(), viscous());
   const ClothState state = cloth.initialState();
   for (const Vector3d& force : membraneForces(cloth, state)) EXPECT_LT(force.norm(), 1e-13);
-  EXPECT_LT(cloth.membrane().elasticEnergy(state.positions), 1e-25);
+  EXPECT_LT(membraneOf(cloth).energy(state.ofForces()), 1e-25);
 }
 
 TEST(Membrane, RigidMotionHasNoForce) {
@@ -58,9 +59,9 @@ TEST(Membrane, ElasticForceIsTheNegativeGradientOfTheEnergy) {
     for (int axis = 0; axis < 3; ++axis) {
       const double middle = state.positions[i][axis];
       state.positions[i][axis] = middle + step;
-      const double above = cloth.membrane().elasticEnergy(state.positions);
+      const double above = membraneOf(cloth).energy(state.ofForces());
       state.positions[i][axis] = middle - step;
-      const double below = cloth.membrane().elasticEnergy(state.positions);
+      const double below = membraneOf(cloth).energy(state.ofForces());
       state.positions[i][axis] = middle;
       EXPECT_NEAR(forces[i][axis], -(above - below) / (2.0 * step), 1e-7);  // forces near 1 N
     }
@@ -143,8 +144,8 @@ TEST(Membrane, StepMatrixIsPositiveSemidefiniteForEveryState) {
       for (Vector3d& position : state.positions) position *= 0.3;
     }
     MembraneSystem system(cloth);
-    cloth.membrane().addStep(state.positions, state.velocities, {0.0125, 0.0125}, system.matrix,
-                             system.rhs);
+    membraneOf(cloth).assembleLinearised(state.ofForces(), {0.0125, 0.0125}, system.matrix,
+                                         system.rhs);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(dense(system.matrix));
     EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-13 * eigen.eigenvalues().maxCoeff());
   }
@@ -158,7 +159,7 @@ TEST(Membrane, StepMatrixIsTheExactJacobianWhereNothingNeedsProjection) {
   for (Vector3d& position : state.positions) position *= 1.06;
   const double h = 0.01;
   MembraneSystem system(cloth);
-  cloth.membrane().addStep(state.positions, state.velocities, {h, h}, system.matrix, system.rhs);
+  membraneOf(cloth).assembleLinearised(state.ofForces(), {h, h}, system.matrix, system.rhs);
   const Eigen::MatrixXd assembled = dense(system.matrix);
   std::vector<int> particles(cloth.particleCount());
   for (std::size_t i = 0; i < particles.size(); ++i) particles[i] = static_cast<int>(i);
@@ -180,7 +181,7 @@ TEST_P(StepRightHandSide, IsForceAndElasticStiffnessTimesVelocity) {
   for (Vector3d& position : state.positions) position *= 1.06;
   const double h = 0.01;
   MembraneSystem system(cloth);
-  cloth.membrane().addStep(state.positions, state.velocities, {h, h}, system.matrix, system.rhs);
+  membraneOf(cloth).assembleLinearised(state.ofForces(), {h, h}, system.matrix, system.rhs);
   linear::BlockVector velocity(3, cloth.particleCount()),
       stiffness_times_velocity(3, cloth.particleCount());
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) velocity.col(i) = state.velocities[i];
@@ -203,9 +204,8 @@ TEST(Membrane, TheWayAheadAddsTheMatrixTimesTheVelocities) {
   const ClothState state = randomState(cloth, 0.003, 3.0);
   const double a = 0.002, ahead = 0.003;
   MembraneSystem there(cloth), ahead_of(cloth);
-  cloth.membrane().addStep(state.positions, state.velocities, {a, 0.0}, there.matrix, there.rhs);
-  cloth.membrane().addStep(state.positions, state.velocities, {a, ahead}, ahead_of.matrix,
-                           ahead_of.rhs);
+  membraneOf(cloth).assembleLinearised(state.ofForces(), {a, 0.0}, there.matrix, there.rhs);
+  membraneOf(cloth).assembleLinearised(state.ofForces(), {a, ahead}, ahead_of.matrix, ahead_of.rhs);
   linear::BlockVector velocities(3, cloth.particleCount()), product(3, cloth.particleCount());
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) velocities.col(i) = state.velocities[i];
   there.matrix.multiply(velocities, product);
@@ -217,19 +217,19 @@ TEST(Membrane, TheWayAheadAddsTheMatrixTimesTheVelocities) {
 TEST(Membrane, NewtonGradientIsThatOfTheIncrementalPotential) {
   const Cloth cloth(square(2), stiffeningFabric(), viscous());
   const double h = 0.01;
-  std::vector<MembraneStrain> begin_strains;
-  cloth.membrane().computeStrains(randomState(cloth, 0.001, 0.0, 9).positions, begin_strains);
+  const auto begin_strains =
+      heldSince(membraneOf(cloth), randomState(cloth, 0.001, 0.0, 9).positions);
   ClothState state = randomState(cloth, 0.002, 0.0, 4);
   MembraneSystem system(cloth);
-  cloth.membrane().addNewton(state.positions, begin_strains, h, Membrane::Hessian::kProjected,
-                             system.matrix, system.rhs);
+  membraneOf(cloth).assembleNewton(state.ofForces(), begin_strains.data(), h, Hessian::kProjected,
+                                   system.matrix, system.rhs);
   const double step = 1e-7;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       const double middle = state.positions[i][axis];
       const auto potential = [&](double coordinate) {
         state.positions[i][axis] = coordinate;
-        return cloth.membrane().incrementalPotential(state.positions, begin_strains, h);
+        return membraneOf(cloth).incrementalPotential(state.ofForces(), begin_strains.data(), h);
       };
       const double gradient = (potential(middle + step) - potential(middle - step)) / (2.0 * step);
       state.positions[i][axis] = middle;
@@ -241,13 +241,13 @@ TEST(Membrane, NewtonGradientIsThatOfTheIncrementalPotential) {
 TEST(Membrane, ExactNewtonHessianIsTheDerivativeOfItsGradient) {
   const Cloth cloth(square(2), stiffeningFabric(), viscous());
   const double h = 0.01, step = 1e-8;
-  std::vector<MembraneStrain> begin_strains;
-  cloth.membrane().computeStrains(randomState(cloth, 0.001, 0.0, 9).positions, begin_strains);
+  const auto begin_strains =
+      heldSince(membraneOf(cloth), randomState(cloth, 0.001, 0.0, 9).positions);
   ClothState state = randomState(cloth, 0.002, 0.0, 4);
   const auto system = [&] {
     MembraneSystem result(cloth);
-    cloth.membrane().addNewton(state.positions, begin_strains, h, Membrane::Hessian::kExact,
-                               result.matrix, result.rhs);
+    membraneOf(cloth).assembleNewton(state.ofForces(), begin_strains.data(), h, Hessian::kExact,
+                                     result.matrix, result.rhs);
     return result;
   };
   const Eigen::MatrixXd hessian = dense(system().matrix);
@@ -268,16 +268,15 @@ TEST(Membrane, ExactNewtonHessianIsTheDerivativeOfItsGradient) {
 
 TEST(Membrane, NewtonFeelsNoViscosityInARigidRotation) {
   const Cloth cloth(square(3), stiffeningFabric(), viscous());
-  std::vector<MembraneStrain> begin_strains;
   const ClothState state = cloth.initialState();
-  cloth.membrane().computeStrains(state.positions, begin_strains);
+  const auto begin_strains = heldSince(membraneOf(cloth), state.positions);
   Positions turned = state.positions;
   for (Vector3d& position : turned) {
     position = Eigen::AngleAxisd(1.5, Vector3d::UnitX()) * position;
   }
   MembraneSystem system(cloth);
-  cloth.membrane().addNewton(turned, begin_strains, 0.01, Membrane::Hessian::kProjected,
-                             system.matrix, system.rhs);
+  membraneOf(cloth).assembleNewton(resting(turned), begin_strains.data(), 0.01, Hessian::kProjected,
+                                   system.matrix, system.rhs);
   EXPECT_LT(system.rhs.cwiseAbs().maxCoeff(), 1e-13);
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "fixtures.h"
+#include "force_fixtures.h"
 #include "haptex/cloth/forces/membrane.h"
 #include "membrane_fixtures.h"
 
@@ -23,7 +24,8 @@ MembraneSystem sumOfEachAlone(
   for (std::size_t t = 0; t < cloth.mesh().triangles.size(); ++t) {
     mesh::ClothMesh mesh = cloth.mesh();
     mesh.triangles = {mesh.triangles[t]};
-    const Membrane membrane(mesh, fabric, cloth.effects().viscosity, cloth.effects().contraction);
+    const Membrane membrane(restElements(mesh), fabric, cloth.effects().viscosity,
+                            cloth.effects().contraction);
     linear::SymmetricBlockMatrix matrix(sum.matrix.size(), mesh.triangles);
     add(membrane, t, matrix, sum.rhs);
     for (int i = 0; i < matrix.size(); ++i) {
@@ -56,10 +58,10 @@ TEST_P(StepInBatches, IsTheSumOfTheStepsOfTheTrianglesAlone) {
           sumOfEachAlone(cloth, stiffeningFabric(),
                          [&](const Membrane& membrane, std::size_t,
                              linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) {
-                           membrane.addStep(state.positions, state.velocities, times, matrix, rhs);
+                           membrane.assembleLinearised(state.ofForces(), times, matrix, rhs);
                          });
       MembraneSystem system(cloth);
-      cloth.membrane().addStep(state.positions, state.velocities, times, system.matrix, system.rhs);
+      membraneOf(cloth).assembleLinearised(state.ofForces(), times, system.matrix, system.rhs);
       // The sums have the same order; what differs is the rounding within an element.
       EXPECT_LT((dense(system.matrix) - dense(exact.matrix)).norm(),
                 1e-13 * dense(exact.matrix).norm());
@@ -78,31 +80,31 @@ TEST_P(StepInBatches, HasTheNewtonSystemAndThePotentialOfTheTrianglesAlone) {
     effects.contraction = contraction > 0.0;
     for (int cells : {3, 4, 5}) {
       const Cloth cloth(square(cells), fabric, effects);
-      const Membrane& membrane = cloth.membrane();
+      const Membrane& membrane = membraneOf(cloth);
       for (unsigned seed = 1; seed <= 8; ++seed) {
         ClothState state = randomState(cloth, seed % 3 == 0 ? 0.03 : 0.003, 3.0, seed);
         if (seed % 2 == 0) {
           for (Vector3d& position : state.positions) position *= 0.7;
         }
-        std::vector<MembraneStrain> begin;
-        membrane.computeStrainsBefore(state.positions, state.velocities, kStep, begin);
+        const auto begin = heldBefore(membrane, state.ofForces(), kStep);
         double potential = 0.0;
-        for (const auto hessian : {Membrane::Hessian::kExact, Membrane::Hessian::kProjected}) {
+        for (const auto hessian : {Hessian::kExact, Hessian::kProjected}) {
           potential = 0.0;
           const MembraneSystem exact = sumOfEachAlone(
               cloth, fabric,
               [&](const Membrane& one, std::size_t t, linear::SymmetricBlockMatrix& matrix,
                   linear::BlockVector& rhs) {
-                one.addNewton(state.positions, {begin[t]}, kStep, hessian, matrix, rhs);
-                potential += one.incrementalPotential(state.positions, {begin[t]}, kStep);
+                one.assembleNewton(state.ofForces(), &begin[t], kStep, hessian, matrix, rhs);
+                potential += one.incrementalPotential(state.ofForces(), &begin[t], kStep);
               });
           MembraneSystem system(cloth);
-          membrane.addNewton(state.positions, begin, kStep, hessian, system.matrix, system.rhs);
+          membrane.assembleNewton(state.ofForces(), begin.data(), kStep, hessian, system.matrix,
+                                  system.rhs);
           EXPECT_LT((dense(system.matrix) - dense(exact.matrix)).norm(),
                     1e-13 * dense(exact.matrix).norm());
           EXPECT_LT((system.rhs - exact.rhs).norm(), 1e-13 * exact.rhs.norm());
         }
-        EXPECT_NEAR(membrane.incrementalPotential(state.positions, begin, kStep), potential,
+        EXPECT_NEAR(membrane.incrementalPotential(state.ofForces(), begin.data(), kStep), potential,
                     1e-13 * std::abs(potential));
       }
     }
@@ -115,10 +117,8 @@ TEST_P(StepInBatches, IsExactlyTheSameEveryTime) {
   const Cloth cloth(square(5), stiffeningFabric(), effects);
   const ClothState state = randomState(cloth, 0.01, 1.0);
   MembraneSystem first(cloth), second(cloth);
-  cloth.membrane().addStep(state.positions, state.velocities, {0.001, 0.001}, first.matrix,
-                           first.rhs);
-  cloth.membrane().addStep(state.positions, state.velocities, {0.001, 0.001}, second.matrix,
-                           second.rhs);
+  membraneOf(cloth).assembleLinearised(state.ofForces(), {0.001, 0.001}, first.matrix, first.rhs);
+  membraneOf(cloth).assembleLinearised(state.ofForces(), {0.001, 0.001}, second.matrix, second.rhs);
   EXPECT_EQ(dense(first.matrix), dense(second.matrix));
   EXPECT_EQ(first.rhs, second.rhs);
 }
@@ -135,17 +135,18 @@ TEST_P(StepInBatches, HidesNoNumberThatIsNotFinite) {
           ClothState state = randomState(cloth, 1e-3, 0.1);
           (moving ? state.velocities : state.positions)[particle][axis] = bad;
           MembraneSystem system(cloth);
-          cloth.membrane().addStep(state.positions, state.velocities, {0.001, 0.001}, system.matrix,
-                                   system.rhs);
+          membraneOf(cloth).assembleLinearised(state.ofForces(), {0.001, 0.001}, system.matrix,
+                                               system.rhs);
           EXPECT_FALSE(system.rhs.allFinite());
           if (moving) continue;
-          const std::vector<MembraneStrain> begin(cloth.strainCount(), MembraneStrain::Zero());
+          const std::vector<MembraneStrain> begin(cloth.mesh().triangles.size(),
+                                                  MembraneStrain::Zero());
           MembraneSystem newton(cloth);
-          cloth.membrane().addNewton(state.positions, begin, 0.001, Membrane::Hessian::kProjected,
-                                     newton.matrix, newton.rhs);
+          membraneOf(cloth).assembleNewton(state.ofForces(), begin.data(), 0.001,
+                                           Hessian::kProjected, newton.matrix, newton.rhs);
           EXPECT_FALSE(newton.rhs.allFinite());
-          EXPECT_FALSE(
-              std::isfinite(cloth.membrane().incrementalPotential(state.positions, begin, 0.001)));
+          EXPECT_FALSE(std::isfinite(
+              membraneOf(cloth).incrementalPotential(state.ofForces(), begin.data(), 0.001)));
         }
       }
     }

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "fixtures.h"
+#include "force_fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
 namespace haptex::cloth {
@@ -95,11 +96,11 @@ TEST(PointLoads, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce) {
   const std::vector<JacobianBlock> bare = cloth.jacobian(state, all);
   std::vector<Vector3d> bare_forces, forces, beyond, before;
   const auto loadEnergy = [&](const ClothState& at) {
-    return pointLoadEnergy(cloth.pointLoads(), cloth.mesh().triangles, at.positions);
+    return cloth.forces().find<PointLoads>()->energy(at.ofForces());
   };
   const auto loadForces = [&](const ClothState& at, std::vector<Vector3d>& result) {
     result.assign(cloth.particleCount(), Vector3d::Zero());
-    addPointForces(cloth.pointLoads(), cloth.mesh().triangles, at.positions, result);
+    cloth.forces().find<PointLoads>()->addForces(at.ofForces(), result);
   };
   cloth.computeForces(state, bare_forces);
   const double bare_energy = cloth.potentialEnergy(state);
@@ -279,8 +280,8 @@ TEST(PointLoads, AreRefusedByIndexAndReasonAndThenTheOldOnesStay) {
   const auto expectRefused = [&](const PointLoad& bad, const std::string& expected) {
     const std::string message = refusal(cloth, {load(0), bad});
     EXPECT_NE(message.find("point load 1: " + expected), std::string::npos) << message;
-    ASSERT_EQ(cloth.pointLoads().size(), 1u);
-    EXPECT_EQ(cloth.pointLoads()[0].triangle, 3);
+    ASSERT_EQ(loadsOf(cloth).size(), 1u);
+    EXPECT_EQ(loadsOf(cloth)[0].triangle, 3);
   };
   expectRefused(load(8), "triangle 8 does not exist; the cloth has triangles 0 to 7");
   expectRefused(load(-1), "triangle -1 does not exist");
@@ -309,10 +310,10 @@ TEST(PointLoads, AreRefusedByIndexAndReasonAndThenTheOldOnesStay) {
   const std::string message =
       refusal(cloth, std::vector<PointLoad>(Cloth::kMostPointLoads + 1, load(0)));
   EXPECT_EQ(message, "there are 4097 point loads; allowed are 4096");
-  EXPECT_EQ(cloth.pointLoads().size(), 1u);
+  EXPECT_EQ(loadsOf(cloth).size(), 1u);
   EXPECT_EQ(refusal(cloth, std::vector<PointLoad>(Cloth::kMostPointLoads, load(0))), "accepted");
   EXPECT_EQ(refusal(cloth, {}), "accepted");
-  EXPECT_TRUE(cloth.pointLoads().empty());
+  EXPECT_TRUE(loadsOf(cloth).empty());
 }
 
 TEST(PointLoads, AreRefusedWhereNoneAreModelled) {
@@ -320,7 +321,7 @@ TEST(PointLoads, AreRefusedWhereNoneAreModelled) {
   EXPECT_EQ(refusal(cloth, {load(0)}),
             "the cloth is modelled without point loads; none can be set");
   EXPECT_EQ(refusal(cloth, {}), "accepted");
-  EXPECT_EQ(cloth.pointLoads().capacity(), 0u);
+  EXPECT_EQ(cloth.forces().find<PointLoads>(), nullptr);
 }
 
 TEST(PointLoads, KeepTheSystemDefiniteWithinTheTolerancesOfTheirStiffness) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "elasticity_fixtures.h"
+#include "force_fixtures.h"
 #include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth {
@@ -107,7 +108,8 @@ TEST(SpringLattice, BendSpringsDoNotResistTension) {
   ClothState state = with.initialState();
   for (Vector3d& position : state.positions) position *= 1.05;
   EXPECT_EQ(with.potentialEnergy(state), without.potentialEnergy(state));
-  EXPECT_GT(with.springs()->springs().size(), without.springs()->springs().size());
+  EXPECT_GT(with.forces().find<SpringLattice>()->springs().size(),
+            without.forces().find<SpringLattice>()->springs().size());
 }
 
 TEST(SpringLattice, HasTheSpringsOfItsCellsWithTheirShares) {
@@ -180,7 +182,7 @@ TEST(SpringLattice, NeedsARigidityForBendSprings) {
   EXPECT_THROW(latticeCloth(square(2), linearFabric(), true), std::invalid_argument);
   Cloth cloth = latticeCloth(square(2), fabricWithRigidity(), true);
   EXPECT_THROW(cloth.setFabric(linearFabric()), std::invalid_argument);
-  EXPECT_EQ(cloth.bending(), nullptr);
+  EXPECT_EQ(cloth.forces().find<Bending>(), nullptr);
 }
 
 }  // namespace

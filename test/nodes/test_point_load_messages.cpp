@@ -94,7 +94,7 @@ TEST(PointLoadMessages, WhatIsAcceptedTheClothAccepts) {
   ASSERT_TRUE(untouched.step());
   EXPECT_NE(simulation.state().positions, untouched.state().positions);
   simulation.reset();
-  EXPECT_TRUE(simulation.cloth().pointLoads().empty());
+  EXPECT_TRUE(simulation.cloth().forces().find<cloth::PointLoads>()->loads().empty());
 }
 
 TEST(StateMessage, NamesTheAttachedParticles) {

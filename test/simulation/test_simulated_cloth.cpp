@@ -117,19 +117,19 @@ TEST(SimulatedCloth, KeepsPositionsAndVelocitiesWhenTheFabricChanges) {
 // Friction remembers how the cloth was bent; another fabric and a reset do not.
 TEST(SimulatedCloth, AnotherFabricAndAResetForgetHowTheClothWasBent) {
   SimulatedCloth simulation = smallSimulation(true);
-  const cloth::PlasticBends flat = simulation.state().plastic_bends;
+  const std::vector<double> flat = simulation.state().memory;
   ASSERT_FALSE(flat.empty());
   simulation.move({kSmallTop}, {0.05, 0.1, 0.0}, 0.1);
   for (int i = 0; i < 40; ++i) ASSERT_TRUE(simulation.step());
-  EXPECT_NE(simulation.state().plastic_bends, flat);
+  EXPECT_NE(simulation.state().memory, flat);
   material::Fabric other = simulation.cloth().fabric();
   other.bending_hysteresis->warp = 0.0;  // fewer hinges with friction
   simulation.setFabric(other);
-  EXPECT_LT(simulation.state().plastic_bends.size(), flat.size());
+  EXPECT_LT(simulation.state().memory.size(), flat.size());
   ASSERT_TRUE(simulation.step());
   simulation.setFabric(smallSimulation(true).cloth().fabric());
   simulation.reset();
-  EXPECT_EQ(simulation.state().plastic_bends, flat);
+  EXPECT_EQ(simulation.state().memory, flat);
 }
 
 }  // namespace

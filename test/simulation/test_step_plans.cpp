@@ -24,7 +24,7 @@ double fastest(const cloth::ClothState& state) {
 void expectSame(const cloth::ClothState& state, const cloth::ClothState& other) {
   EXPECT_EQ(state.positions, other.positions);
   EXPECT_EQ(state.velocities, other.velocities);
-  EXPECT_EQ(state.plastic_bends, other.plastic_bends);
+  EXPECT_EQ(state.memory, other.memory);
   EXPECT_EQ(state.time, other.time);
 }
 
@@ -33,7 +33,7 @@ TEST(StepPlans, SubstepsAreThoseOfTheIntegratorByHand) {
     SimulatedCloth simulation = plannedSimulation();
     simulation.use(plan);
     const StepPlan by_hand = severalPlans()[plan];
-    cloth::Cloth cloth = simulation.cloth();
+    const cloth::Cloth& cloth = simulation.cloth();
     cloth::ClothState state = simulation.state();
     cloth::Integrator integrator(cloth, by_hand.step);
     const double substep = simulation.timeStep() / by_hand.substeps;
@@ -123,7 +123,7 @@ TEST(StepPlans, ARejectedSubstepTakesBackTheWholeStep) {
   fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(1e160);
   simulation.setFabric(fabric);
   const cloth::ClothState before = simulation.state();
-  cloth::Cloth cloth = simulation.cloth();
+  const cloth::Cloth& cloth = simulation.cloth();
   cloth::ClothState state = before;
   cloth::Integrator integrator(cloth, explicit_step);
   ASSERT_TRUE(integrator.step(cloth, state, 0.25 * simulation.timeStep()).accepted);

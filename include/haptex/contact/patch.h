@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
-#include "haptex/cloth/forces/bending.h"
-#include "haptex/cloth/forces/membrane.h"
+#include "haptex/cloth/forces/force_sum.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
 #include "haptex/contact/patch_solver.h"
@@ -81,12 +80,11 @@ class Patch {
   RefinedCut cut_;
   std::vector<std::array<int, 3>> corners_;  // per particle: those of its owner
   cloth::ModelledEffects effects_;
-  cloth::Membrane membrane_;
-  cloth::Bending bending_;
-  linear::SymmetricBlockMatrix matrix_;
-  PatchSolver solver_;
   std::vector<double> areas_;   // m^2, per particle
   std::vector<double> masses_;  // kg
+  cloth::ForceSum forces_;
+  linear::SymmetricBlockMatrix matrix_;
+  PatchSolver solver_;
 
   cloth::ClothState state_;
   std::vector<Eigen::Vector3d> predicted_;  // m

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "haptex/base/clock.h"
-#include "haptex/cloth/forces/point_load.h"
+#include "haptex/cloth/forces/point_loads.h"
 
 namespace haptex::simulation {
 

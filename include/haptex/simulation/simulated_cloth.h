@@ -133,6 +133,7 @@ class SimulatedCloth {
   void sleepIfResting();
 
   cloth::Cloth cloth_;
+  bool loaded_ = false;  // with point loads
   cloth::ClothState state_;
   cloth::ClothState before_;  // the step, if a plan has several substeps
   std::vector<StepPlan> plans_;

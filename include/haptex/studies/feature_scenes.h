@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "haptex/cloth/forces/point_load.h"
+#include "haptex/cloth/forces/point_loads.h"
 #include "haptex/material/fabric.h"
 #include "haptex/scene/scene.h"
 #include "haptex/simulation/step_cost.h"

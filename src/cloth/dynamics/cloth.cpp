@@ -23,58 +23,12 @@ void requireDensity(const material::Fabric& fabric) {
   }
 }
 
-const mesh::ClothMesh& requireSoundAndReturn(const mesh::ClothMesh& mesh) {
-  requireSound(mesh);
-  return mesh;
-}
-
-std::vector<double> lumpedMasses(const Membrane& membrane, std::size_t particles, double density) {
-  std::vector<double> masses(particles, 0.0);
-  for (const MembraneElement& element : membrane.elements()) {
+std::vector<double> lumpedMasses(const mesh::ClothMesh& mesh, double density) {
+  std::vector<double> masses(mesh.rest_coordinates.size(), 0.0);
+  for (const MembraneElement& element : restElements(mesh)) {
     for (int particle : element.particles) masses[particle] += density * element.area / 3.0;
   }
   return masses;
-}
-
-void requireHysteresis(const material::Fabric& fabric, const ModelledEffects& effects) {
-  if (!effects.bending) {
-    throw std::invalid_argument("hysteresis of bending is modelled and bending is not");
-  }
-  if (effects.elasticity == Elasticity::kMassSpring) {
-    throw std::invalid_argument(
-        "hysteresis of bending is modelled, which bend springs do not know");
-  }
-  if (!fabric.bending_hysteresis) {
-    throw std::invalid_argument("hysteresis of bending is modelled and fabric '" + fabric.name +
-                                "' has none: add the key hysteresis to bending");
-  }
-}
-
-const material::Fabric& requireModelled(const material::Fabric& fabric,
-                                        const ModelledEffects& effects) {
-  if (effects.contraction && effects.elasticity != Elasticity::kGreenLagrange) {
-    throw std::invalid_argument(
-        "contraction is modelled, which only Green-Lagrange elasticity knows");
-  }
-  if (effects.bending_hysteresis) requireHysteresis(fabric, effects);
-  if (effects.contraction && !fabric.contraction) {
-    throw std::invalid_argument("contraction is modelled and fabric '" + fabric.name +
-                                "' has none: add the key contraction");
-  }
-  return fabric;
-}
-
-/// Nothing if bending is not modelled, or by springs.
-std::optional<Bending> bendingOf(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
-                                 const ModelledEffects& effects) {
-  if (!effects.bending) return std::nullopt;
-  if (!fabric.bending) {
-    throw std::invalid_argument("bending is modelled and fabric '" + fabric.name +
-                                "' has no bending rigidity: add the key bending");
-  }
-  if (effects.elasticity == Elasticity::kMassSpring) return std::nullopt;
-  return Bending(mesh, *fabric.bending, effects.bending_settings,
-                 effects.bending_hysteresis ? fabric.bending_hysteresis : std::nullopt);
 }
 
 }  // namespace
@@ -95,80 +49,94 @@ Eigen::Vector3d AttachmentPath::velocity(double time) const {
 Cloth::Cloth(mesh::ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects)
     : revision_(nextRevision()),
       mesh_(std::move(mesh)),
-      fabric_(std::move(fabric)),
       effects_(effects),
-      membrane_(requireSoundAndReturn(mesh_), requireModelled(fabric_, effects), effects.viscosity,
-                effects.contraction),
-      bending_(bendingOf(mesh_, fabric_, effects)),
-      air_(effects.air ? std::optional<Aerodynamics>(*effects.air) : std::nullopt),
-      external_forces_(mesh_.rest_coordinates.size(), Eigen::Vector3d::Zero()),
       attachments_(mesh_.rest_coordinates.size()) {
-  requireDensity(fabric_);
-  if (!effects.gravity.allFinite()) {
-    throw std::invalid_argument("gravity has a component that is not finite");
-  }
-  masses_ = lumpedMasses(membrane_, mesh_.rest_coordinates.size(), fabric_.areal_density);
-  if (effects.elasticity == Elasticity::kMassSpring) {
-    springs_.emplace(mesh_, fabric_, effects.viscosity, effects.bending);
-  }
-  bindPattern();
-  if (effects.point_loads) point_loads_.reserve(kMostPointLoads);
+  requireSound(mesh_);
+  takeFabric(std::move(fabric));
   if (!effects.contacts) return;
   contacts_.reserve(particleCount());
   touched_.resize(particleCount());
 }
 
-linear::SymmetricBlockMatrix Cloth::pattern() const {
-  const int count = static_cast<int>(particleCount());
-  if (springs_) return {count, mesh_.triangles, springs_->pairs()};
-  if (!bending_) return {count, mesh_.triangles};
-  return {count, mesh_.triangles, bending_->pairs()};
+/// Makes all that depends on the fabric; user-defined forces and point loads stay.
+void Cloth::takeFabric(material::Fabric fabric) {
+  requireDensity(fabric);
+  std::vector<double> masses = lumpedMasses(mesh_, fabric.areal_density);
+  auto forces = std::make_unique<ForceSum>();
+  auto constant = std::make_unique<ConstantForces>(masses, effects_.gravity);
+  if (constant_ != nullptr) constant->copyUserForces(*constant_);
+  ConstantForces& added = forces->add(std::move(constant));
+  addFabricForces(mesh_, fabric, effects_, *forces);
+  PointLoads* loads = nullptr;
+  if (effects_.point_loads) loads = &forces->add(std::make_unique<PointLoads>(mesh_));
+  if (point_loads_ != nullptr) loads->set(point_loads_->loads());
+  const linear::SymmetricBlockMatrix matrix(static_cast<int>(masses.size()), mesh_.triangles,
+                                            forces->pairs());
+  forces->bind(matrix);
+  // Nothing throws from here on.
+  pattern_size_ = matrix.lowerCount();
+  fabric_ = std::move(fabric);
+  masses_ = std::move(masses);
+  forces_ = std::move(forces);
+  constant_ = &added;
+  point_loads_ = loads;
 }
 
-/// Makes what has slots in the matrix anew for the present fabric and pattern.
-void Cloth::bindPattern() {
-  if (bending_ || springs_) {
-    const linear::SymmetricBlockMatrix matrix = pattern();
-    membrane_.bind(matrix);
-    if (bending_) bending_->bind(matrix);
-    if (springs_) springs_->bind(matrix);
-  }
-  if (effects_.elasticity == Elasticity::kCorotational) {
-    corotational_.emplace(membrane_.elements(), fabric_, effects_.viscosity);
-  }
+linear::SymmetricBlockMatrix Cloth::pattern() const {
+  return {static_cast<int>(particleCount()), mesh_.triangles, forces_->pairs()};
 }
 
 ClothState Cloth::initialState() const {
   ClothState state;
   state.positions = mesh_.initial_positions;
   state.velocities.assign(particleCount(), Eigen::Vector3d::Zero());
-  forgetBending(state);
+  forget(state);
   return state;
 }
 
-void Cloth::forgetBending(ClothState& state) const {
+void Cloth::forget(ClothState& state) const {
   requireParticles(state);
-  state.plastic_bends.clear();
-  if (const BendingFriction* friction = bendingFriction()) {
-    state.plastic_bends = friction->withoutFriction(state.positions);
-  }
+  state.memory.resize(forces_->memorySize());
+  forces_->forget(state.positions, state.memory.data());
 }
 
-void Cloth::yieldBending(ClothState& state) const {
+void Cloth::remember(ClothState& state) const {
   requireState(state);
-  if (bendingFriction()) bendingFriction()->yield(state.positions, state.plastic_bends);
+  forces_->remember(state.positions, state.memory.data());
 }
 
 void Cloth::setFabric(material::Fabric fabric) {
-  requireDensity(fabric);
-  requireModelled(fabric, effects_);
+  takeFabric(std::move(fabric));
   revision_ = nextRevision();
-  bending_ = bendingOf(mesh_, fabric, effects_);
-  fabric_ = std::move(fabric);
-  membrane_.setFabric(fabric_);
-  if (springs_) springs_->setFabric(fabric_);
-  bindPattern();
-  masses_ = lumpedMasses(membrane_, particleCount(), fabric_.areal_density);
+}
+
+void Cloth::computeForces(const ClothState& state, std::vector<Eigen::Vector3d>& forces) const {
+  requireState(state);
+  forces.assign(particleCount(), Eigen::Vector3d::Zero());
+  forces_->addForces(state.ofForces(), forces);
+}
+
+double Cloth::potentialEnergy(const ClothState& state) const {
+  requireState(state);
+  return forces_->energy(state.ofForces());
+}
+
+double Cloth::kineticEnergy(const ClothState& state) const {
+  requireState(state);
+  double energy = 0.0;
+  for (std::size_t i = 0; i < particleCount(); ++i) {
+    energy += 0.5 * masses_[i] * state.velocities[i].squaredNorm();
+  }
+  return energy;
+}
+
+std::vector<JacobianBlock> Cloth::jacobian(const ClothState& state,
+                                           const std::vector<int>& particles) const {
+  requireState(state);
+  for (const int particle : particles) requireParticle(particle);
+  JacobianRows rows(particles);
+  forces_->addJacobian(state.ofForces(), rows);
+  return rows.blocks();
 }
 
 void Cloth::requireParticle(int particle) const {
@@ -186,7 +154,7 @@ void Cloth::setExternalForce(int particle, const Eigen::Vector3d& force) {
     throw std::invalid_argument("the force on particle " + std::to_string(particle) +
                                 " has a component that is not finite");
   }
-  external_forces_[particle] = force;
+  constant_->set(particle, force);
   revision_ = nextRevision();
 }
 
@@ -194,16 +162,9 @@ void Cloth::setPointLoads(const std::vector<PointLoad>& loads) {
   if (!effects_.point_loads && !loads.empty()) {
     throw std::invalid_argument("the cloth is modelled without point loads; none can be set");
   }
-  if (loads.size() > kMostPointLoads) {
-    throw std::invalid_argument("there are " + std::to_string(loads.size()) +
-                                " point loads; allowed are " + std::to_string(kMostPointLoads));
-  }
-  for (std::size_t i = 0; i < loads.size(); ++i) checkedLoad(loads[i], i, mesh_.triangles.size());
+  if (point_loads_ == nullptr) return;
+  point_loads_->set(loads);
   revision_ = nextRevision();
-  point_loads_.clear();
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    point_loads_.push_back(checkedLoad(loads[i], i, mesh_.triangles.size()));
-  }
 }
 
 void Cloth::setContacts(const std::vector<ParticleContact>& contacts) {
@@ -245,11 +206,10 @@ bool Cloth::isAttached(int particle) const {
 
 void Cloth::requireState(const ClothState& state) const {
   requireParticles(state);
-  const std::size_t bends = bendingFriction() ? bendingFriction()->size() : 0;
-  if (state.plastic_bends.size() != bends) {
+  if (state.memory.size() != forces_->memorySize()) {
     std::ostringstream message;
-    message << "the state has " << state.plastic_bends.size() << " plastic bends; the cloth has "
-            << bends << " hinges with friction";
+    message << "the state remembers " << state.memory.size() << " numbers; the forces of the cloth "
+            << "remember " << forces_->memorySize();
     throw std::invalid_argument(message.str());
   }
 }

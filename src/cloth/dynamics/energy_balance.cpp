@@ -51,7 +51,7 @@ EnergyBalance::EnergyBalance(const Cloth& cloth)
 void EnergyBalance::begin(const Cloth& cloth, const ClothState& begin) {
   const bool goes_on = begin.positions == last_positions_;
   if (!goes_on) forget();
-  const bool known = goes_on && revision_ == cloth.revision() && !cloth.bendingFriction();
+  const bool known = goes_on && revision_ == cloth.revision() && cloth.forces().memorySize() == 0;
   potential_begin_ = known ? potential_kept_ : cloth.potentialEnergy(begin);
   kinetic_begin_ = freeKineticEnergy(cloth, begin.velocities);
 }
@@ -86,9 +86,9 @@ double EnergyBalance::growth(const Cloth& cloth, const ClothState& begin, const 
   growth -= std::max(0.0, attachmentWork(cloth, begin, end));
   const double h = end.time - begin.time;
   growth -= std::max(0.0, contactWork(cloth, reactions, begin.positions, h));
-  if (cloth.air() && !(growth <= 0.0)) {
-    const double at_end = std::max(0.0, h * airPower(cloth, end));
-    growth -= growth <= at_end ? growth : std::max(at_end, h * airPower(cloth, begin));
+  if (cloth.forces().isDriven() && !(growth <= 0.0)) {
+    const double at_end = std::max(0.0, h * drivenPower(cloth, end));
+    growth -= growth <= at_end ? growth : std::max(at_end, h * drivenPower(cloth, begin));
   }
   return growth <= 0.0 ? 0.0 : growth;  // work that is left over is not for later steps
 }
@@ -108,7 +108,7 @@ void EnergyBalance::keep(const Cloth& cloth, const ClothState& end, double taken
 double EnergyBalance::attachmentWork(const Cloth& cloth, const ClothState& begin,
                                      const ClothState& end) {
   jumped_.positions = begin.positions;
-  jumped_.plastic_bends = begin.plastic_bends;
+  jumped_.memory = begin.memory;
   bool moved = false;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     if (!cloth.attachments()[i]) continue;
@@ -125,12 +125,11 @@ double EnergyBalance::attachmentWork(const Cloth& cloth, const ClothState& begin
                   2.0 * std::max(0.0, of_jump) + kinetic_begin_);
 }
 
-/// Of the forces of the air (W). Those on attached particles count here, because the attachments'
-/// work is that of all forces on them.
-double EnergyBalance::airPower(const Cloth& cloth, const ClothState& state) {
+/// Of driven forces (W), those of the air. Those on attached particles count here, because the
+/// attachments' work is that of all forces on them.
+double EnergyBalance::drivenPower(const Cloth& cloth, const ClothState& state) {
   std::fill(forces_.begin(), forces_.end(), Vector3d::Zero());
-  cloth.air()->addForces(cloth.membrane().elements(), state.positions, state.velocities, state.time,
-                         forces_);
+  cloth.forces().addDrivenForces(state.ofForces(), forces_);
   double power = 0.0;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     power += forces_[i].dot(state.velocities[i]);

@@ -42,7 +42,7 @@ void ExplicitStep::advance(const Cloth& cloth, const ClothState& begin, double t
   const Tableau& tableau = tableauOf(method_);
   end.positions = begin.positions;
   end.velocities = begin.velocities;
-  if (tableau.stages > 1) stage_.plastic_bends = begin.plastic_bends;
+  if (tableau.stages > 1) stage_.memory = begin.memory;
   const ClothState* at = &begin;
   for (int s = 0; s < tableau.stages; ++s) {
     if (s > 0) {

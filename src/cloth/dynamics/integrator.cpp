@@ -44,21 +44,12 @@ bool allFinite(const std::vector<Vector3d>& vectors) {
                      [](const Vector3d& vector) { return vector.allFinite(); });
 }
 
-std::size_t couplingCount(const Cloth& cloth) {
-  if (cloth.springs()) return cloth.springs()->springs().size();
-  return cloth.bending() ? cloth.bending()->couplings().size() : 0;
-}
-
-std::size_t frictionCount(const Cloth& cloth) {
-  return cloth.bendingFriction() ? cloth.bendingFriction()->size() : 0;
-}
-
 }  // namespace
 
 Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
     : settings_(requireSound(settings)),
-      element_count_(cloth.membrane().elements().size()),
-      coupling_count_(couplingCount(cloth)),
+      pattern_size_(cloth.patternSize()),
+      held_size_(cloth.forces().heldSize()),
       end_(cloth.initialState()) {
   const IntegrationMethod method = settings.method;
   if (!isImplicit(method)) {
@@ -81,24 +72,23 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
   }
   if (state.positions.size() != cloth.particleCount() ||
       state.velocities.size() != cloth.particleCount() ||
-      end_.positions.size() != cloth.particleCount() ||
-      cloth.membrane().elements().size() != element_count_ ||
-      couplingCount(cloth) != coupling_count_ ||
-      state.plastic_bends.size() != frictionCount(cloth) ||
-      end_.plastic_bends.size() != frictionCount(cloth)) {
+      end_.positions.size() != cloth.particleCount() || cloth.patternSize() != pattern_size_ ||
+      cloth.forces().heldSize() != held_size_ ||
+      state.memory.size() != cloth.forces().memorySize() ||
+      end_.memory.size() != cloth.forces().memorySize()) {
     throw std::invalid_argument("the state, the cloth and the integrator differ in size");
   }
   StepReport report;
   const Clock::time_point start = Clock::now();
   end_.time = state.time + time_step;
-  end_.plastic_bends = state.plastic_bends;  // until the step is accepted
+  end_.memory = state.memory;  // until the step is accepted
   advance(cloth, state, time_step, report);
   settle(end_.velocities);
   if (balance_) keepEnergy(cloth, state, time_step, report);
   report.accepted = std::isfinite(report.linear_residual) && std::isfinite(end_.time) &&
                     allFinite(end_.positions) && allFinite(end_.velocities);
   if (report.accepted) {
-    cloth.yieldBending(end_);
+    cloth.remember(end_);
     keep(cloth, state, time_step, touches() || report.taken_anew, report.energy_taken);
   } else if (stages_) {
     stages_->forget();
@@ -160,7 +150,7 @@ void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
       return takeTrBdf2(cloth, begin, h, report);
     case IntegrationMethod::kBdf2:
       if (!continuesHistory(begin, h)) return takeTrBdf2(cloth, begin, h, report);
-      base_.plastic_bends = begin.plastic_bends;
+      base_.memory = begin.memory;
       return takeBdf2(cloth, history_->before, begin, history_->time_step, h, report);
     default:
       return stages_->solve(cloth, {begin, h, end_.time, 1.0, Stage::Rates::kSinceBase},
@@ -175,7 +165,7 @@ void Integrator::keep(const Cloth& cloth, ClothState& state, double h, bool anew
   if (history_) std::swap(history_->before, state);
   std::swap(state.positions, end_.positions);
   std::swap(state.velocities, end_.velocities);
-  std::swap(state.plastic_bends, end_.plastic_bends);
+  std::swap(state.memory, end_.memory);
   state.time = end_.time;
   if (!history_) return;
   history_->last = state;
@@ -247,12 +237,12 @@ double Integrator::blendAgainstGrowth(const Cloth& cloth, const ClothState& begi
   return growth > open ? growth / change_squared : 0.0;
 }
 
-/// What attachments and wind do over the step (J) by the forces in the stage at theta that end_
-/// holds. What the air takes from motion relative to it is not work that may come back.
+/// What attachments and driven forces do over the step (J) by the forces in the stage at theta that
+/// end_ holds. What the air takes from motion relative to it is not work that may come back.
 double Integrator::outerWork(const Cloth& cloth, const ClothState& begin, double h, double theta) {
   const double end = end_.time;
   end_.time = begin.time + theta * h;
-  double work = h * cloth.windPower(end_);
+  double work = h * cloth.forces().drivingPower(end_.ofForces());
   bool known = false;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     const auto& attachment = cloth.attachments()[i];
@@ -285,7 +275,7 @@ void Integrator::takeTrBdf2(const Cloth& cloth, const ClothState& begin, double 
                             StepReport& report) {
   const double first = (2.0 - std::sqrt(2.0)) * h;
   const double a = 0.5 * first;
-  base_.plastic_bends = begin.plastic_bends;
+  base_.memory = begin.memory;
   cloth.computeForces(begin, forces_);
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     base_.positions[i] = begin.positions[i] + a * begin.velocities[i];

@@ -38,7 +38,7 @@ void RestDetector::wake() {
 }
 
 bool isUndisturbed(const Cloth& cloth, double time) {
-  if (cloth.air() && !cloth.air()->wind().isSteady()) return false;
+  if (cloth.forces().changesWithTime()) return false;
   return std::all_of(cloth.attachments().begin(), cloth.attachments().end(),
                      [time](const std::optional<AttachmentPath>& path) {
                        return !path || time >= path->start_time + path->duration;

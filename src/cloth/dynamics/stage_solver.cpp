@@ -37,15 +37,14 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
       fixed_(cloth.particleCount(), 0) {
   if (cloth.effects().contacts) contacts_.emplace(matrix_);
   trial_ = cloth.initialState();
-  base_strains_.resize(cloth.strainCount());
-  if (cloth.air()) fixed_air_.panels.resize(cloth.membrane().elements().size());
+  held_.assign(cloth.forces().heldSize(), Vector3d::Zero());
 }
 
 void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                         ClothState& result, StepReport& report) {
   solveLinearised(cloth, stage, guess, result, report);
   if (settings_.newton_iterations == 1) return;
-  fixPast(cloth, stage, result);
+  hold(cloth, stage, result, false);
   iterateNewton(cloth, stage, incrementalPotential(cloth, stage, result),
                 settings_.newton_iterations - 1, {}, result, report);
 }
@@ -54,8 +53,7 @@ bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
                           const std::function<bool()>& enough, ClothState& result,
                           StepReport& report) {
   constexpr int kLeastSolves = 20;
-  fixPast(cloth, stage, stage.base);
-  for (AirPanel& panel : fixed_air_.panels) panel.lift.setZero();
+  hold(cloth, stage, stage.base, true);
   const double potential = touching() ? incrementalPotential(cloth, stage, result)
                                       : retreatTowardsRest(cloth, stage, result);
   return iterateNewton(cloth, stage, potential, std::max(kLeastSolves, settings_.newton_iterations),
@@ -77,14 +75,18 @@ void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const 
   }
 }
 
-/// What Newton iterations hold fixed: the strains before, and the air of a state near the end.
-void StageSolver::fixPast(const Cloth& cloth, const Stage& stage, const ClothState& at) {
-  if (stage.rates == Stage::Rates::kSinceBase) {
-    cloth.computeStrains(stage.base.positions, base_strains_);
-  } else {
-    cloth.computeStrainsBefore(at.positions, at.velocities, stage.a, base_strains_);
-  }
-  cloth.fixAir(at.positions, at.velocities, timeOf(stage), fixed_air_);
+/// The forces of the stage in a state, with what they remember of the beginning of the step.
+ForceState StageSolver::forceState(const Stage& stage, const Positions& positions,
+                                   const Velocities& velocities) {
+  return {positions, velocities, timeOf(stage), stage.base.memory.data()};
+}
+
+/// What Newton iterations hold fixed. @param at near the end of the stage
+void StageSolver::hold(const Cloth& cloth, const Stage& stage, const ClothState& at, bool passive) {
+  const bool since_base = stage.rates == Stage::Rates::kSinceBase;
+  cloth.forces().hold({stage.base.positions, forceState(stage, at.positions, at.velocities),
+                       stage.a, since_base, passive},
+                      held_.data());
 }
 
 /// If the potential of the free particles at x*, without velocity, is lower, halves their way from
@@ -126,8 +128,8 @@ void StageSolver::addInertia(const Cloth& cloth, const Stage& stage, const Veloc
 
 void StageSolver::linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
   addInertia(cloth, stage, guess.velocities);
-  cloth.addStep(guess.positions, guess.velocities, stage.base.plastic_bends,
-                {stage.a, guess.ahead, timeOf(stage)}, matrix_, rhs_);
+  cloth.forces().assembleLinearised(forceState(stage, guess.positions, guess.velocities),
+                                    {stage.a, guess.ahead}, matrix_, rhs_);
   prescribe(cloth, stage, guess);
 }
 
@@ -191,25 +193,23 @@ bool StageSolver::solveLinear(StepReport& report, linear::LinearSolver::Definite
 
 double StageSolver::incrementalPotential(const Cloth& cloth, const Stage& stage,
                                          const ClothState& at) const {
-  double potential = cloth.incrementalPotential(
-      at.positions, at.velocities, stage.base.plastic_bends, base_strains_, fixed_air_, stage.a);
+  double potential = cloth.forces().incrementalPotential(
+      forceState(stage, at.positions, at.velocities), held_.data(), stage.a);
   for (int i = 0; i < matrix_.size(); ++i) {
     if (fixed_[i]) continue;
     const double mass = cloth.masses()[i];
     potential += 0.5 * mass * (at.velocities[i] - stage.base.velocities[i]).squaredNorm();
-    potential -= (cloth.externalForces()[i] + mass * cloth.effects().gravity)
-                     .dot(at.positions[i] - stage.base.positions[i]);
   }
   if (touching()) potential += contacts_->frictionPotential(at.velocities);
   return potential;
 }
 
 void StageSolver::assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at,
-                                 Membrane::Hessian hessian, StepReport& report) {
+                                 Hessian hessian, StepReport& report) {
   const Clock::time_point start = Clock::now();
   addInertia(cloth, stage, at.velocities);
-  cloth.addNewton(at.positions, at.velocities, stage.base.plastic_bends, base_strains_, fixed_air_,
-                  stage.a, hessian, matrix_, rhs_);
+  cloth.forces().assembleNewton(forceState(stage, at.positions, at.velocities), held_.data(),
+                                stage.a, hessian, matrix_, rhs_);
   contacts_change_ =
       touching() && contacts_->addNewton(at.velocities, matrix_, rhs_, fixed_, prescribed_);
   any_fixed_ = any_fixed_ || touching();
@@ -231,7 +231,7 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
   const int last_solve = report.newton_iterations + most_solves;
   prescribed_.setZero();  // the fixed particles have reached their places
   bool converged = false, is_enough = false;
-  auto hessian = Membrane::Hessian::kProjected;
+  auto hessian = Hessian::kProjected;
   while (true) {
     assembleNewton(cloth, stage, result, hessian, report);
     if (touching()) potential = incrementalPotential(cloth, stage, result);  // of this friction
@@ -240,7 +240,7 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     converged = norm <= settings_.newton_tolerance * reference && !contacts_change_;
     if (converged || report.newton_iterations >= last_solve) break;
     solution_.setZero();
-    const bool exact = hessian == Membrane::Hessian::kExact;
+    const bool exact = hessian == Hessian::kExact;
     const bool solved = solveLinear(report, exact ? linear::LinearSolver::Definiteness::kUnknown
                                                   : linear::LinearSolver::Definiteness::kPositive);
     if (!exact) report.linear_converged = report.linear_converged && solved;
@@ -251,9 +251,9 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
       const bool enters = touching() && contacts_->enter(result.velocities);
       is_enough = enough && !enters && enough();
       if (is_enough) break;
-      hessian = norm <= near ? Membrane::Hessian::kExact : Membrane::Hessian::kProjected;
+      hessian = norm <= near ? Hessian::kExact : Hessian::kProjected;
     } else if (descent == Descent::kNone && exact) {  // not positive definite here
-      hessian = Membrane::Hessian::kProjected;
+      hessian = Hessian::kProjected;
       near = kNearer * norm;
     } else {
       converged = descent == Descent::kBelowRounding;

@@ -194,42 +194,45 @@ bool Wind::isSteady() const {
   });
 }
 
-Aerodynamics::Aerodynamics(const Air& air) : air_(requireSound(air)) {}
+Aerodynamics::Aerodynamics(std::vector<MembraneElement> elements, const Air& air)
+    : elements_(std::move(elements)), air_(requireSound(air)) {}
 
-void Aerodynamics::addForces(const std::vector<MembraneElement>& elements,
-                             const Positions& positions, const Velocities& velocities, double time,
-                             std::vector<Vector3d>& forces) const {
-  const Vector3d wind = air_.wind.velocity(time);
-  for (const MembraneElement& element : elements) {
-    const Flow flow(areaVector(element, positions), meanVelocity(element, velocities) - wind);
+void Aerodynamics::bind(const linear::SymmetricBlockMatrix& matrix) {
+  bindElements(matrix, elements_);
+}
+
+void Aerodynamics::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
+  const Vector3d wind = air_.wind.velocity(state.time);
+  for (const MembraneElement& element : elements_) {
+    const Flow flow(areaVector(element, state.positions),
+                    meanVelocity(element, state.velocities) - wind);
     const Vector3d share = (flow.drag(air_.coefficients) + flow.lift(air_.coefficients)) / 3.0;
     for (int particle : element.particles) forces[particle] += share;
   }
 }
 
-double Aerodynamics::windPower(const std::vector<MembraneElement>& elements,
-                               const Positions& positions, const Velocities& velocities,
-                               double time) const {
-  const Vector3d wind = air_.wind.velocity(time);
+double Aerodynamics::drivingPower(const ForceState& state) const {
+  const Vector3d wind = air_.wind.velocity(state.time);
   Vector3d force = Vector3d::Zero();
-  for (const MembraneElement& element : elements) {
-    const Flow flow(areaVector(element, positions), meanVelocity(element, velocities) - wind);
+  for (const MembraneElement& element : elements_) {
+    const Flow flow(areaVector(element, state.positions),
+                    meanVelocity(element, state.velocities) - wind);
     force += flow.drag(air_.coefficients) + flow.lift(air_.coefficients);
   }
   return force.dot(wind);
 }
 
-void Aerodynamics::addStep(const std::vector<MembraneElement>& elements, const Positions& positions,
-                           const Velocities& velocities, const StageTimes& times,
-                           linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const {
-  const Vector3d wind = air_.wind.velocity(times.time);
-  for (const MembraneElement& element : elements) {
+void Aerodynamics::assembleLinearised(const ForceState& state, const StageTimes& times,
+                                      linear::SymmetricBlockMatrix& matrix,
+                                      linear::BlockVector& rhs) const {
+  const Vector3d wind = air_.wind.velocity(state.time);
+  for (const MembraneElement& element : elements_) {
     const auto place = [&](int corner) -> Vector3d {
       const int particle = element.particles[corner];
-      return positions[particle] + times.ahead * velocities[particle];
+      return state.positions[particle] + times.ahead * state.velocities[particle];
     };
     const Flow flow(areaVector(place(0), place(1), place(2)),
-                    meanVelocity(element, velocities) - wind);
+                    meanVelocity(element, state.velocities) - wind);
     const Vector3d impulse =
         times.a / 3.0 * (flow.drag(air_.coefficients) + flow.lift(air_.coefficients));
     for (int particle : element.particles) rhs.col(particle) += impulse;
@@ -237,39 +240,55 @@ void Aerodynamics::addStep(const std::vector<MembraneElement>& elements, const P
   }
 }
 
-void Aerodynamics::fix(const std::vector<MembraneElement>& elements, const Positions& positions,
-                       const Velocities& velocities, double time, FixedAir& fixed) const {
-  fixed.wind = air_.wind.velocity(time);
-  for (std::size_t t = 0; t < elements.size(); ++t) {
-    const Vector3d area = areaVector(elements[t], positions);
-    const Flow flow(area, meanVelocity(elements[t], velocities) - fixed.wind);
-    fixed.panels[t] = {area, flow.lift(air_.coefficients)};
+void Aerodynamics::hold(const NewtonStart& start, Vector3d* held) const {
+  const Vector3d wind = air_.wind.velocity(start.at.time);
+  held[0] = wind;
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const Vector3d area = areaVector(elements_[t], start.at.positions);
+    const Flow flow(area, meanVelocity(elements_[t], start.at.velocities) - wind);
+    held[1 + 2 * t] = area;
+    held[2 + 2 * t] = start.passive ? Vector3d::Zero() : flow.lift(air_.coefficients);
   }
 }
 
-void Aerodynamics::addNewton(const std::vector<MembraneElement>& elements,
-                             const Velocities& velocities, const FixedAir& fixed, double a,
-                             linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const {
-  for (std::size_t t = 0; t < elements.size(); ++t) {
-    const MembraneElement& element = elements[t];
-    const AirPanel& panel = fixed.panels[t];
-    const Flow flow(panel.area, meanVelocity(element, velocities) - fixed.wind);
-    const Vector3d impulse = a / 3.0 * (flow.drag(air_.coefficients) + panel.lift);
+void Aerodynamics::assembleNewton(const ForceState& state, const Vector3d* held, double a,
+                                  Hessian /*hessian*/, linear::SymmetricBlockMatrix& matrix,
+                                  linear::BlockVector& rhs) const {
+  const Vector3d& wind = held[0];
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const MembraneElement& element = elements_[t];
+    const Vector3d &area = held[1 + 2 * t], &lift = held[2 + 2 * t];
+    const Flow flow(area, meanVelocity(element, state.velocities) - wind);
+    const Vector3d impulse = a / 3.0 * (flow.drag(air_.coefficients) + lift);
     for (int particle : element.particles) rhs.col(particle) += impulse;
     addDamping(element, a / 9.0 * dragDamping(flow, air_.coefficients), matrix);
   }
 }
 
-double Aerodynamics::incrementalPotential(const std::vector<MembraneElement>& elements,
-                                          const Velocities& velocities, const FixedAir& fixed,
+double Aerodynamics::incrementalPotential(const ForceState& state, const Vector3d* held,
                                           double a) const {
+  const Vector3d& wind = held[0];
   double potential = 0.0;
-  for (std::size_t t = 0; t < elements.size(); ++t) {
-    const Vector3d velocity = meanVelocity(elements[t], velocities);
-    const Flow flow(fixed.panels[t].area, velocity - fixed.wind);
-    potential += flow.dragPotential(air_.coefficients) - fixed.panels[t].lift.dot(velocity);
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const Vector3d &area = held[1 + 2 * t], &lift = held[2 + 2 * t];
+    const Vector3d velocity = meanVelocity(elements_[t], state.velocities);
+    const Flow flow(area, velocity - wind);
+    potential += flow.dragPotential(air_.coefficients) - lift.dot(velocity);
   }
   return a * potential;
+}
+
+void Aerodynamics::addJacobian(const ForceState& state, JacobianRows& rows) const {
+  for (const MembraneElement& element : elements_) {
+    const auto& [a, b, c] = element.particles;
+    if (!rows.asksFor(a) && !rows.asksFor(b) && !rows.asksFor(c)) continue;
+    const Jacobian jacobian = exactJacobian(element, state.positions, state.velocities, state.time);
+    for (const int row : element.particles) {
+      for (int j = 0; j < 3; ++j) {
+        rows.add(row, element.particles[j], jacobian.by_position[j], jacobian.by_velocity);
+      }
+    }
+  }
 }
 
 Aerodynamics::Jacobian Aerodynamics::exactJacobian(const MembraneElement& element,

@@ -176,34 +176,38 @@ MembraneStrain Corotational::strain(const MembraneElement& element,
   return Polar(elementFrame(element, positions)).strain();
 }
 
-void Corotational::addForces(const Positions& positions, const Velocities& velocities,
-                             std::vector<Vector3d>& forces) const {
+void Corotational::bind(const linear::SymmetricBlockMatrix& matrix) {
+  bindElements(matrix, elements_);
+}
+
+void Corotational::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
   for (const MembraneElement& element : elements_) {
-    const Polar polar(elementFrame(element, positions));
+    const Polar polar(elementFrame(element, state.positions));
     const Gradients gradients = polar.gradients();
-    const Vector3d rate = gradients.transpose() * polar.local(elementFrame(element, velocities));
+    const Vector3d rate =
+        gradients.transpose() * polar.local(elementFrame(element, state.velocities));
     const Vector3d stress = elastic_.cwiseProduct(polar.strain()) + viscous_.cwiseProduct(rate);
     addTraction(element, polar.frame, -element.area * gradients * stress,
                 [&](int particle) -> Vector3d& { return forces[particle]; });
   }
 }
 
-double Corotational::elasticEnergy(const Positions& positions) const {
+double Corotational::energy(const ForceState& state) const {
   double energy = 0.0;
   for (const MembraneElement& element : elements_) {
-    const MembraneStrain e = strain(element, positions);
+    const MembraneStrain e = strain(element, state.positions);
     energy += 0.5 * element.area * e.dot(elastic_.cwiseProduct(e));
   }
   return energy;
 }
 
-void Corotational::addStep(const Positions& positions, const Velocities& velocities,
-                           const StageTimes& times, linear::SymmetricBlockMatrix& matrix,
-                           linear::BlockVector& rhs) const {
+void Corotational::assembleLinearised(const ForceState& state, const StageTimes& times,
+                                      linear::SymmetricBlockMatrix& matrix,
+                                      linear::BlockVector& rhs) const {
   for (const MembraneElement& element : elements_) {
-    const Polar polar(elementFrame(element, positions));
+    const Polar polar(elementFrame(element, state.positions));
     const Gradients gradients = polar.gradients();
-    const Vector6d motion = polar.local(elementFrame(element, velocities));
+    const Vector6d motion = polar.local(elementFrame(element, state.velocities));
     const Vector3d rate = gradients.transpose() * motion;
     const Vector3d stress = elastic_.cwiseProduct(polar.strain()) + viscous_.cwiseProduct(rate);
     Geometric geometric(polar, stress);
@@ -221,61 +225,63 @@ void Corotational::addStep(const Positions& positions, const Velocities& velocit
   }
 }
 
-void Corotational::addNewton(const Positions& positions,
-                             const std::vector<MembraneStrain>& begin_strains, double h,
-                             Membrane::Hessian hessian, linear::SymmetricBlockMatrix& matrix,
-                             linear::BlockVector& rhs) const {
+void Corotational::assembleNewton(const ForceState& state, const Vector3d* held, double a,
+                                  Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                                  linear::BlockVector& rhs) const {
   for (std::size_t t = 0; t < elements_.size(); ++t) {
     const MembraneElement& element = elements_[t];
-    const Polar polar(elementFrame(element, positions));
+    const Polar polar(elementFrame(element, state.positions));
     const Gradients gradients = polar.gradients();
     const MembraneStrain strain = polar.strain();
     const Vector3d stress =
-        elastic_.cwiseProduct(strain) + viscous_.cwiseProduct(strain - begin_strains[t]) / h;
+        elastic_.cwiseProduct(strain) + viscous_.cwiseProduct(strain - held[t]) / a;
     Geometric geometric(polar, stress);
-    Vector3d slope = elastic_ + viscous_ / h;
-    if (hessian == Membrane::Hessian::kProjected) project(geometric, slope);
+    Vector3d slope = elastic_ + viscous_ / a;
+    if (hessian == Hessian::kProjected) project(geometric, slope);
     addTangent(element, polar.frame, assemble(polar, gradients, slope, geometric),
-               element.area * h * h, matrix);
-    addTraction(element, polar.frame, -element.area * h * gradients * stress,
+               element.area * a * a, matrix);
+    addTraction(element, polar.frame, -element.area * a * gradients * stress,
                 [&](int particle) { return rhs.col(particle); });
   }
 }
 
-double Corotational::incrementalPotential(const Positions& positions,
-                                          const std::vector<MembraneStrain>& begin_strains,
-                                          double h) const {
+double Corotational::incrementalPotential(const ForceState& state, const Vector3d* held,
+                                          double a) const {
   double potential = 0.0;
   for (std::size_t t = 0; t < elements_.size(); ++t) {
-    const MembraneStrain end = strain(elements_[t], positions);
-    const MembraneStrain change = end - begin_strains[t];
+    const MembraneStrain end = strain(elements_[t], state.positions);
+    const MembraneStrain change = end - held[t];
     potential +=
         0.5 * elements_[t].area *
-        (end.dot(elastic_.cwiseProduct(end)) + change.dot(viscous_.cwiseProduct(change)) / h);
+        (end.dot(elastic_.cwiseProduct(end)) + change.dot(viscous_.cwiseProduct(change)) / a);
   }
   return potential;
 }
 
-void Corotational::computeStrains(const Positions& positions,
-                                  std::vector<MembraneStrain>& strains) const {
-  strains.resize(elements_.size());
-  for (std::size_t t = 0; t < elements_.size(); ++t) strains[t] = strain(elements_[t], positions);
-}
-
-void Corotational::computeStrainsBefore(const Positions& positions, const Velocities& velocities,
-                                        double interval,
-                                        std::vector<MembraneStrain>& strains) const {
-  strains.resize(elements_.size());
+void Corotational::hold(const NewtonStart& start, Vector3d* held) const {
   for (std::size_t t = 0; t < elements_.size(); ++t) {
-    const Polar polar(elementFrame(elements_[t], positions));
-    const Vector6d motion = polar.local(elementFrame(elements_[t], velocities));
-    strains[t] = polar.strain() - interval * (polar.gradients().transpose() * motion);
+    if (start.since_base) {
+      held[t] = strain(elements_[t], start.base);
+      continue;
+    }
+    const Polar polar(elementFrame(elements_[t], start.at.positions));
+    const Vector6d motion = polar.local(elementFrame(elements_[t], start.at.velocities));
+    held[t] = polar.strain() - start.a * (polar.gradients().transpose() * motion);
   }
 }
 
-Membrane::Jacobian Corotational::exactJacobian(const MembraneElement& element,
-                                               const Positions& positions,
-                                               const Velocities& velocities) const {
+void Corotational::addJacobian(const ForceState& state, JacobianRows& rows) const {
+  addElementJacobians(
+      elements_,
+      [&](const MembraneElement& element) {
+        return exactJacobian(element, state.positions, state.velocities);
+      },
+      rows);
+}
+
+ElementJacobian Corotational::exactJacobian(const MembraneElement& element,
+                                            const Positions& positions,
+                                            const Velocities& velocities) const {
   const Polar polar(elementFrame(element, positions));
   const Gradients gradients = polar.gradients();
   const Vector6d motion = polar.local(elementFrame(element, velocities));
@@ -286,7 +292,7 @@ Membrane::Jacobian Corotational::exactJacobian(const MembraneElement& element,
   by_position +=
       gradients * viscous_.asDiagonal() * secondDerivative(polar, gradients, motion).transpose();
   const Matrix6d by_velocity = gradients * viscous_.asDiagonal() * gradients.transpose();
-  Membrane::Jacobian result;
+  ElementJacobian result;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const auto share = [&](const Matrix6d& tangent) -> Matrix3d {

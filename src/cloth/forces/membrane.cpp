@@ -30,21 +30,6 @@ struct Membrane::Response {
 
 namespace {
 
-MembraneElement restElement(const mesh::ClothMesh& mesh, std::array<int, 3> particles) {
-  std::sort(particles.begin(), particles.end());
-  const Eigen::Vector2d& a = mesh.rest_coordinates[particles[0]];
-  const Eigen::Vector2d& b = mesh.rest_coordinates[particles[1]];
-  const Eigen::Vector2d& c = mesh.rest_coordinates[particles[2]];
-  const double ua = a.x(), va = a.y(), ub = b.x(), vb = b.y(), uc = c.x(), vc = c.y();
-  const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
-  MembraneElement element{};
-  element.particles = particles;
-  element.weft_weights = {(vb - vc) / d, (vc - va) / d, (va - vb) / d};
-  element.warp_weights = {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d};
-  element.area = 0.5 * std::abs(d);
-  return element;
-}
-
 kernels::MembraneBatch batchOf(const MembraneElement* elements) {
   kernels::MembraneBatch batch;
   for (int lane = 0; lane < kernels::kBatch; ++lane) {
@@ -102,33 +87,22 @@ void projectMaterial(Vector3d& slope, double& coupling) {
 
 }  // namespace
 
-Vector3d projectStress(const Vector3d& stress) {
-  const double mean = 0.5 * (stress[0] + stress[1]);
-  const double difference = 0.5 * (stress[0] - stress[1]);
-  const double radius = std::sqrt(difference * difference + stress[2] * stress[2]);
-  if (mean >= radius) return stress;
-  if (mean <= -radius) return Vector3d::Zero();
-  const double half = 0.5 * (mean + radius);  // half the one positive eigenvalue; radius > 0 here
-  return {half * (1.0 + difference / radius), half * (1.0 - difference / radius),
-          half * stress[2] / radius};
-}
-
-Membrane::Membrane(const mesh::ClothMesh& mesh, const material::Fabric& fabric, bool viscosity,
-                   bool contraction)
-    : viscosity_(viscosity), contraction_(contraction) {
-  elements_.reserve(mesh.triangles.size());
-  for (const std::array<int, 3>& triangle : mesh.triangles) {
-    elements_.push_back(restElement(mesh, triangle));
-  }
-  bind({static_cast<int>(mesh.rest_coordinates.size()), mesh.triangles});
-  setFabric(fabric);
+Membrane::Membrane(std::vector<MembraneElement> elements, const material::Fabric& fabric,
+                   bool viscosity, bool contraction)
+    : elements_(std::move(elements)),
+      elastic_{fabric.weft.elastic, fabric.warp.elastic, fabric.shear.elastic},
+      viscous_{fabric.weft.viscous, fabric.warp.viscous, fabric.shear.viscous},
+      viscosity_(viscosity),
+      coupling_(contraction ? material::contractionModulus(fabric) : 0.0) {
+  makeBatches();
 }
 
 void Membrane::bind(const linear::SymmetricBlockMatrix& matrix) {
-  for (MembraneElement& element : elements_) {
-    const auto& [a, b, c] = element.particles;
-    element.slots = {matrix.slot(b, a), matrix.slot(c, a), matrix.slot(c, b)};
-  }
+  bindElements(matrix, elements_);
+  makeBatches();
+}
+
+void Membrane::makeBatches() {
   batches_.clear();
   if (!kernels::canAddBatches()) return;
   for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
@@ -136,19 +110,9 @@ void Membrane::bind(const linear::SymmetricBlockMatrix& matrix) {
   }
 }
 
-void Membrane::setFabric(const material::Fabric& fabric) {
-  elastic_ = {fabric.weft.elastic, fabric.warp.elastic, fabric.shear.elastic};
-  viscous_ = {fabric.weft.viscous, fabric.warp.viscous, fabric.shear.viscous};
-  coupling_ = contraction_ ? material::contractionModulus(fabric) : 0.0;
-}
-
 Membrane::Frame Membrane::frame(const MembraneElement& element,
                                 const std::vector<Vector3d>& points) {
   return {elementFrame(element, points)};
-}
-
-MembraneStrain Membrane::strain(const MembraneElement& element, const Positions& positions) const {
-  return frame(element, positions).strain();
 }
 
 Membrane::Response Membrane::respond(const Curves& curves, const MembraneStrain& strain) {
@@ -177,12 +141,11 @@ double Membrane::elasticDensity(const MembraneStrain& strain) const {
   return density;
 }
 
-void Membrane::addForces(const Positions& positions, const Velocities& velocities,
-                         std::vector<Vector3d>& forces) const {
+void Membrane::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
   for (const MembraneElement& element : elements_) {
-    const Frame at = frame(element, positions);
+    const Frame at = frame(element, state.positions);
     Vector3d stress = respondElastic(at.strain()).stress;
-    if (viscosity_) stress += respond(viscous_, at.rate(frame(element, velocities))).stress;
+    if (viscosity_) stress += respond(viscous_, at.rate(frame(element, state.velocities))).stress;
     stress *= -element.area;
     addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
                  stress[1] * at.warp + stress[2] * at.weft,
@@ -190,7 +153,8 @@ void Membrane::addForces(const Positions& positions, const Velocities& velocitie
   }
 }
 
-double Membrane::elasticEnergy(const Positions& positions) const {
+double Membrane::energy(const ForceState& state) const {
+  const Positions& positions = state.positions;
   double energy = 0.0;
   if (!batches_.empty()) {
     energy = kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
@@ -202,9 +166,11 @@ double Membrane::elasticEnergy(const Positions& positions) const {
   return energy;
 }
 
-void Membrane::addStep(const Positions& positions, const Velocities& velocities,
-                       const StageTimes& times, linear::SymmetricBlockMatrix& matrix,
-                       linear::BlockVector& rhs) const {
+void Membrane::assembleLinearised(const ForceState& state, const StageTimes& times,
+                                  linear::SymmetricBlockMatrix& matrix,
+                                  linear::BlockVector& rhs) const {
+  const Positions& positions = state.positions;
+  const Velocities& velocities = state.velocities;
   if (!batches_.empty()) {
     kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
                      {positions.data()->data(),
@@ -254,80 +220,80 @@ void Membrane::addStepOf(const MembraneElement& element, const Positions& positi
                [&](int particle) { return rhs.col(particle); });
 }
 
-void Membrane::addNewton(const Positions& positions,
-                         const std::vector<MembraneStrain>& begin_strains, double h,
-                         Hessian hessian, linear::SymmetricBlockMatrix& matrix,
-                         linear::BlockVector& rhs) const {
+void Membrane::assembleNewton(const ForceState& state, const Vector3d* held, double a,
+                              Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                              linear::BlockVector& rhs) const {
   if (!batches_.empty()) {
     kernels::addNewton(batches_.data(), static_cast<int>(batches_.size()),
-                       {positions.data()->data(),
-                        begin_strains.data()->data(),
-                        h,
+                       {state.positions.data()->data(),
+                        held->data(),
+                        a,
                         hessian == Hessian::kExact,
                         law(viscosity_),
                         {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
   }
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     const MembraneElement& element = elements_[t];
-    const Frame at = frame(element, positions);
+    const Frame at = frame(element, state.positions);
     const MembraneStrain strain = at.strain();
     auto [stress, slope, coupling] = respondElastic(strain);
     if (viscosity_) {
-      const Response viscous = respond(viscous_, (strain - begin_strains[t]) / h);
+      const Response viscous = respond(viscous_, (strain - held[t]) / a);
       stress += viscous.stress;
-      slope += viscous.slope / h;
+      slope += viscous.slope / a;
     }
     const bool exact = hessian == Hessian::kExact;
     if (!exact) projectMaterial(slope, coupling);
     addTangent(element, at.weft, at.warp, slope, coupling, exact ? stress : projectStress(stress),
-               element.area * h * h, matrix);
-    stress *= -element.area * h;
+               element.area * a * a, matrix);
+    stress *= -element.area * a;
     addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
                  stress[1] * at.warp + stress[2] * at.weft,
                  [&](int particle) { return rhs.col(particle); });
   }
 }
 
-double Membrane::incrementalPotential(const Positions& positions,
-                                      const std::vector<MembraneStrain>& begin_strains,
-                                      double h) const {
+double Membrane::incrementalPotential(const ForceState& state, const Vector3d* held,
+                                      double a) const {
   double potential = 0.0;
   if (!batches_.empty()) {
-    potential = kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
-                                   positions.data()->data(), begin_strains.data()->data(), h,
-                                   law(viscosity_));
+    potential =
+        kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
+                           state.positions.data()->data(), held->data(), a, law(viscosity_));
   }
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
-    const MembraneStrain strain = frame(elements_[t], positions).strain();
+    const MembraneStrain strain = frame(elements_[t], state.positions).strain();
     double density = elasticDensity(strain);
     for (int m = 0; viscosity_ && m < 3; ++m) {
-      density += h * viscous_[m].energy((strain[m] - begin_strains[t][m]) / h);
+      density += a * viscous_[m].energy((strain[m] - held[t][m]) / a);
     }
     potential += elements_[t].area * density;
   }
   return potential;
 }
 
-void Membrane::computeStrains(const Positions& positions,
-                              std::vector<MembraneStrain>& strains) const {
-  strains.resize(elements_.size());
+void Membrane::hold(const NewtonStart& start, Vector3d* held) const {
   for (std::size_t t = 0; t < elements_.size(); ++t) {
-    strains[t] = frame(elements_[t], positions).strain();
+    if (start.since_base) {
+      held[t] = greenStrain(elements_[t], start.base);
+      continue;
+    }
+    const Frame at = frame(elements_[t], start.at.positions);
+    held[t] = at.strain() - start.a * at.rate(frame(elements_[t], start.at.velocities));
   }
 }
 
-void Membrane::computeStrainsBefore(const Positions& positions, const Velocities& velocities,
-                                    double interval, std::vector<MembraneStrain>& strains) const {
-  strains.resize(elements_.size());
-  for (std::size_t t = 0; t < elements_.size(); ++t) {
-    const Frame at = frame(elements_[t], positions);
-    strains[t] = at.strain() - interval * at.rate(frame(elements_[t], velocities));
-  }
+void Membrane::addJacobian(const ForceState& state, JacobianRows& rows) const {
+  addElementJacobians(
+      elements_,
+      [&](const MembraneElement& element) {
+        return exactJacobian(element, state.positions, state.velocities);
+      },
+      rows);
 }
 
-Membrane::Jacobian Membrane::exactJacobian(const MembraneElement& element,
-                                           const Positions& positions,
-                                           const Velocities& velocities) const {
+ElementJacobian Membrane::exactJacobian(const MembraneElement& element, const Positions& positions,
+                                        const Velocities& velocities) const {
   const Frame at = frame(element, positions);
   auto [stress, slope, coupling] = respondElastic(at.strain());
   Matrix3d tangent = slope.asDiagonal();
@@ -350,7 +316,7 @@ Membrane::Jacobian Membrane::exactJacobian(const MembraneElement& element,
     columns << ru * f.weft, rv * f.warp, ru * f.warp + rv * f.weft;
     return columns;
   };
-  Jacobian result;
+  ElementJacobian result;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const Matrix3d g_i = -element.area * gradients(at, i);

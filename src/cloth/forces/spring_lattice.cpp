@@ -94,13 +94,9 @@ double SpringLattice::Law::energy(const LatticeSpring& spring, double strain) co
 
 SpringLattice::SpringLattice(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
                              bool viscosity, bool bend)
-    : springs_(findLatticeSprings(mesh, bend)), viscosity_(viscosity), bend_(bend) {
+    : springs_(findLatticeSprings(mesh, bend)), viscosity_(viscosity) {
   bind({static_cast<int>(mesh.rest_coordinates.size()), mesh.triangles, pairs()});
-  setFabric(fabric);
-}
-
-void SpringLattice::setFabric(const material::Fabric& fabric) {
-  if (bend_) {
+  if (bend) {
     const material::BendingRigidity& rigidity = fabric.bending.value();
     elastic_.rigidity = {rigidity.weft, rigidity.warp};
   }
@@ -118,13 +114,12 @@ void SpringLattice::bind(const linear::SymmetricBlockMatrix& matrix) {
   for (LatticeSpring& spring : springs_) spring.slot = matrix.slot(spring.second, spring.first);
 }
 
-void SpringLattice::addForces(const Positions& positions, const Velocities& velocities,
-                              std::vector<Vector3d>& forces) const {
+void SpringLattice::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
   for (const LatticeSpring& spring : springs_) {
-    const Vector3d at = extent(spring, positions);
+    const Vector3d at = extent(spring, state.positions);
     double stress = elastic_.respond(spring, strainOf(spring, at)).stress;
     if (viscosity_) {
-      const double rate = rateOf(spring, at, extent(spring, velocities));
+      const double rate = rateOf(spring, at, extent(spring, state.velocities));
       stress += viscous_.respond(spring, rate).stress;
     }
     const Vector3d pull = spring.area * spring.inverse_rest_square * stress * at;
@@ -133,20 +128,21 @@ void SpringLattice::addForces(const Positions& positions, const Velocities& velo
   }
 }
 
-double SpringLattice::elasticEnergy(const Positions& positions) const {
+double SpringLattice::energy(const ForceState& state) const {
   double energy = 0.0;
   for (const LatticeSpring& spring : springs_) {
-    energy += spring.area * elastic_.energy(spring, strainOf(spring, extent(spring, positions)));
+    energy +=
+        spring.area * elastic_.energy(spring, strainOf(spring, extent(spring, state.positions)));
   }
   return energy;
 }
 
-void SpringLattice::addStep(const Positions& positions, const Velocities& velocities,
-                            const StageTimes& times, linear::SymmetricBlockMatrix& matrix,
-                            linear::BlockVector& rhs) const {
+void SpringLattice::assembleLinearised(const ForceState& state, const StageTimes& times,
+                                       linear::SymmetricBlockMatrix& matrix,
+                                       linear::BlockVector& rhs) const {
   for (const LatticeSpring& spring : springs_) {
-    const Vector3d at = extent(spring, positions);
-    const Vector3d opening = extent(spring, velocities);
+    const Vector3d at = extent(spring, state.positions);
+    const Vector3d opening = extent(spring, state.velocities);
     CurveValue value = elastic_.respond(spring, strainOf(spring, at));
     double viscous_slope = 0.0;
     if (viscosity_) {
@@ -166,63 +162,69 @@ void SpringLattice::addStep(const Positions& positions, const Velocities& veloci
   }
 }
 
-void SpringLattice::addNewton(const Positions& positions,
-                              const std::vector<MembraneStrain>& begin_strains, double h,
-                              Membrane::Hessian hessian, linear::SymmetricBlockMatrix& matrix,
-                              linear::BlockVector& rhs) const {
+void SpringLattice::assembleNewton(const ForceState& state, const Vector3d* held, double a,
+                                   Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                                   linear::BlockVector& rhs) const {
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const LatticeSpring& spring = springs_[s];
-    const Vector3d at = extent(spring, positions);
+    const Vector3d at = extent(spring, state.positions);
     const double strain = strainOf(spring, at);
     CurveValue value = elastic_.respond(spring, strain);
     if (viscosity_) {
-      const double rate = (strain - begin_strains[s / 3][s % 3]) / h;
+      const double rate = (strain - held[s / 3][s % 3]) / a;
       const CurveValue viscous = viscous_.respond(spring, rate);
       value.stress += viscous.stress;
-      value.slope += viscous.slope / h;
+      value.slope += viscous.slope / a;
     }
-    const bool exact = hessian == Membrane::Hessian::kExact;
+    const bool exact = hessian == Hessian::kExact;
     addBlock(spring,
-             h * h * (exact ? tangent(spring, at, value) : projectedTangent(spring, at, value)),
+             a * a * (exact ? tangent(spring, at, value) : projectedTangent(spring, at, value)),
              matrix);
-    const Vector3d impulse = h * spring.area * spring.inverse_rest_square * value.stress * at;
+    const Vector3d impulse = a * spring.area * spring.inverse_rest_square * value.stress * at;
     rhs.col(spring.first) += impulse;
     rhs.col(spring.second) -= impulse;
   }
 }
 
-double SpringLattice::incrementalPotential(const Positions& positions,
-                                           const std::vector<MembraneStrain>& begin_strains,
-                                           double h) const {
+double SpringLattice::incrementalPotential(const ForceState& state, const Vector3d* held,
+                                           double a) const {
   double potential = 0.0;
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const LatticeSpring& spring = springs_[s];
-    const double strain = strainOf(spring, extent(spring, positions));
+    const double strain = strainOf(spring, extent(spring, state.positions));
     double density = elastic_.energy(spring, strain);
     if (viscosity_) {
-      density += h * viscous_.energy(spring, (strain - begin_strains[s / 3][s % 3]) / h);
+      density += a * viscous_.energy(spring, (strain - held[s / 3][s % 3]) / a);
     }
     potential += spring.area * density;
   }
   return potential;
 }
 
-void SpringLattice::computeStrains(const Positions& positions,
-                                   std::vector<MembraneStrain>& strains) const {
-  strains.resize(strainCount());
+void SpringLattice::hold(const NewtonStart& start, Vector3d* held) const {
   for (std::size_t s = 0; s < springs_.size(); ++s) {
-    strains[s / 3][s % 3] = strainOf(springs_[s], extent(springs_[s], positions));
+    const LatticeSpring& spring = springs_[s];
+    double& strain = held[s / 3][static_cast<Eigen::Index>(s % 3)];
+    if (start.since_base) {
+      strain = strainOf(spring, extent(spring, start.base));
+      continue;
+    }
+    const Vector3d at = extent(spring, start.at.positions);
+    const Vector3d opening = extent(spring, start.at.velocities);
+    strain = strainOf(spring, at) - start.a * rateOf(spring, at, opening);
   }
 }
 
-void SpringLattice::computeStrainsBefore(const Positions& positions, const Velocities& velocities,
-                                         double interval,
-                                         std::vector<MembraneStrain>& strains) const {
-  strains.resize(strainCount());
-  for (std::size_t s = 0; s < springs_.size(); ++s) {
-    const Vector3d at = extent(springs_[s], positions);
-    strains[s / 3][s % 3] = strainOf(springs_[s], at) -
-                            interval * rateOf(springs_[s], at, extent(springs_[s], velocities));
+void SpringLattice::addJacobian(const ForceState& state, JacobianRows& rows) const {
+  for (const LatticeSpring& spring : springs_) {
+    if (!rows.asksFor(spring.first) && !rows.asksFor(spring.second)) continue;
+    const auto [by_position, by_velocity] =
+        exactJacobian(spring, state.positions, state.velocities);
+    for (const auto& [row, other] :
+         {std::pair(spring.first, spring.second), std::pair(spring.second, spring.first)}) {
+      rows.add(row, row, by_position, by_velocity);
+      rows.add(row, other, -by_position, -by_velocity);
+    }
   }
 }
 

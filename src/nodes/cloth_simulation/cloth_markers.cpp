@@ -34,7 +34,10 @@ std::vector<std::array<int, 2>> uniqueEdges(const std::vector<std::array<int, 3>
 
 ClothMarkers::ClothMarkers(const mesh::ClothMesh& mesh, double full_scale,
                            const std::vector<mesh::Obstacle>& obstacles)
-    : triangles_(mesh.triangles), edges_(uniqueEdges(mesh.triangles)), full_scale_(full_scale) {
+    : triangles_(mesh.triangles),
+      edges_(uniqueEdges(mesh.triangles)),
+      full_scale_(full_scale),
+      elements_(cloth::restElements(mesh)) {
   Eigen::Vector3d low = mesh.initial_positions.front();
   Eigen::Vector3d high = low;
   for (const Eigen::Vector3d& position : mesh.initial_positions) {
@@ -130,13 +133,11 @@ const visualization_msgs::MarkerArray& ClothMarkers::update(
 }
 
 void ClothMarkers::computeStrainColours(const simulation::SimulatedCloth& simulation) {
-  const cloth::Membrane& membrane = simulation.cloth().membrane();
-  membrane.computeStrains(simulation.state().positions, strains_);
   std::fill(particle_strains_.begin(), particle_strains_.end(), 0.0);
   std::fill(particle_areas_.begin(), particle_areas_.end(), 0.0);
-  for (std::size_t i = 0; i < strains_.size(); ++i) {
-    const cloth::MembraneElement& element = membrane.elements()[i];
-    const double strain = largestPrincipalStrain(strains_[i]);
+  for (const cloth::MembraneElement& element : elements_) {
+    const double strain =
+        largestPrincipalStrain(cloth::greenStrain(element, simulation.state().positions));
     for (const int particle : element.particles) {
       particle_strains_[particle] += element.area * strain;
       particle_areas_[particle] += element.area;

@@ -270,7 +270,7 @@ double simulatedResidualCurvature(StripMesh mesh, kes::Direction along, cloth::B
         return placeOnCircle(along, lengthwise, crosswise, 3.0 * held);
       },
       [](int) { return false; });
-  cloth.yieldBending(state);
+  cloth.remember(state);
   kes::Equilibrium(cloth).settle(cloth, state, kFirstStep);
   return nearestCircle(strip, state);
 }

@@ -55,7 +55,7 @@ class EnergyBalance {
   double reserve() const;
   void forget();
   double attachmentWork(const Cloth& cloth, const ClothState& begin, const ClothState& end);
-  double airPower(const Cloth& cloth, const ClothState& state);
+  double drivenPower(const Cloth& cloth, const ClothState& state);
 
   double potential_begin_ = 0.0;
   double potential_end_ = 0.0;

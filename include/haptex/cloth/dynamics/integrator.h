@@ -75,9 +75,9 @@ class Integrator {
   void keep(const Cloth& cloth, ClothState& state, double h, bool anew, double energy_taken);
 
   StepSettings settings_;
-  std::size_t element_count_;
-  std::size_t coupling_count_;  // of bending or springs
-  ClothState end_;              // the step's result before it is accepted
+  int pattern_size_;       // of the cloth's matrix
+  std::size_t held_size_;  // of its forces
+  ClothState end_;         // the step's result before it is accepted
   std::optional<StageSolver> stages_;
   std::optional<ExplicitStep> explicit_step_;
   std::optional<EnergyBalance> balance_;  // of implicit methods

@@ -8,8 +8,8 @@ namespace haptex::cloth {
 /// Find (x, v) with
 ///   M (v - v*) = a F(x, v),  x = x* + a v.
 struct Stage {
-  const ClothState& base;  ///< x*, v*, the time from which share counts, and the plastic bends of
-                           ///< the step's beginning
+  const ClothState& base;  ///< x*, v*, the time from which share counts, and what forces remember
+                           ///< from the step's beginning
   double a;                ///< s, finite and > 0
   double end;              ///< s, simulated, of the places of the attached particles
   double share;            ///< of the way from x* to their place that they go in the stage, and of

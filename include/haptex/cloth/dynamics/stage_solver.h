@@ -22,11 +22,10 @@ namespace haptex::cloth {
 /// with K and D projected to be negative semidefinite, so that the matrix is positive definite for
 /// every state and a (Baraff and Witkin 1998). With more than one Newton iteration it goes on from
 /// there to the minimum of the incremental potential
-///   |M^(1/2) (v - v*)|^2 / 2 + Membrane::incrementalPotential(x) - external forces . x
-///   + pointLoadEnergy(x) + Aerodynamics::incrementalPotential(v),
+///   |M^(1/2) (v - v*)|^2 / 2 + Force::incrementalPotential(x, v) of all forces,
 /// by Newton iterations with a backtracking line search. They use the projected Hessian as long as
-/// the residual is large, and then the exact one where it is positive definite. The air's normals,
-/// areas and lift are those of the first solve, right to the second order.
+/// the residual is large, and then the exact one where it is positive definite. What forces hold
+/// fixed meanwhile is that of the first solve, right to the second order.
 ///
 /// With xg and vg right to the first order in time the first solve is right to the second where
 /// nothing had to be projected. It linearises about a state that has been reached, not about
@@ -57,9 +56,8 @@ class StageSolver {
   /// Newton iterations whatever the settings say, from the result of the last solve() or
   /// solveLinearised(), which was of this stage; or, if rest has a lower incremental potential,
   /// from where the straight way there first has: so that of the result is at most that of rest.
-  /// The air's areas are those of the base, and it does not lift: a lift that is held fixed for
-  /// long does work, which the true one in still air does not. Where contacts hold, rest is none of
-  /// their states, and is not looked at.
+  /// What forces hold is of the base, and passive (NewtonStart). Where contacts hold, rest is none
+  /// of their states, and is not looked at.
   /// @param enough of a result: it needs no more iterations
   /// @return whether that ended them, so that `enough` was last asked of the result
   bool descend(const Cloth& cloth, const Stage& stage, const std::function<bool()>& enough,
@@ -74,7 +72,9 @@ class StageSolver {
  private:
   enum class Descent { kFound, kBelowRounding, kNone };
 
-  void fixPast(const Cloth& cloth, const Stage& stage, const ClothState& at);
+  static ForceState forceState(const Stage& stage, const Positions& positions,
+                               const Velocities& velocities);
+  void hold(const Cloth& cloth, const Stage& stage, const ClothState& at, bool passive);
   double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result);
   void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
   void prescribe(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
@@ -86,8 +86,8 @@ class StageSolver {
   bool touching() const { return contacts_ && !contacts_->empty(); }
   bool iterateNewton(const Cloth& cloth, const Stage& stage, double potential, int most_solves,
                      const std::function<bool()>& enough, ClothState& result, StepReport& report);
-  void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at,
-                      Membrane::Hessian hessian, StepReport& report);
+  void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at, Hessian hessian,
+                      StepReport& report);
   Descent searchLine(const Cloth& cloth, const Stage& stage, ClothState& result, double& potential);
   void addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities);
   double incrementalPotential(const Cloth& cloth, const Stage& stage, const ClothState& at) const;
@@ -103,10 +103,9 @@ class StageSolver {
   std::vector<char> fixed_;
   bool any_fixed_ = false;
   std::optional<ContactStep> contacts_;
-  bool contacts_change_ = false;  // in this Newton iteration
-  ClothState trial_;              // of a line search; empty where there is none
-  std::vector<MembraneStrain> base_strains_;
-  FixedAir fixed_air_;
+  bool contacts_change_ = false;       // in this Newton iteration
+  ClothState trial_;                   // of a line search; empty where there is none
+  std::vector<Eigen::Vector3d> held_;  // by the forces: Force::hold()
 };
 
 }  // namespace haptex::cloth

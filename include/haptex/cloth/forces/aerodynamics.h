@@ -5,7 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "haptex/cloth/forces/membrane.h"
+#include "haptex/cloth/forces/element_assembly.h"
+#include "haptex/cloth/forces/force.h"
 #include "haptex/linear/block_matrix.h"
 
 namespace haptex::cloth {
@@ -43,18 +44,6 @@ struct Air {
   Wind wind;
 };
 
-/// What Newton iterations of a stage hold fixed of a triangle's air.
-struct AirPanel {
-  Eigen::Vector3d area;  ///< normal times area, m^2
-  Eigen::Vector3d lift;  ///< N
-};
-
-/// Of all triangles.
-struct FixedAir {
-  Eigen::Vector3d wind = Eigen::Vector3d::Zero();  ///< m/s
-  std::vector<AirPanel> panels;
-};
-
 /// The force of the air on a triangle with the unit normal n and the area A that it has now, and
 /// the velocity w = m n + q t relative to the air, the mean of its corners', with t in its plane:
 ///   F = -rho A / 2 { (normal |m| m + lift m q^2 / s) n + (tangential q^2 - lift m^2 q / s) t },
@@ -63,47 +52,45 @@ struct FixedAir {
 ///   rho A / 2 (normal |m|^3 + tangential q^3) >= 0
 /// of power from the cloth. They depend on the velocity relative to the air alone: wind on a
 /// resting cloth is the same as a cloth that moves through still air.
-class Aerodynamics {
+///
+/// Newton iterations hold the wind, normals, areas and lifts: what is left is the drag on them,
+/// whose potential is convex,
+///   a sum of rho A / 6 (normal |m|^3 + tangential q^3) - lift . mean velocity.
+class Aerodynamics final : public Force {
  public:
+  /// @param elements of restElements()
   /// @throws std::invalid_argument naming the coefficient or gust if a number is not finite, or a
   ///   coefficient or frequency is negative
-  explicit Aerodynamics(const Air& air);
+  Aerodynamics(std::vector<MembraneElement> elements, const Air& air);
 
-  const Wind& wind() const { return air_.wind; }
+  void bind(const linear::SymmetricBlockMatrix& matrix) override;
+  void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;
+  /// The air holds none.
+  double energy(const ForceState& /*state*/) const override { return 0.0; }
+  void addJacobian(const ForceState& state, JacobianRows& rows) const override;
 
-  /// Adds the forces (N) on the particles.
-  void addForces(const std::vector<MembraneElement>& elements, const Positions& positions,
-                 const Velocities& velocities, double time,
-                 std::vector<Eigen::Vector3d>& forces) const;
+  bool isDriven() const override { return true; }
+  bool changesWithTime() const override { return !air_.wind.isSteady(); }
+  /// Of the wind: its velocity times the force of the air. What the air does at all is less by what
+  /// it takes from any motion relative to it.
+  double drivingPower(const ForceState& state) const override;
 
-  /// Power (W) that the wind feeds into the cloth: its velocity times the force of the air. What
-  /// the air does at all is less by what it takes from any motion relative to it.
-  double windPower(const std::vector<MembraneElement>& elements, const Positions& positions,
-                   const Velocities& velocities, double time) const;
-
-  /// Adds what the air contributes to a linearised stage (Stage),
-  ///   matrix += -a D,  rhs += a F.
   /// The places, so normals and areas, are those that the velocities lead to in times.ahead; what
   /// depends on them is not stiff, and not in the matrix. D is projected to be symmetric and
   /// negative semidefinite; without lift it is so by itself.
-  void addStep(const std::vector<MembraneElement>& elements, const Positions& positions,
-               const Velocities& velocities, const StageTimes& times,
-               linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
+  void assembleLinearised(const ForceState& state, const StageTimes& times,
+                          linear::SymmetricBlockMatrix& matrix,
+                          linear::BlockVector& rhs) const override;
 
-  /// Normals, areas and lifts of a state, and the wind at the time.
-  /// @param fixed its panels have the size of the elements
-  void fix(const std::vector<MembraneElement>& elements, const Positions& positions,
-           const Velocities& velocities, double time, FixedAir& fixed) const;
-
-  /// Adds what the air contributes to a Newton iteration (Cloth::addNewton): the drag on fixed
-  /// normals and areas, whose potential is convex, and the fixed lift.
-  void addNewton(const std::vector<MembraneElement>& elements, const Velocities& velocities,
-                 const FixedAir& fixed, double a, linear::SymmetricBlockMatrix& matrix,
-                 linear::BlockVector& rhs) const;
-  /// The potential of addNewton() (J):
-  ///   a sum of rho A / 6 (normal |m|^3 + tangential q^3) - lift . mean velocity.
-  double incrementalPotential(const std::vector<MembraneElement>& elements,
-                              const Velocities& velocities, const FixedAir& fixed, double a) const;
+  /// The wind, and the area vector (m^2) and the lift (N) of every element. A lift that is held for
+  /// long does work, which the true one in still air does not: a passive start has none.
+  std::size_t heldSize() const override { return 1 + 2 * elements_.size(); }
+  void hold(const NewtonStart& start, Eigen::Vector3d* held) const override;
+  void assembleNewton(const ForceState& state, const Eigen::Vector3d* held, double a,
+                      Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                      linear::BlockVector& rhs) const override;
+  double incrementalPotential(const ForceState& state, const Eigen::Vector3d* held,
+                              double a) const override;
 
   /// The exact Jacobians of the force on any one corner of an element: dF/dP_j (N/m) by its
   /// corners, and dF/dv (N.s/m), alike for all three. Not symmetric.
@@ -115,6 +102,7 @@ class Aerodynamics {
                          const Velocities& velocities, double time) const;
 
  private:
+  std::vector<MembraneElement> elements_;
   Air air_;
 };
 

@@ -21,41 +21,40 @@ namespace haptex::cloth {
 /// linear stress and, where that stress and S have other principal axes, a term of the second order
 /// in the strain without which they would have a moment.
 ///
-/// The functions are those of Membrane, with these strains; positions and velocities are not
-/// checked either. Elements that have collapsed to a line or a point have finite forces.
-class Corotational {
+/// Newton iterations hold these strains at the beginning of a stage, as Membrane does. Elements
+/// that have collapsed to a line or a point have finite forces.
+class Corotational final : public Force {
  public:
-  /// @param elements of the membrane, with slots of the matrix that addStep() is to add to
+  /// @param elements  of restElements()
   /// @param viscosity whether the viscous curves of the fabric act
   Corotational(std::vector<MembraneElement> elements, const material::Fabric& fabric,
                bool viscosity);
 
   MembraneStrain strain(const MembraneElement& element, const Positions& positions) const;
 
-  void addForces(const Positions& positions, const Velocities& velocities,
-                 std::vector<Eigen::Vector3d>& forces) const;
-  double elasticEnergy(const Positions& positions) const;  ///< J
+  void bind(const linear::SymmetricBlockMatrix& matrix) override;
+  void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;
+  double energy(const ForceState& state) const override;
+  void addJacobian(const ForceState& state, JacobianRows& rows) const override;
 
-  /// As Membrane::addStep(). The projection to a semidefinite matrix is in closed form; it is exact
-  /// out of the plane of the element. In the plane it clamps the moduli to >= 0 and shrinks the
-  /// terms that couple turning and straining as far as it must.
-  void addStep(const Positions& positions, const Velocities& velocities, const StageTimes& times,
-               linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
+  /// The projection to a semidefinite matrix is in closed form; it is exact out of the plane of the
+  /// element. In the plane it clamps the moduli to >= 0 and shrinks the terms that couple turning
+  /// and straining as far as it must.
+  void assembleLinearised(const ForceState& state, const StageTimes& times,
+                          linear::SymmetricBlockMatrix& matrix,
+                          linear::BlockVector& rhs) const override;
 
-  /// As Membrane::addNewton().
-  void addNewton(const Positions& positions, const std::vector<MembraneStrain>& begin_strains,
-                 double h, Membrane::Hessian hessian, linear::SymmetricBlockMatrix& matrix,
-                 linear::BlockVector& rhs) const;
-  double incrementalPotential(const Positions& positions,
-                              const std::vector<MembraneStrain>& begin_strains, double h) const;
+  std::size_t heldSize() const override { return elements_.size(); }
+  void hold(const NewtonStart& start, Eigen::Vector3d* held) const override;
+  void assembleNewton(const ForceState& state, const Eigen::Vector3d* held, double a,
+                      Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                      linear::BlockVector& rhs) const override;
+  double incrementalPotential(const ForceState& state, const Eigen::Vector3d* held,
+                              double a) const override;
 
-  std::size_t strainCount() const { return elements_.size(); }
-  void computeStrains(const Positions& positions, std::vector<MembraneStrain>& strains) const;
-  void computeStrainsBefore(const Positions& positions, const Velocities& velocities,
-                            double interval, std::vector<MembraneStrain>& strains) const;
-
-  Membrane::Jacobian exactJacobian(const MembraneElement& element, const Positions& positions,
-                                   const Velocities& velocities) const;
+  /// As Membrane::exactJacobian().
+  ElementJacobian exactJacobian(const MembraneElement& element, const Positions& positions,
+                                const Velocities& velocities) const;
 
  private:
   std::vector<MembraneElement> elements_;

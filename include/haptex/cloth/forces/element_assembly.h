@@ -6,7 +6,9 @@
 #include <array>
 #include <vector>
 
+#include "haptex/cloth/forces/jacobian_rows.h"
 #include "haptex/linear/block_matrix.h"
+#include "haptex/mesh/mesh.h"
 
 namespace haptex::cloth {
 
@@ -19,6 +21,42 @@ struct MembraneElement {
   std::array<double, 3> warp_weights;  ///< rv, 1/m
   double area;                         ///< at rest, m^2
 };
+
+/// The elements of all triangles of a mesh without defects, with the slots of a matrix that has the
+/// edges of the triangles and nothing else.
+std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh);
+
+/// Looks up the slots of elements in a matrix whose pattern has more than that.
+/// @throws std::out_of_range if the pattern lacks one of them
+void bindElements(const linear::SymmetricBlockMatrix& matrix,
+                  std::vector<MembraneElement>& elements);
+
+/// A third of the area of each adjacent triangle (m^2), per particle.
+std::vector<double> tributaryAreas(const std::vector<MembraneElement>& elements,
+                                   std::size_t particle_count);
+
+/// Blocks [i][j] of the particles of an element, in its order.
+struct ElementJacobian {
+  std::array<std::array<Eigen::Matrix3d, 3>, 3> by_position;  ///< N/m
+  std::array<std::array<Eigen::Matrix3d, 3>, 3> by_velocity;  ///< N.s/m
+};
+
+/// Adds the rows that are asked for. @param jacobian of an element
+template <typename Jacobian>
+void addElementJacobians(const std::vector<MembraneElement>& elements, const Jacobian& jacobian,
+                         JacobianRows& rows) {
+  for (const MembraneElement& element : elements) {
+    const auto& [a, b, c] = element.particles;
+    if (!rows.asksFor(a) && !rows.asksFor(b) && !rows.asksFor(c)) continue;
+    const ElementJacobian blocks = jacobian(element);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        rows.add(element.particles[i], element.particles[j], blocks.by_position[i][j],
+                 blocks.by_velocity[i][j]);
+      }
+    }
+  }
+}
 
 /// U and V of an element (MembraneElement), or their rates if the points are velocities.
 struct ElementFrame {
@@ -34,6 +72,18 @@ inline ElementFrame elementFrame(const MembraneElement& element,
   return {element.weft_weights[1] * edge_1 + element.weft_weights[2] * edge_2,
           element.warp_weights[1] * edge_1 + element.warp_weights[2] * edge_2};
 }
+
+/// Green-Lagrange strains or their rates (1/s) in the order weft (U.U-1)/2, warp (V.V-1)/2,
+/// shear U.V.
+using MembraneStrain = Eigen::Vector3d;
+
+/// Green-Lagrange strain of an element.
+MembraneStrain greenStrain(const MembraneElement& element,
+                           const std::vector<Eigen::Vector3d>& positions);
+
+/// Projects the symmetric tensor [[s0, s2], [s2, s1]] to its nearest positive semidefinite one
+/// (Frobenius norm) by clamping its two eigenvalues in closed form.
+Eigen::Vector3d projectStress(const Eigen::Vector3d& stress);
 
 /// Adds the blocks of one element to the matrix.
 /// @param block of (i, j), from which those with particle 0 follow, because the weights sum to zero

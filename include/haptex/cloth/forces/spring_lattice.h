@@ -24,9 +24,9 @@ namespace haptex::cloth {
 /// What a lattice cannot do: the diagonals couple weft and warp; a fold by the angle a costs
 /// 2 sin^2(a/2) of what it should, so that slight curvature meets no resistance.
 ///
-/// The functions are those of Membrane; the strains of springs 3 t, 3 t + 1 and 3 t + 2 share the
-/// entry t of a vector of strains.
-class SpringLattice {
+/// Newton iterations hold the strains at the beginning of a stage, as Membrane does: those of
+/// springs 3 t, 3 t + 1 and 3 t + 2 in the vector t.
+class SpringLattice final : public Force {
  public:
   /// @param viscosity whether the viscous curves of the fabric act, combined as the elastic ones
   /// @param bend      whether there are bend springs; every fabric must then have a rigidity
@@ -34,33 +34,28 @@ class SpringLattice {
   SpringLattice(const mesh::ClothMesh& mesh, const material::Fabric& fabric, bool viscosity,
                 bool bend);
 
-  void setFabric(const material::Fabric& fabric);
-
   const std::vector<LatticeSpring>& springs() const { return springs_; }
-  /// Pairs of particles with a spring, smaller index first.
-  std::vector<std::array<int, 2>> pairs() const;
-  /// @throws std::out_of_range if the pattern lacks a pair
-  void bind(const linear::SymmetricBlockMatrix& matrix);
+  /// Of every spring.
+  std::vector<std::array<int, 2>> pairs() const override;
+  void bind(const linear::SymmetricBlockMatrix& matrix) override;
 
-  void addForces(const Positions& positions, const Velocities& velocities,
-                 std::vector<Eigen::Vector3d>& forces) const;
-  double elasticEnergy(const Positions& positions) const;  ///< J
+  void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;
+  double energy(const ForceState& state) const override;
+  void addJacobian(const ForceState& state, JacobianRows& rows) const override;
 
-  /// As Membrane::addStep(). The block of each spring is projected exactly: across a compressed
-  /// spring its stiffness is 0, along it at least 0.
-  void addStep(const Positions& positions, const Velocities& velocities, const StageTimes& times,
-               linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
-  /// As Membrane::addNewton().
-  void addNewton(const Positions& positions, const std::vector<MembraneStrain>& begin_strains,
-                 double h, Membrane::Hessian hessian, linear::SymmetricBlockMatrix& matrix,
-                 linear::BlockVector& rhs) const;
-  double incrementalPotential(const Positions& positions,
-                              const std::vector<MembraneStrain>& begin_strains, double h) const;
+  /// The block of each spring is projected exactly: across a compressed spring its stiffness is 0,
+  /// along it at least 0.
+  void assembleLinearised(const ForceState& state, const StageTimes& times,
+                          linear::SymmetricBlockMatrix& matrix,
+                          linear::BlockVector& rhs) const override;
 
-  std::size_t strainCount() const { return (springs_.size() + 2) / 3; }
-  void computeStrains(const Positions& positions, std::vector<MembraneStrain>& strains) const;
-  void computeStrainsBefore(const Positions& positions, const Velocities& velocities,
-                            double interval, std::vector<MembraneStrain>& strains) const;
+  std::size_t heldSize() const override { return (springs_.size() + 2) / 3; }
+  void hold(const NewtonStart& start, Eigen::Vector3d* held) const override;
+  void assembleNewton(const ForceState& state, const Eigen::Vector3d* held, double a,
+                      Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                      linear::BlockVector& rhs) const override;
+  double incrementalPotential(const ForceState& state, const Eigen::Vector3d* held,
+                              double a) const override;
 
   /// Derivatives of the force on the first particle by its own position and velocity: those by the
   /// second's are the negative, and the force on the second is the opposite.
@@ -83,7 +78,6 @@ class SpringLattice {
   Law elastic_;
   Law viscous_;
   bool viscosity_;
-  bool bend_;
 };
 
 }  // namespace haptex::cloth

@@ -50,14 +50,14 @@ class ClothMarkers {
   Eigen::Vector3d extent_;  // its edges, m
   double size_;             // the longest of them, m
 
-  std::vector<cloth::MembraneStrain> strains_;  // per element
-  std::vector<double> particle_strains_;        // times area, then averaged
-  std::vector<double> particle_areas_;          // m^2
-  std::vector<Eigen::Vector3d> normals_;        // per particle, unit length
-  std::vector<Eigen::Vector3f> colours_;        // per particle
-  std::vector<bool> joined_;                    // per particle: end of a bar
-  std::vector<mesh::Obstacle> moving_;          // obstacles
-  std::size_t first_obstacle_ = 0;              // in markers_
+  std::vector<cloth::MembraneElement> elements_;
+  std::vector<double> particle_strains_;  // times area, then averaged
+  std::vector<double> particle_areas_;    // m^2
+  std::vector<Eigen::Vector3d> normals_;  // per particle, unit length
+  std::vector<Eigen::Vector3f> colours_;  // per particle
+  std::vector<bool> joined_;              // per particle: end of a bar
+  std::vector<mesh::Obstacle> moving_;    // obstacles
+  std::size_t first_obstacle_ = 0;        // in markers_
   visualization_msgs::MarkerArray markers_;
 };
 

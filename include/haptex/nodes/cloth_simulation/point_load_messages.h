@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "haptex/cloth/forces/point_load.h"
+#include "haptex/cloth/forces/point_loads.h"
 
 namespace haptex::nodes {
 

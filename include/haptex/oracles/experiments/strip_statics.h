@@ -1,7 +1,7 @@
 // Strips of cloth under their own weight, at rest: exact and simulated.
 #pragma once
 
-#include "haptex/cloth/forces/bending.h"
+#include "haptex/cloth/forces/bending/bending.h"
 #include "haptex/kes/virtual_test.h"
 #include "haptex/mesh/mesh.h"
 

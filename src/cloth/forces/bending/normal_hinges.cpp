@@ -1,4 +1,4 @@
-#include "haptex/cloth/forces/normal_hinges.h"
+#include "haptex/cloth/forces/bending/normal_hinges.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "haptex/cloth/forces/bending.h"
+#include "haptex/cloth/forces/bending/bending.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "haptex/cloth/forces/bending_moments.h"
+#include "haptex/cloth/forces/bending/bending_moments.h"
 
 namespace haptex::cloth {
 namespace {
@@ -25,27 +25,13 @@ void requireRigidity(const char* name, double value) {
   }
 }
 
-void requireHysteresis(const char* name, double value, double rigidity) {
-  if (!std::isfinite(value) || value < 0.0 || (value > 0.0 && rigidity == 0.0)) {
-    std::ostringstream message;
-    message << "the hysteresis of bending along " << name << " is " << value
-            << " N; it must be finite and at least 0, and 0 where the rigidity is";
-    throw std::invalid_argument(message.str());
-  }
-}
-
 }  // namespace
 
 Bending::Bending(const mesh::ClothMesh& mesh, const material::BendingRigidity& rigidity,
-                 const BendingSettings& settings,
-                 const std::optional<material::BendingHysteresis>& hysteresis)
+                 const BendingSettings& settings)
     : diagonal_(mesh.rest_coordinates.size(), 0.0) {
   requireRigidity("weft", rigidity.weft);
   requireRigidity("warp", rigidity.warp);
-  if (hysteresis) {
-    requireHysteresis("weft", hysteresis->weft, rigidity.weft);
-    requireHysteresis("warp", hysteresis->warp, rigidity.warp);
-  }
   if (!settings.rest_curvature.allFinite()) {
     throw std::invalid_argument("the rest curvature has a component that is not finite");
   }
@@ -61,9 +47,6 @@ Bending::Bending(const mesh::ClothMesh& mesh, const material::BendingRigidity& r
   couple(mesh);
   if (!settings.rest_curvature.isZero(0.0)) {
     rest_.emplace(mesh, hinges_, corners_, settings.rest_curvature);
-  }
-  if (hysteresis && (hysteresis->weft > 0.0 || hysteresis->warp > 0.0)) {
-    friction_.emplace(mesh, hinges_, corners_, rigidity, *hysteresis);
   }
 }
 
@@ -130,10 +113,10 @@ void Bending::couple(const mesh::ClothMesh& mesh) {
 
 void Bending::bind(const linear::SymmetricBlockMatrix& matrix) {
   for (Coupling& coupling : couplings_) coupling.slot = matrix.slot(coupling.row, coupling.column);
-  if (friction_) friction_->bind(matrix);
 }
 
-void Bending::addForces(const Positions& positions, std::vector<Vector3d>& forces) const {
+void Bending::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
+  const Positions& positions = state.positions;
   for (const Coupling& coupling : couplings_) {
     const Vector3d force =
         coupling.stiffness * (positions[coupling.row] - positions[coupling.column]);
@@ -143,7 +126,8 @@ void Bending::addForces(const Positions& positions, std::vector<Vector3d>& force
   if (rest_) rest_->addForces(positions, forces);
 }
 
-double Bending::energy(const Positions& positions) const {
+double Bending::energy(const ForceState& state) const {
+  const Positions& positions = state.positions;
   double energy = 0.0;
   for (const Hinge& hinge : hinges_) {
     const Vector3d& origin = positions[corners_[hinge.begin].particle];
@@ -157,9 +141,24 @@ double Bending::energy(const Positions& positions) const {
   return energy;
 }
 
-void Bending::addStep(const Positions& positions, const Velocities& velocities,
-                      const StageTimes& times, linear::SymmetricBlockMatrix& matrix,
-                      linear::BlockVector& rhs) const {
+void Bending::addJacobian(const ForceState& state, JacobianRows& rows) const {
+  for (const Coupling& coupling : couplings_) {
+    if (!rows.asksFor(coupling.row) && !rows.asksFor(coupling.column)) continue;
+    const Matrix3d block = coupling.stiffness * Matrix3d::Identity();
+    for (const auto& [row, column] :
+         {std::pair(coupling.row, coupling.column), std::pair(coupling.column, coupling.row)}) {
+      rows.add(row, row, block);
+      rows.add(row, column, -block);
+    }
+  }
+  if (rest_) rest_->addJacobian(state.positions, rows);
+}
+
+void Bending::assembleLinearised(const ForceState& state, const StageTimes& times,
+                                 linear::SymmetricBlockMatrix& matrix,
+                                 linear::BlockVector& rhs) const {
+  const Positions& positions = state.positions;
+  const Velocities& velocities = state.velocities;
   // F(x) + ahead K v = F(x + ahead v), because the forces are linear.
   for (const Coupling& coupling : couplings_) {
     const Vector3d difference =
@@ -173,7 +172,7 @@ void Bending::addStep(const Positions& positions, const Velocities& velocities,
   for (int i = 0; i < matrix.size(); ++i) {
     matrix.diagonal(i).diagonal().array() += times.a * times.a * diagonal_[i];
   }
-  if (rest_) rest_->addStep(positions, velocities, times, rhs);
+  if (rest_) rest_->assembleLinearised(positions, velocities, times, rhs);
 }
 
 }  // namespace haptex::cloth

@@ -1,4 +1,4 @@
-#include "haptex/cloth/forces/rest_curvature.h"
+#include "haptex/cloth/forces/bending/rest_curvature.h"
 
 namespace haptex::cloth {
 
@@ -28,8 +28,8 @@ void RestCurvature::addForces(const Positions& positions, std::vector<Vector3d>&
   }
 }
 
-void RestCurvature::addStep(const Positions& positions, const Velocities& velocities,
-                            const StageTimes& times, linear::BlockVector& rhs) const {
+void RestCurvature::assembleLinearised(const Positions& positions, const Velocities& velocities,
+                                       const StageTimes& times, linear::BlockVector& rhs) const {
   for (const NormalHinges::NormalHinge& hinge : curved_.hinges()) {
     const NormalHinges::Frame at = curved_.frame(
         hinge, [&](int i) -> Vector3d { return positions[i] + times.ahead * velocities[i]; });
@@ -41,7 +41,7 @@ void RestCurvature::addStep(const Positions& positions, const Velocities& veloci
   }
 }
 
-void RestCurvature::jacobian(const Positions& positions, const BlockSink& sink) const {
+void RestCurvature::addJacobian(const Positions& positions, JacobianRows& rows) const {
   for (const NormalHinges::NormalHinge& hinge : curved_.hinges()) {
     const NormalHinges::Frame at = curved_.frame(hinge, positions);
     if (at.area == 0.0) continue;
@@ -49,8 +49,8 @@ void RestCurvature::jacobian(const Positions& positions, const BlockSink& sink) 
       const NormalHinges::Corner& row = curved_.corners()[i];
       for (int j = hinge.begin; j < hinge.end; ++j) {
         const NormalHinges::Corner& column = curved_.corners()[j];
-        sink(row.particle, column.particle,
-             hinge.stiffness * hinge.bend * NormalHinges::hessian(at, row, column));
+        rows.add(row.particle, column.particle,
+                 hinge.stiffness * hinge.bend * NormalHinges::hessian(at, row, column));
       }
     }
   }

@@ -1,4 +1,4 @@
-#include "haptex/cloth/forces/bending_moments.h"
+#include "haptex/cloth/forces/bending/bending_moments.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "haptex/cloth/forces/bending_fit.h"
+#include "haptex/cloth/forces/bending/bending_fit.h"
 
 #include <algorithm>
 #include <cmath>

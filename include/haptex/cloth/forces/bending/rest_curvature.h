@@ -2,11 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <vector>
 
-#include "haptex/cloth/forces/membrane.h"
-#include "haptex/cloth/forces/normal_hinges.h"
+#include "haptex/cloth/forces/bending/normal_hinges.h"
+#include "haptex/cloth/forces/force.h"
 #include "haptex/linear/block_matrix.h"
 
 namespace haptex::cloth {
@@ -26,12 +25,10 @@ class RestCurvature {
   /// Adds what it contributes to a linearised stage (Stage), rhs += a F(x + ahead v). The matrix
   /// does without: the Jacobian is not definite, and smaller than that of the hinges by the size of
   /// a cell over the radius.
-  void addStep(const Positions& positions, const Velocities& velocities, const StageTimes& times,
-               linear::BlockVector& rhs) const;
-  /// Hands out every block of the exact Jacobian of addForces(), by the particles of its row and
-  /// column, in parts.
-  using BlockSink = std::function<void(int row, int column, const Eigen::Matrix3d& block)>;
-  void jacobian(const Positions& positions, const BlockSink& sink) const;
+  void assembleLinearised(const Positions& positions, const Velocities& velocities,
+                          const StageTimes& times, linear::BlockVector& rhs) const;
+  /// Adds the exact Jacobian of addForces().
+  void addJacobian(const Positions& positions, JacobianRows& rows) const;
 
  private:
   NormalHinges curved_;

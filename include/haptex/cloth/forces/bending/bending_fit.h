@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "haptex/cloth/forces/bending_stencils.h"
+#include "haptex/cloth/forces/bending/bending_stencils.h"
 #include "haptex/material/fabric.h"
 
 namespace haptex::cloth {

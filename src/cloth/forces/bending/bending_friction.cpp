@@ -1,7 +1,9 @@
-#include "haptex/cloth/forces/bending_friction.h"
+#include "haptex/cloth/forces/bending/bending_friction.h"
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
 
 namespace haptex::cloth {
 namespace {
@@ -15,6 +17,15 @@ double frictionCurvature(double rigidity, double hysteresis) {
   return hysteresis > 0.0 ? 0.5 * hysteresis / rigidity : 0.0;
 }
 
+void requireHysteresis(const char* name, double value, double rigidity) {
+  if (!std::isfinite(value) || value < 0.0 || (value > 0.0 && rigidity == 0.0)) {
+    std::ostringstream message;
+    message << "the hysteresis of bending along " << name << " is " << value
+            << " N; it must be finite and at least 0, and 0 where the rigidity is";
+    throw std::invalid_argument(message.str());
+  }
+}
+
 }  // namespace
 
 BendingFriction::BendingFriction(const mesh::ClothMesh& mesh, const std::vector<Hinge>& hinges,
@@ -24,6 +35,8 @@ BendingFriction::BendingFriction(const mesh::ClothMesh& mesh, const std::vector<
     : hinges_(mesh, hinges, corners,
               Vector2d(frictionCurvature(rigidity.weft, hysteresis.weft),
                        frictionCurvature(rigidity.warp, hysteresis.warp))) {
+  requireHysteresis("weft", hysteresis.weft, rigidity.weft);
+  requireHysteresis("warp", hysteresis.warp, rigidity.warp);
   for (const NormalHinges::NormalHinge& hinge : hinges_.hinges()) {
     const double yield = hinge.stiffness * std::abs(hinge.bend);
     elements_.push_back({yield / (hinge.length * kYieldCurvature), yield});
@@ -46,17 +59,14 @@ void BendingFriction::bind(const linear::SymmetricBlockMatrix& matrix) {
   }
 }
 
-PlasticBends BendingFriction::withoutFriction(const Positions& positions) const {
-  PlasticBends plastic;
-  plastic.reserve(size());
-  for (const NormalHinges::NormalHinge& hinge : hinges_.hinges()) {
-    plastic.push_back(hinges_.frame(hinge, positions).bend());
+void BendingFriction::forget(const Positions& positions, double* plastic) const {
+  for (std::size_t h = 0; h < elements_.size(); ++h) {
+    plastic[h] = hinges_.frame(hinges_.hinges()[h], positions).bend();
   }
-  return plastic;
 }
 
-void BendingFriction::yield(const Positions& positions, PlasticBends& plastic) const {
-  for (std::size_t h = 0; h < size(); ++h) {
+void BendingFriction::remember(const Positions& positions, double* plastic) const {
+  for (std::size_t h = 0; h < elements_.size(); ++h) {
     const double bend = hinges_.frame(hinges_.hinges()[h], positions).bend();
     const double most = elements_[h].yield / elements_[h].spring;
     plastic[h] = std::clamp(plastic[h], bend - most, bend + most);
@@ -71,23 +81,23 @@ BendingFriction::Friction BendingFriction::frictionOf(const Element& element, do
   return {force, element.spring, element.spring};  // NaN stays NaN, and the step is refused
 }
 
-double BendingFriction::energy(const Positions& positions, const PlasticBends& plastic) const {
+double BendingFriction::energy(const ForceState& state) const {
   double energy = 0.0;
-  for (std::size_t h = 0; h < size(); ++h) {
+  for (std::size_t h = 0; h < elements_.size(); ++h) {
     const Element& element = elements_[h];
-    const double stretch = hinges_.frame(hinges_.hinges()[h], positions).bend() - plastic[h];
+    const double stretch =
+        hinges_.frame(hinges_.hinges()[h], state.positions).bend() - state.memory[h];
     const double force = frictionOf(element, stretch).force;
     energy += force * (stretch - 0.5 * force / element.spring);
   }
   return energy;
 }
 
-void BendingFriction::addForces(const Positions& positions, const PlasticBends& plastic,
-                                std::vector<Vector3d>& forces) const {
-  for (std::size_t h = 0; h < size(); ++h) {
+void BendingFriction::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
+  for (std::size_t h = 0; h < elements_.size(); ++h) {
     const NormalHinges::NormalHinge& hinge = hinges_.hinges()[h];
-    const NormalHinges::Frame at = hinges_.frame(hinge, positions);
-    const double force = frictionOf(elements_[h], at.bend() - plastic[h]).force;
+    const NormalHinges::Frame at = hinges_.frame(hinge, state.positions);
+    const double force = frictionOf(elements_[h], at.bend() - state.memory[h]).force;
     for (int i = hinge.begin; i < hinge.end; ++i) {
       const NormalHinges::Corner& corner = hinges_.corners()[i];
       forces[corner.particle] -= force * NormalHinges::gradient(at, corner);
@@ -95,26 +105,25 @@ void BendingFriction::addForces(const Positions& positions, const PlasticBends& 
   }
 }
 
-void BendingFriction::addStep(const Positions& positions, const Velocities& velocities,
-                              const PlasticBends& plastic, const StageTimes& times,
-                              linear::SymmetricBlockMatrix& matrix,
-                              linear::BlockVector& rhs) const {
-  for (std::size_t h = 0; h < size(); ++h) {
+void BendingFriction::assembleLinearised(const ForceState& state, const StageTimes& times,
+                                         linear::SymmetricBlockMatrix& matrix,
+                                         linear::BlockVector& rhs) const {
+  for (std::size_t h = 0; h < elements_.size(); ++h) {
     const NormalHinges::Frame at = hinges_.frame(hinges_.hinges()[h], [&](int i) -> Vector3d {
-      return positions[i] + times.ahead * velocities[i];
+      return state.positions[i] + times.ahead * state.velocities[i];
     });
-    const Friction friction = frictionOf(elements_[h], at.bend() - plastic[h]);
+    const Friction friction = frictionOf(elements_[h], at.bend() - state.memory[h]);
     addLinearised(h, at, friction.force, friction.secant, times.a, matrix, rhs);
   }
 }
 
-void BendingFriction::addNewton(const Positions& positions, const PlasticBends& plastic, double a,
-                                Membrane::Hessian hessian, linear::SymmetricBlockMatrix& matrix,
-                                linear::BlockVector& rhs) const {
-  const bool exact = hessian == Membrane::Hessian::kExact;
-  for (std::size_t h = 0; h < size(); ++h) {
-    const NormalHinges::Frame at = hinges_.frame(hinges_.hinges()[h], positions);
-    const Friction friction = frictionOf(elements_[h], at.bend() - plastic[h]);
+void BendingFriction::assembleNewton(const ForceState& state, const Vector3d* /*held*/, double a,
+                                     Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                                     linear::BlockVector& rhs) const {
+  const bool exact = hessian == Hessian::kExact;
+  for (std::size_t h = 0; h < elements_.size(); ++h) {
+    const NormalHinges::Frame at = hinges_.frame(hinges_.hinges()[h], state.positions);
+    const Friction friction = frictionOf(elements_[h], at.bend() - state.memory[h]);
     addLinearised(h, at, friction.force, exact ? friction.tangent : friction.secant, a, matrix,
                   rhs);
   }
@@ -140,21 +149,20 @@ void BendingFriction::addLinearised(std::size_t hinge, const NormalHinges::Frame
   }
 }
 
-void BendingFriction::jacobian(const Positions& positions, const PlasticBends& plastic,
-                               const RestCurvature::BlockSink& sink) const {
-  for (std::size_t h = 0; h < size(); ++h) {
+void BendingFriction::addJacobian(const ForceState& state, JacobianRows& rows) const {
+  for (std::size_t h = 0; h < elements_.size(); ++h) {
     const NormalHinges::NormalHinge& hinge = hinges_.hinges()[h];
-    const NormalHinges::Frame at = hinges_.frame(hinge, positions);
+    const NormalHinges::Frame at = hinges_.frame(hinge, state.positions);
     if (at.area == 0.0) continue;
-    const Friction friction = frictionOf(elements_[h], at.bend() - plastic[h]);
+    const Friction friction = frictionOf(elements_[h], at.bend() - state.memory[h]);
     for (int i = hinge.begin; i < hinge.end; ++i) {
       const NormalHinges::Corner& row = hinges_.corners()[i];
       const Vector3d row_gradient = NormalHinges::gradient(at, row);
       for (int j = hinge.begin; j < hinge.end; ++j) {
         const NormalHinges::Corner& column = hinges_.corners()[j];
-        sink(row.particle, column.particle,
-             -friction.tangent * row_gradient * NormalHinges::gradient(at, column).transpose() -
-                 friction.force * NormalHinges::hessian(at, row, column));
+        rows.add(row.particle, column.particle,
+                 -friction.tangent * row_gradient * NormalHinges::gradient(at, column).transpose() -
+                     friction.force * NormalHinges::hessian(at, row, column));
       }
     }
   }

@@ -6,12 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "haptex/cloth/forces/bending_fit.h"
-#include "haptex/cloth/forces/bending_friction.h"
-#include "haptex/cloth/forces/bending_hinge.h"
-#include "haptex/cloth/forces/bending_stencils.h"
-#include "haptex/cloth/forces/membrane.h"
-#include "haptex/cloth/forces/rest_curvature.h"
+#include "haptex/cloth/forces/bending/bending_fit.h"
+#include "haptex/cloth/forces/bending/bending_hinge.h"
+#include "haptex/cloth/forces/bending/bending_stencils.h"
+#include "haptex/cloth/forces/bending/rest_curvature.h"
+#include "haptex/cloth/forces/force.h"
 #include "haptex/linear/block_matrix.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
@@ -49,37 +48,28 @@ struct BendingSettings {
 ///   (weft wuu^2 + warp wvv^2) / 2 + sqrt(weft warp) wuv^2,
 /// a plate without transverse contraction. Across a free edge, where no moment can act, nothing is
 /// resisted: the half of a cell along it that no hinge sees stays without curvature.
-class Bending {
+class Bending final : public Force {
  public:
-  /// @param mesh       without defects
-  /// @param hysteresis nothing: none is modelled
-  /// @throws std::invalid_argument if a rigidity or hysteresis is not finite and >= 0, a hysteresis
-  ///   is > 0 where the rigidity is 0, or a rest curvature is not finite
+  /// @param mesh without defects
+  /// @throws std::invalid_argument if a rigidity is not finite and >= 0, or a rest curvature is not
+  ///   finite
   Bending(const mesh::ClothMesh& mesh, const material::BendingRigidity& rigidity,
-          const BendingSettings& settings = {},
-          const std::optional<material::BendingHysteresis>& hysteresis = std::nullopt);
+          const BendingSettings& settings = {});
 
   const std::vector<Hinge>& hinges() const { return hinges_; }
   const std::vector<HingeCorner>& corners() const { return corners_; }
   /// Null if there is none.
   const RestCurvature* restCurvature() const { return rest_ ? &*rest_ : nullptr; }
-  /// Null if there is none. The functions below do without it: it depends on the past.
-  const BendingFriction* friction() const { return friction_ ? &*friction_ : nullptr; }
-  /// Pairs of particles, smaller index first, that the matrix of addStep() couples and that no
-  /// triangle has.
-  const std::vector<std::array<int, 2>>& pairs() const { return pairs_; }
-  /// Looks up where the blocks of all couplings and of the friction are. Before addStep().
-  /// @throws std::out_of_range if the pattern lacks one
-  void bind(const linear::SymmetricBlockMatrix& matrix);
 
-  void addForces(const Positions& positions, std::vector<Eigen::Vector3d>& forces) const;
-  double energy(const Positions& positions) const;  ///< J
-
-  /// Adds what bending contributes to a linearised stage (Stage),
-  ///   matrix += -a^2 K,  rhs += a (F + ahead K v),
-  /// K without the part of a rest curvature (RestCurvature::addStep()).
-  void addStep(const Positions& positions, const Velocities& velocities, const StageTimes& times,
-               linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
+  std::vector<std::array<int, 2>> pairs() const override { return pairs_; }
+  void bind(const linear::SymmetricBlockMatrix& matrix) override;
+  void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;
+  double energy(const ForceState& state) const override;
+  void addJacobian(const ForceState& state, JacobianRows& rows) const override;
+  /// K is without the part of a rest curvature (RestCurvature::assembleLinearised()).
+  void assembleLinearised(const ForceState& state, const StageTimes& times,
+                          linear::SymmetricBlockMatrix& matrix,
+                          linear::BlockVector& rhs) const override;
 
   /// The sum over all hinges of stiffness weight_i weight_j, at rest in the plane: force on `row`
   /// stiffness (P_row - P_column), and the opposite on `column`.
@@ -99,7 +89,6 @@ class Bending {
   std::vector<Hinge> hinges_;
   std::vector<HingeCorner> corners_;
   std::optional<RestCurvature> rest_;
-  std::optional<BendingFriction> friction_;
   std::vector<Coupling> couplings_;
   std::vector<double> diagonal_;  // N/m, by particle
   std::vector<std::array<int, 2>> pairs_;

@@ -4,8 +4,8 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "haptex/cloth/forces/bending_hinge.h"
-#include "haptex/cloth/forces/membrane.h"
+#include "haptex/cloth/forces/bending/bending_hinge.h"
+#include "haptex/cloth/forces/force.h"
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::cloth {

@@ -1,4 +1,4 @@
-#include "haptex/cloth/forces/point_load.h"
+#include "haptex/cloth/forces/point_loads.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -10,6 +10,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using Triangles = std::vector<std::array<int, 3>>;
 
 constexpr double kTolerance = 1e-6;  // of the weights' sum, and of the stiffness by its norm
 
@@ -46,8 +47,7 @@ Vector3d sortedWeights(const PointLoad& load, const std::array<int, 3>& corners,
   return sorted;
 }
 
-}  // namespace
-
+/// The load with the part of its stiffness that is exactly symmetric and positive semidefinite.
 PointLoad checkedLoad(const PointLoad& load, std::size_t index, std::size_t triangle_count) {
   if (load.triangle < 0 || static_cast<std::size_t>(load.triangle) >= triangle_count) {
     refuse(index, "triangle ", load.triangle, " does not exist; the cloth has triangles 0 to ",
@@ -81,34 +81,65 @@ PointLoad checkedLoad(const PointLoad& load, std::size_t index, std::size_t tria
   return checked;
 }
 
-void addPointForces(const std::vector<PointLoad>& loads, const Triangles& triangles,
-                    const Positions& positions, std::vector<Vector3d>& forces) {
-  for (const PointLoad& load : loads) {
-    const Vector3d force = pointForce(load, triangles, positions);
-    for (int i = 0; i < 3; ++i) forces[triangles[load.triangle][i]] += load.weights[i] * force;
+}  // namespace
+
+PointLoads::PointLoads(const mesh::ClothMesh& mesh)
+    : triangles_(mesh.triangles), elements_(restElements(mesh)) {
+  loads_.reserve(kMost);
+}
+
+void PointLoads::set(const std::vector<PointLoad>& loads) {
+  if (loads.size() > kMost) {
+    throw std::invalid_argument("there are " + std::to_string(loads.size()) +
+                                " point loads; allowed are " + std::to_string(kMost));
+  }
+  for (std::size_t i = 0; i < loads.size(); ++i) checkedLoad(loads[i], i, triangles_.size());
+  loads_.clear();
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    loads_.push_back(checkedLoad(loads[i], i, triangles_.size()));
   }
 }
 
-double pointLoadEnergy(const std::vector<PointLoad>& loads, const Triangles& triangles,
-                       const Positions& positions) {
+void PointLoads::bind(const linear::SymmetricBlockMatrix& matrix) {
+  bindElements(matrix, elements_);
+}
+
+void PointLoads::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
+  for (const PointLoad& load : loads_) {
+    const Vector3d force = pointForce(load, triangles_, state.positions);
+    for (int i = 0; i < 3; ++i) forces[triangles_[load.triangle][i]] += load.weights[i] * force;
+  }
+}
+
+double PointLoads::energy(const ForceState& state) const {
   double energy = 0.0;
-  for (const PointLoad& load : loads) {
-    const Vector3d d = interpolated(load, triangles, positions) - load.position;
+  for (const PointLoad& load : loads_) {
+    const Vector3d d = interpolated(load, triangles_, state.positions) - load.position;
     energy += d.dot(0.5 * load.stiffness * d - load.force);
   }
   return energy;
 }
 
-void addPointLoadStep(const std::vector<PointLoad>& loads, const Triangles& triangles,
-                      const std::vector<MembraneElement>& elements, const Positions& positions,
-                      const Velocities& velocities, const StageTimes& times,
-                      linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) {
-  for (const PointLoad& load : loads) {
-    const MembraneElement& element = elements[load.triangle];
-    const Vector3d weights = sortedWeights(load, triangles[load.triangle], element);
+void PointLoads::addJacobian(const ForceState& /*state*/, JacobianRows& rows) const {
+  for (const PointLoad& load : loads_) {
+    const std::array<int, 3>& corners = triangles_[load.triangle];
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        rows.add(corners[i], corners[j], -load.weights[i] * load.weights[j] * load.stiffness);
+      }
+    }
+  }
+}
+
+void PointLoads::assembleLinearised(const ForceState& state, const StageTimes& times,
+                                    linear::SymmetricBlockMatrix& matrix,
+                                    linear::BlockVector& rhs) const {
+  for (const PointLoad& load : loads_) {
+    const MembraneElement& element = elements_[load.triangle];
+    const Vector3d weights = sortedWeights(load, triangles_[load.triangle], element);
     const Vector3d impulse =
-        times.a * (pointForce(load, triangles, positions) -
-                   times.ahead * load.stiffness * interpolated(load, triangles, velocities));
+        times.a * (pointForce(load, triangles_, state.positions) -
+                   times.ahead * load.stiffness * interpolated(load, triangles_, state.velocities));
     const Matrix3d stiffness = times.a * times.a * load.stiffness;
     for (int i = 0; i < 3; ++i) {
       rhs.col(element.particles[i]) += weights[i] * impulse;

@@ -1,4 +1,4 @@
-#include "haptex/cloth/forces/bending_stencils.h"
+#include "haptex/cloth/forces/bending/bending_stencils.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

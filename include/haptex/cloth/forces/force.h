@@ -1,0 +1,104 @@
+// What every force on a cloth can do, for those who step the cloth in time.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "haptex/cloth/forces/jacobian_rows.h"
+#include "haptex/linear/block_matrix.h"
+
+namespace haptex::cloth {
+
+using Positions = std::vector<Eigen::Vector3d>;   ///< m, one per particle
+using Velocities = std::vector<Eigen::Vector3d>;  ///< m/s, one per particle
+
+/// What a force depends on. Nothing of it is checked.
+struct ForceState {
+  const Positions& positions;
+  const Velocities& velocities;
+  double time = 0.0;               ///< s, simulated
+  const double* memory = nullptr;  ///< Force::memorySize() numbers of this force
+};
+
+/// Times (s) of an implicit stage, x = x* + a v, that is linearised about a state (Stage).
+struct StageTimes {
+  double a;      ///< > 0; the time step in backward Euler
+  double ahead;  ///< in which the state's velocities bring it to the stage: a in backward Euler, 0
+                 ///< if it is there already
+};
+
+/// What the Newton iterations of a stage hold fixed is taken from.
+struct NewtonStart {
+  const Positions& base;  ///< where the stage starts from, m
+  const ForceState& at;   ///< near its end
+  double a;               ///< s, StageTimes
+  bool since_base;        ///< strain rates are (e - e(base)) / a; if not, those of the velocities
+  bool passive;           ///< nothing is held that would do work if it were held for long
+};
+
+/// The Hessian of a Newton iteration: exact, for fast convergence near a minimum, or projected to
+/// be positive semidefinite, for a descent from everywhere.
+enum class Hessian { kExact, kProjected };
+
+/// A force on the particles of a mesh. The functions allocate nothing but where they say so.
+class Force {
+ public:
+  virtual ~Force() = default;
+
+  /// Pairs of particles, smaller index first, that the matrix couples and no triangle has.
+  /// Allocates.
+  virtual std::vector<std::array<int, 2>> pairs() const { return {}; }
+  /// Looks up where the blocks are that the force adds to. Before the functions with a matrix, and
+  /// again for a matrix with another pattern. Allocates.
+  /// @throws std::out_of_range if the pattern lacks a block
+  virtual void bind(const linear::SymmetricBlockMatrix& matrix);
+
+  /// How many numbers the force remembers from step to step.
+  virtual std::size_t memorySize() const { return 0; }
+  /// Writes the memory of a cloth that has rested here for ever.
+  virtual void forget(const Positions& positions, double* memory) const;
+  /// Lets the memory follow the positions, at the end of every step.
+  virtual void remember(const Positions& positions, double* memory) const;
+
+  /// Adds the forces (N) on the particles.
+  virtual void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const = 0;
+  /// What the force holds (J): where it is conservative, the forces are the negative gradient.
+  virtual double energy(const ForceState& state) const = 0;
+  /// Adds the exact Jacobian, neither projected nor symmetric, of the rows that are asked for.
+  /// Allocates.
+  virtual void addJacobian(const ForceState& state, JacobianRows& rows) const = 0;
+
+  /// Whether the force depends on what moves by itself, so that it can do work on a cloth at rest.
+  virtual bool isDriven() const { return false; }
+  /// Whether it changes with time where nothing moves.
+  virtual bool changesWithTime() const { return false; }
+  /// Power (W) that what drives the force feeds in: its velocity times the force.
+  virtual double drivingPower(const ForceState& state) const;
+
+  /// Adds what the force contributes to a linearised stage (Stage),
+  ///   matrix += -a D - a^2 K,  rhs += a (F + ahead K v),
+  /// with K and D projected so that what is added is positive semidefinite.
+  virtual void assembleLinearised(const ForceState& state, const StageTimes& times,
+                                  linear::SymmetricBlockMatrix& matrix,
+                                  linear::BlockVector& rhs) const = 0;
+
+  /// How many vectors Newton iterations of a stage hold fixed.
+  virtual std::size_t heldSize() const { return 0; }
+  virtual void hold(const NewtonStart& start, Eigen::Vector3d* held) const;
+
+  // Where nothing is held and the linearised force is the exact one, what follows need not be
+  // written anew.
+
+  /// Adds what the force contributes to a Newton iteration at the end of a stage:
+  ///   matrix += a^2 times the Hessian of its incremental potential, rhs -= a times its gradient.
+  virtual void assembleNewton(const ForceState& state, const Eigen::Vector3d* held, double a,
+                              Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                              linear::BlockVector& rhs) const;
+  /// The incremental potential of assembleNewton() (J), up to a constant.
+  virtual double incrementalPotential(const ForceState& state, const Eigen::Vector3d* held,
+                                      double a) const;
+};
+
+}  // namespace haptex::cloth

@@ -1,0 +1,45 @@
+// What is modelled of a fabric and of what surrounds it, and the forces that this makes.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "haptex/cloth/forces/aerodynamics.h"
+#include "haptex/cloth/forces/bending/bending.h"
+#include "haptex/cloth/forces/force_sum.h"
+#include "haptex/material/fabric.h"
+#include "haptex/mesh/mesh.h"
+
+namespace haptex::cloth {
+
+/// How the cloth resists stretch and shear.
+enum class Elasticity {
+  kGreenLagrange,  ///< Membrane: nonlinear, exact for every curve
+  kMassSpring,     ///< SpringLattice: for comparison, on rectangular cells
+  kCorotational,   ///< Corotational: for comparison, linear
+};
+
+/// What is modelled besides inertia. What is not asked for is not computed.
+struct ModelledEffects {
+  bool viscosity = false;
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();     ///< m/s^2
+  Elasticity elasticity = Elasticity::kGreenLagrange;    ///< against stretch and shear
+  bool bending = false;                                  ///< by the fabric's rigidity
+  BendingSettings bending_settings = BendingSettings();  ///< how, if bending is modelled
+  bool bending_hysteresis = false;                       ///< of the fabric, only with bending
+  bool contraction = false;                              ///< of the fabric, transverse
+  std::optional<Air> air = std::nullopt;                 ///< drag and lift, of still air or wind
+  bool contacts = false;                                 ///< of particles with bodies
+  bool point_loads = false;                              ///< forces on points of triangles
+};
+
+/// Adds the forces that a fabric and the air have on a cloth; a new kind of force is added here.
+/// @param mesh without defects
+/// @throws std::invalid_argument if the mesh is not what the elasticity needs
+///   (findLatticeSprings()), bending, its hysteresis or contraction is modelled and the fabric has
+///   none, contraction is modelled with another elasticity than Green-Lagrange, hysteresis without
+///   bending or with bend springs, or as Bending, BendingFriction and Aerodynamics
+void addFabricForces(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
+                     const ModelledEffects& effects, ForceSum& forces);
+
+}  // namespace haptex::cloth

@@ -1,0 +1,72 @@
+#include "haptex/cloth/forces/element_assembly.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptex::cloth {
+
+using Eigen::Vector3d;
+
+namespace {
+
+MembraneElement restElement(const mesh::ClothMesh& mesh, std::array<int, 3> particles) {
+  std::sort(particles.begin(), particles.end());
+  const Eigen::Vector2d& a = mesh.rest_coordinates[particles[0]];
+  const Eigen::Vector2d& b = mesh.rest_coordinates[particles[1]];
+  const Eigen::Vector2d& c = mesh.rest_coordinates[particles[2]];
+  const double ua = a.x(), va = a.y(), ub = b.x(), vb = b.y(), uc = c.x(), vc = c.y();
+  const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
+  MembraneElement element{};
+  element.particles = particles;
+  element.weft_weights = {(vb - vc) / d, (vc - va) / d, (va - vb) / d};
+  element.warp_weights = {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d};
+  element.area = 0.5 * std::abs(d);
+  return element;
+}
+
+}  // namespace
+
+std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh) {
+  std::vector<MembraneElement> elements;
+  elements.reserve(mesh.triangles.size());
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    elements.push_back(restElement(mesh, triangle));
+  }
+  bindElements({static_cast<int>(mesh.rest_coordinates.size()), mesh.triangles}, elements);
+  return elements;
+}
+
+void bindElements(const linear::SymmetricBlockMatrix& matrix,
+                  std::vector<MembraneElement>& elements) {
+  for (MembraneElement& element : elements) {
+    const auto& [a, b, c] = element.particles;
+    element.slots = {matrix.slot(b, a), matrix.slot(c, a), matrix.slot(c, b)};
+  }
+}
+
+std::vector<double> tributaryAreas(const std::vector<MembraneElement>& elements,
+                                   std::size_t particle_count) {
+  std::vector<double> areas(particle_count, 0.0);
+  for (const MembraneElement& element : elements) {
+    for (int particle : element.particles) areas[particle] += element.area / 3.0;
+  }
+  return areas;
+}
+
+MembraneStrain greenStrain(const MembraneElement& element, const std::vector<Vector3d>& positions) {
+  const auto [weft, warp] = elementFrame(element, positions);
+  return {0.5 * (weft.squaredNorm() - 1.0), 0.5 * (warp.squaredNorm() - 1.0), weft.dot(warp)};
+}
+
+Vector3d projectStress(const Vector3d& stress) {
+  const double mean = 0.5 * (stress[0] + stress[1]);
+  const double difference = 0.5 * (stress[0] - stress[1]);
+  const double radius = std::sqrt(difference * difference + stress[2] * stress[2]);
+  if (mean >= radius) return stress;
+  if (mean <= -radius) return Vector3d::Zero();
+  const double half = 0.5 * (mean + radius);  // half the one positive eigenvalue; radius > 0 here
+  return {half * (1.0 + difference / radius), half * (1.0 - difference / radius),
+          half * stress[2] / radius};
+}
+
+}  // namespace haptex::cloth

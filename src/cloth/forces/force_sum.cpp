@@ -1,0 +1,128 @@
+#include "haptex/cloth/forces/force_sum.h"
+
+#include <algorithm>
+
+namespace haptex::cloth {
+
+/// Calls with each force and the state with its own memory.
+template <typename Call>
+void ForceSum::forEach(const ForceState& state, Call&& call) const {
+  const double* memory = state.memory;
+  for (const auto& force : forces_) {
+    call(*force, ForceState{state.positions, state.velocities, state.time, memory});
+    if (memory != nullptr) memory += force->memorySize();
+  }
+}
+
+std::vector<std::array<int, 2>> ForceSum::pairs() const {
+  std::vector<std::array<int, 2>> all;
+  for (const auto& force : forces_) {
+    const std::vector<std::array<int, 2>> pairs = force->pairs();
+    all.insert(all.end(), pairs.begin(), pairs.end());
+  }
+  return all;
+}
+
+void ForceSum::bind(const linear::SymmetricBlockMatrix& matrix) {
+  for (const auto& force : forces_) force->bind(matrix);
+}
+
+std::size_t ForceSum::memorySize() const {
+  std::size_t size = 0;
+  for (const auto& force : forces_) size += force->memorySize();
+  return size;
+}
+
+void ForceSum::forget(const Positions& positions, double* memory) const {
+  for (const auto& force : forces_) {
+    force->forget(positions, memory);
+    memory += force->memorySize();
+  }
+}
+
+void ForceSum::remember(const Positions& positions, double* memory) const {
+  for (const auto& force : forces_) {
+    force->remember(positions, memory);
+    memory += force->memorySize();
+  }
+}
+
+void ForceSum::addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const {
+  forEach(state, [&](const Force& force, const ForceState& its) { force.addForces(its, forces); });
+}
+
+void ForceSum::addDrivenForces(const ForceState& state,
+                               std::vector<Eigen::Vector3d>& forces) const {
+  forEach(state, [&](const Force& force, const ForceState& its) {
+    if (force.isDriven()) force.addForces(its, forces);
+  });
+}
+
+double ForceSum::energy(const ForceState& state) const {
+  double sum = 0.0;
+  forEach(state, [&](const Force& force, const ForceState& its) { sum += force.energy(its); });
+  return sum;
+}
+
+void ForceSum::addJacobian(const ForceState& state, JacobianRows& rows) const {
+  forEach(state, [&](const Force& force, const ForceState& its) { force.addJacobian(its, rows); });
+}
+
+bool ForceSum::isDriven() const {
+  return std::any_of(forces_.begin(), forces_.end(),
+                     [](const auto& force) { return force->isDriven(); });
+}
+
+bool ForceSum::changesWithTime() const {
+  return std::any_of(forces_.begin(), forces_.end(),
+                     [](const auto& force) { return force->changesWithTime(); });
+}
+
+double ForceSum::drivingPower(const ForceState& state) const {
+  double sum = 0.0;
+  forEach(state,
+          [&](const Force& force, const ForceState& its) { sum += force.drivingPower(its); });
+  return sum;
+}
+
+void ForceSum::assembleLinearised(const ForceState& state, const StageTimes& times,
+                                  linear::SymmetricBlockMatrix& matrix,
+                                  linear::BlockVector& rhs) const {
+  forEach(state, [&](const Force& force, const ForceState& its) {
+    force.assembleLinearised(its, times, matrix, rhs);
+  });
+}
+
+std::size_t ForceSum::heldSize() const {
+  std::size_t size = 0;
+  for (const auto& force : forces_) size += force->heldSize();
+  return size;
+}
+
+void ForceSum::hold(const NewtonStart& start, Eigen::Vector3d* held) const {
+  forEach(start.at, [&](const Force& force, const ForceState& its) {
+    force.hold({start.base, its, start.a, start.since_base, start.passive}, held);
+    held += force.heldSize();
+  });
+}
+
+void ForceSum::assembleNewton(const ForceState& state, const Eigen::Vector3d* held, double a,
+                              Hessian hessian, linear::SymmetricBlockMatrix& matrix,
+                              linear::BlockVector& rhs) const {
+  forEach(state, [&](const Force& force, const ForceState& its) {
+    force.assembleNewton(its, held, a, hessian, matrix, rhs);
+    held += force.heldSize();
+  });
+}
+
+double ForceSum::incrementalPotential(const ForceState& state, const Eigen::Vector3d* held,
+                                      double a) const {
+  double sum = 0.0;
+  forEach(state, [&](const Force& force, const ForceState& its) {
+    sum += force.incrementalPotential(its, held, a);
+    held += force.heldSize();
+  });
+  return sum;
+}
+
+}  // namespace haptex::cloth
