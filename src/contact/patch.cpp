@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "haptex/cloth/forces/bending/bending.h"
-#include "haptex/cloth/forces/constant_forces.h"
 #include "haptex/cloth/forces/membrane.h"
 
 namespace haptex::contact {
@@ -24,11 +23,10 @@ constexpr double kLastTether = 1e-3;   // N/m, then none
 // s: the next matrix of longer steps has little in common with the last one.
 constexpr double kLongestKept = 4e-3;
 
-/// Gravity, membrane and bending on the particles of a cut.
+/// Membrane and bending on the particles of a cut.
 cloth::ForceSum forcesOn(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
-                         const cloth::ModelledEffects& effects, const std::vector<double>& masses) {
+                         const cloth::ModelledEffects& effects) {
   cloth::ForceSum forces;
-  forces.add(std::make_unique<cloth::ConstantForces>(masses, effects.gravity));
   forces.add(std::make_unique<cloth::Membrane>(cloth::restElements(mesh), fabric, effects.viscosity,
                                                effects.contraction));
   forces.add(std::make_unique<cloth::Bending>(mesh, *fabric.bending, effects.bending_settings));
@@ -58,7 +56,7 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabr
       effects_(effects),
       areas_(cloth::tributaryAreas(cloth::restElements(cut_.mesh), cut_.supports.size())),
       masses_(scaled(fabric.areal_density, areas_)),
-      forces_(forcesOn(cut_.mesh, fabric, effects, masses_)),
+      forces_(forcesOn(cut_.mesh, fabric, effects)),
       matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, forces_.pairs()),
       solver_(leadingPattern(matrix_, cut_.free_count)),
       contacts_{SphereContact(law, cut_.free_count), SphereContact(law, cut_.free_count)},
@@ -136,9 +134,9 @@ void Patch::assemble(const LargeScaleMotion& motion, double h) {
   const double detour_left = std::exp(-h / kDetourTime);
   const double tether_left = std::exp(-h / kTetherTime);
   matrix_.setZero();
-  rhs_.setZero();
   for (int i = 0; i < cut_.free_count; ++i) {
     matrix_.diagonal(i).diagonal().setConstant(masses_[i]);
+    rhs_.col(i) = h * masses_[i] * effects_.gravity;
     if (tethers_[i] == 0.0) continue;
     detours_[i] *= detour_left;
     const Vector3d end = state_.positions[i] + h * state_.velocities[i];
