@@ -173,7 +173,7 @@ TEST(Faults, AClosedPortTakesTheForceToZeroUntilItIsClearedAndEnabledAgain) {
   faulty.loop.closePort();
   const Worst worst = faulty.watch(milliseconds(300));
   expectSafe(worst, "closed");
-  EXPECT_LE(worst.motors_on - closed, DeviceEnd::kRamp + kOnTheLine);
+  EXPECT_LE(worst.motors_on - closed, FirmwareModel::kRamp + kOnTheLine);
   EXPECT_LT(faulty.contactForce(), kWeightAndFriction);
   EXPECT_EQ(faulty.loop.controller().operatingState().mode, Mode::kFault);
   EXPECT_EQ(faulty.loop.controller().clearFault(), "");

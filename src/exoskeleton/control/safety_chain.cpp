@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "haptex/exoskeleton/protocol/device_end.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 
 namespace haptex::exoskeleton {
 namespace {
@@ -11,8 +11,8 @@ namespace {
 constexpr double kFastest = 10.0;
 // How far the return has come for a device that got no command for dt (s).
 Time returned(double dt) {
-  const double left = seconds(DeviceEnd::kMotorsOff) - dt;
-  const double share = std::clamp(left / seconds(DeviceEnd::kRamp), 0.0, 1.0);
+  const double left = seconds(FirmwareModel::kMotorsOff) - dt;
+  const double share = std::clamp(left / seconds(FirmwareModel::kRamp), 0.0, 1.0);
   return std::chrono::duration_cast<Time>(std::chrono::duration<double>(share * kReturn));
 }
 

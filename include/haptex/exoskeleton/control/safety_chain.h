@@ -92,7 +92,8 @@ class SafetyChain {
 
   /// There is no force to be rendered for a moment: when there is one again it comes back within
   /// kReturn, as it does where the commands had expired. After a tick that came so late that the
-  /// device's watchdog has taken a share of the torques (DeviceEnd), it comes back from the rest.
+  /// device's watchdog has taken a share of the torques (FirmwareModel), it comes back from the
+  /// rest.
   void interrupt() { interrupted_ = true; }
 
   /// Latches: the force goes to zero within kWatchdogRamp, from the next tick on, and stays there
