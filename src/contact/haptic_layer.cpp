@@ -77,8 +77,8 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric,
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
     whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabric_, law_);
   }
-  loads_.reserve(cloth::Cloth::kMostPointLoads);
-  for (FingertipContact& contact : contacts_) contact.points.reserve(kMostContactPoints);
+  loads_.reserve(cloth::Cloth::kMaxPointLoads);
+  for (FingertipContact& contact : contacts_) contact.points.reserve(kMaxContactPoints);
 }
 
 std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangles,
@@ -275,7 +275,7 @@ void HapticLayer::fillContact(int f, const std::vector<TouchedParticle>& touched
         share * (fingertip.velocity + fingertip.angular_velocity.cross(place - fingertip.position) -
                  particles.velocities[point.particle]);
     if (point.slips) slipping += share;
-    if (contact.points.size() < kMostContactPoints) {
+    if (contact.points.size() < kMaxContactPoints) {
       contact.points.push_back({place, point.normal, point.normal_force, point.friction});
     }
   }

@@ -30,9 +30,9 @@ void describe(std::ostringstream& text, const char* what, const std::vector<int>
   if (indices.empty()) return;
   if (text.tellp() > 0) text << "; ";
   text << what << ":";
-  constexpr std::size_t kMostNamed = 10;
-  for (std::size_t i = 0; i < std::min(indices.size(), kMostNamed); ++i) text << ' ' << indices[i];
-  if (indices.size() > kMostNamed) text << " and " << indices.size() - kMostNamed << " more";
+  constexpr std::size_t kMaxNamed = 10;
+  for (std::size_t i = 0; i < std::min(indices.size(), kMaxNamed); ++i) text << ' ' << indices[i];
+  if (indices.size() > kMaxNamed) text << " and " << indices.size() - kMaxNamed << " more";
 }
 
 /// Smallest altitude over longest edge of a rest triangle; 0 if a particle is repeated.
@@ -165,7 +165,7 @@ std::string MeshDefects::description() const {
 }
 
 MeshDefects findDefects(const ClothMesh& mesh) {
-  constexpr double kSmallestSlenderness = 1e-9;
+  constexpr double kMinSlenderness = 1e-9;
   MeshDefects defects;
   defects.empty = mesh.triangles.empty();
   defects.size_mismatch = mesh.rest_coordinates.size() != mesh.initial_positions.size();
@@ -187,7 +187,7 @@ MeshDefects findDefects(const ClothMesh& mesh) {
     for (int particle : triangle) referenced[particle] = true;
     if (!seen.insert(triangle).second) defects.duplicate_triangles.push_back(static_cast<int>(t));
     // Negated so that a rest coordinate that is not a number counts as degenerate.
-    if (!(slenderness(mesh, triangle) >= kSmallestSlenderness)) {
+    if (!(slenderness(mesh, triangle) >= kMinSlenderness)) {
       defects.degenerate_triangles.push_back(static_cast<int>(t));
     }
   }

@@ -112,7 +112,7 @@ Cloth::Cloth(mesh::ClothMesh mesh, material::Fabric fabric, const ModelledEffect
     springs_.emplace(mesh_, fabric_, effects.viscosity, effects.bending);
   }
   bindPattern();
-  if (effects.point_loads) point_loads_.reserve(kMostPointLoads);
+  if (effects.point_loads) point_loads_.reserve(kMaxPointLoads);
   if (!effects.contacts) return;
   contacts_.reserve(particleCount());
   touched_.resize(particleCount());
@@ -194,9 +194,9 @@ void Cloth::setPointLoads(const std::vector<PointLoad>& loads) {
   if (!effects_.point_loads && !loads.empty()) {
     throw std::invalid_argument("the cloth is modelled without point loads; none can be set");
   }
-  if (loads.size() > kMostPointLoads) {
+  if (loads.size() > kMaxPointLoads) {
     throw std::invalid_argument("there are " + std::to_string(loads.size()) +
-                                " point loads; allowed are " + std::to_string(kMostPointLoads));
+                                " point loads; allowed are " + std::to_string(kMaxPointLoads));
   }
   for (std::size_t i = 0; i < loads.size(); ++i) checkedLoad(loads[i], i, mesh_.triangles.size());
   revision_ = nextRevision();

@@ -73,7 +73,7 @@ struct JacobianBlock {
 
 class Cloth {
  public:
-  static constexpr std::size_t kMostPointLoads = 4096;
+  static constexpr std::size_t kMaxPointLoads = 4096;
 
   /// @throws std::invalid_argument if the mesh has defects or is not what the elasticity needs
   ///   (findLatticeSprings()), the density is not finite and > 0, gravity is not finite, bending,
@@ -130,7 +130,7 @@ class Cloth {
   /// nothing. On attached particles they act as any force: not.
   /// @throws std::invalid_argument naming the load if its triangle does not exist, a number is not
   ///   finite, the weights do not sum to 1 within 1e-6, the stiffness is not symmetric and positive
-  ///   semidefinite to 1e-6 of its norm, there are more than kMostPointLoads, or any if effects()
+  ///   semidefinite to 1e-6 of its norm, there are more than kMaxPointLoads, or any if effects()
   ///   are without point loads; nothing has changed then
   void setPointLoads(const std::vector<PointLoad>& loads);
   /// As set, their stiffness made exactly symmetric and positive semidefinite.
@@ -262,7 +262,7 @@ class Cloth {
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> external_forces_;
   std::vector<std::optional<AttachmentPath>> attachments_;
-  // Empty unless point loads are modelled, and has the capacity of kMostPointLoads then.
+  // Empty unless point loads are modelled, and has the capacity of kMaxPointLoads then.
   std::vector<PointLoad> point_loads_;
   // Both are empty unless contacts are modelled, and have a capacity of one per particle then.
   std::vector<ParticleContact> contacts_;

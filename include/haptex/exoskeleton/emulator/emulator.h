@@ -47,8 +47,8 @@ class Emulator {
   static constexpr Time kPeriod = std::chrono::milliseconds(1);
   /// More lag than this is given up. Less than it takes the firmware's watchdog to act, so that
   /// catching up never trips it.
-  static constexpr Time kLargestLag = std::chrono::milliseconds(4);
-  static_assert(kLargestLag < FirmwareModel::kRampStart);
+  static constexpr Time kMaxLag = std::chrono::milliseconds(4);
+  static_assert(kMaxLag < FirmwareModel::kRampStart);
   /// How long the device is off when its power is cycled.
   static constexpr Time kOffTime = std::chrono::milliseconds(200);
 
