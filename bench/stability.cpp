@@ -87,10 +87,10 @@ void print(const std::string& name, const Tally& tally) {
 }
 
 void printFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome) {
-  constexpr int kMostRuns = 100;  // of seconds each, where cloth does not return
+  constexpr int kMaxRuns = 100;  // of seconds each, where cloth does not return
   int runs = 0;
   const ExtremeCase small = shrinkExtremeCase(extreme, [&](const ExtremeCase& candidate) {
-    return ++runs <= kMostRuns && studies::runExtremeCase(candidate).failure == outcome.failure;
+    return ++runs <= kMaxRuns && studies::runExtremeCase(candidate).failure == outcome.failure;
   });
   std::fprintf(stderr, "seed %llu: %s %s, growth %g, return error %g, shrunk to\n  %s\n",
                static_cast<unsigned long long>(extreme.seed), nameOf(outcome.failure),

@@ -26,7 +26,7 @@ using linear::LinearSolverMethod;
 using studies::TradeOffPoint;
 
 constexpr int kThreads = 2;
-constexpr double kMostCost = 3.0;  // computing time over simulated time, beyond which nobody goes
+constexpr double kMaxCost = 3.0;  // computing time over simulated time, beyond which nobody goes
 
 TradeOffPoint pointOf(IntegrationMethod method, int cells, int steps_per_cycle, int solves) {
   TradeOffPoint point;
@@ -176,7 +176,7 @@ int main(int argc, char** argv) {
   table.cases = allCases();
   table.points = allPoints();
   table.references = computeReferences(table.cases, {}, kThreads, counter(2 * table.cases.size()));
-  table.results = followPoints(table.points, table.cases, table.references, kMostCost, kThreads,
+  table.results = followPoints(table.points, table.cases, table.references, kMaxCost, kThreads,
                                counter(table.points.size()));
   const std::vector<scene::Quality> qualities = chooseQualities(table);
   printTable(table);

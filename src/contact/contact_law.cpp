@@ -13,10 +13,10 @@ namespace {
 using material::CurveValue;
 using material::StrainStressCurve;
 
-constexpr double kDeepest = 5e-3;         // m: tabulated at least to here
-constexpr double kLargestPressure = 2e6;  // Pa: or to here
-constexpr double kRelativeError = 1e-5;   // of the pressure in the middle of an interval
-constexpr double kNarrowest = 1e-6;       // of the range of strain: no finer intervals
+constexpr double kDeepest = 5e-3;        // m: tabulated at least to here
+constexpr double kMaxPressure = 2e6;     // Pa: or to here
+constexpr double kRelativeError = 1e-5;  // of the pressure in the middle of an interval
+constexpr double kNarrowest = 1e-6;      // of the range of strain: no finer intervals
 
 // Mindlin 1949 (J. Appl. Mech. 16:259): where two elastic bodies stick over their area of contact,
 // the ratio of the tangential stiffness to the normal one is 2 (1 - nu) / (2 - nu); 2/3 for a pulp
@@ -112,7 +112,7 @@ void refine(const SeriesLaw& law, const Sample& begin, const Sample& end, double
 double lastStrain(const SeriesLaw& law) {
   const auto reached = [&](double strain) {
     const Sample sample = law.at(strain);
-    return sample.depth >= kDeepest || sample.pressure.stress >= kLargestPressure;
+    return sample.depth >= kDeepest || sample.pressure.stress >= kMaxPressure;
   };
   double below = 0.0, strain = 1.0;
   while (!reached(strain)) strain *= 2.0;

@@ -7,8 +7,8 @@
 namespace haptex::contact {
 namespace {
 
-constexpr double kLargestRadius = 0.1;                // m
-constexpr double kLargestQuaternionDeviation = 1e-3;  // of the norm from 1
+constexpr double kMaxRadius = 0.1;                // m
+constexpr double kMaxQuaternionDeviation = 1e-3;  // of the norm from 1
 
 template <typename... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
@@ -19,10 +19,10 @@ template <typename... Parts>
 }
 
 bool isUnit(const Eigen::Quaterniond& orientation) {  // false for NaN too
-  return std::abs(orientation.norm() - 1.0) <= kLargestQuaternionDeviation;
+  return std::abs(orientation.norm() - 1.0) <= kMaxQuaternionDeviation;
 }
 
-bool isInRange(double radius) { return radius > 0.0 && radius <= kLargestRadius; }
+bool isInRange(double radius) { return radius > 0.0 && radius <= kMaxRadius; }
 
 void requireFinite(const char* name, const Eigen::Vector3d& vector) {
   if (!vector.allFinite()) refuse(name, " (", vector.transpose(), ") must be finite");
@@ -47,10 +47,10 @@ void requireSound(const Fingertip& fingertip) {
   requireFinite("angular velocity", fingertip.angular_velocity);
   if (!isUnit(fingertip.orientation)) {
     refuse("orientation has the norm ", fingertip.orientation.norm(), ", it must be 1 to ",
-           kLargestQuaternionDeviation);
+           kMaxQuaternionDeviation);
   }
   if (!isInRange(fingertip.radius)) {
-    refuse("radius ", fingertip.radius, " must be > 0 and <= ", kLargestRadius, " m");
+    refuse("radius ", fingertip.radius, " must be > 0 and <= ", kMaxRadius, " m");
   }
 }
 

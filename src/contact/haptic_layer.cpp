@@ -22,6 +22,10 @@ const material::Fabric& requireBending(const material::Fabric& fabric,
 
 mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
   mesh::requireSound(mesh);
+  if (mesh.panelCount() > 1) {
+    throw std::invalid_argument("fingertips touch one panel, and the mesh has " +
+                                std::to_string(mesh.panelCount()));
+  }
   return mesh;
 }
 
@@ -77,8 +81,8 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric,
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
     whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabric_, law_);
   }
-  loads_.reserve(cloth::Cloth::kMostPointLoads);
-  for (FingertipContact& contact : contacts_) contact.points.reserve(kMostContactPoints);
+  loads_.reserve(cloth::Cloth::kMaxPointLoads);
+  for (FingertipContact& contact : contacts_) contact.points.reserve(kMaxContactPoints);
 }
 
 std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangles,
@@ -275,7 +279,7 @@ void HapticLayer::fillContact(int f, const std::vector<TouchedParticle>& touched
         share * (fingertip.velocity + fingertip.angular_velocity.cross(place - fingertip.position) -
                  particles.velocities[point.particle]);
     if (point.slips) slipping += share;
-    if (contact.points.size() < kMostContactPoints) {
+    if (contact.points.size() < kMaxContactPoints) {
       contact.points.push_back({place, point.normal, point.normal_force, point.friction});
     }
   }

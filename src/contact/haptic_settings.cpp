@@ -7,8 +7,8 @@ namespace {
 
 using base::YamlValue;
 
-constexpr int kMostRefinement = 4;
-constexpr double kLargestMargin = 0.1;  // m
+constexpr int kMaxRefinement = 4;
+constexpr double kMaxMargin = 0.1;  // m
 
 HapticSettings readSettings(const YamlValue& value) {
   value.requireKeys({}, {"layer", "refinement", "margin", "most_elements", "predict"});
@@ -23,13 +23,13 @@ HapticSettings readSettings(const YamlValue& value) {
   }
   if (value.has("refinement")) {
     settings.refinement = value.at("refinement").integer();
-    if (settings.refinement < 0 || settings.refinement > kMostRefinement) {
+    if (settings.refinement < 0 || settings.refinement > kMaxRefinement) {
       value.at("refinement").refuse("must be an integer from 0 to 4");
     }
   }
   if (value.has("margin")) {
     settings.margin = value.at("margin").number();
-    if (settings.margin <= 0.0 || settings.margin > kLargestMargin) {
+    if (settings.margin <= 0.0 || settings.margin > kMaxMargin) {
       value.at("margin").refuse("must be > 0 and <= 0.1 m");
     }
   }

@@ -11,7 +11,7 @@ namespace haptex::contact {
 namespace {
 
 // Block columns of a node: more of them cost more to invert, fewer make the products short.
-constexpr int kMostColumns = 8;
+constexpr int kMaxColumns = 8;
 
 int padded(int numbers) { return (numbers + kPanelLanes - 1) / kPanelLanes * kPanelLanes; }
 
@@ -35,8 +35,8 @@ KeptFactor::KeptFactor(const linear::SymmetricBlockMatrix& pattern) {
   lower_.resize(size);
   inverses_.resize(size);
   panel_.resize(largest);
-  product_.resize(std::size_t{3} * kMostColumns * tallest);
-  transposed_.resize(std::size_t{9} * kMostColumns * kMostColumns);
+  product_.resize(std::size_t{3} * kMaxColumns * tallest);
+  transposed_.resize(std::size_t{9} * kMaxColumns * kMaxColumns);
   front_.resize(tallest);
   values_.resize(std::size_t{3} * pattern.size());
 }
@@ -45,7 +45,7 @@ void KeptFactor::makeNodes(const linear::Elimination& elimination) {
   node_of_.resize(elimination.order.size());
   std::size_t offset = 0;
   for (const linear::Supernode& supernode : elimination.supernodes) {
-    const int parts = (supernode.width() + kMostColumns - 1) / kMostColumns;
+    const int parts = (supernode.width() + kMaxColumns - 1) / kMaxColumns;
     for (int part = 0; part < parts; ++part) {
       const int first = supernode.first + supernode.width() * part / parts;
       const int end = supernode.first + supernode.width() * (part + 1) / parts;

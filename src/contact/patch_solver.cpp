@@ -17,13 +17,13 @@ using linear::SymmetricBlockMatrix;
 // How far an iteration goes: the error e of a solution has the energy e.A e, with increments of
 // velocity in J. 5e-16 J in the cloth behind a contact of 1000 N/m change its force by 1e-6 N at
 // most.
-constexpr double kRelative = 3e-5;       // error by solution, roots of the energies
-constexpr double kEnergy = 5e-16;        // J; enough, however small the solution is
-constexpr double kLeastReduction = 0.3;  // that is expected of the error's energy
+constexpr double kRelative = 3e-5;     // error by solution, roots of the energies
+constexpr double kEnergy = 5e-16;      // J; enough, however small the solution is
+constexpr double kMinReduction = 0.3;  // that is expected of the error's energy
 
 constexpr int kFew = 3;    // iterations of a step: the factor is good enough as it is
 constexpr int kMost = 10;  // after which a new factor is worth its time
-constexpr double kLeastShare = 0.02;
+constexpr double kMinShare = 0.02;
 constexpr double kShare = 0.15;  // of the factor that is renewed in a step
 
 /// y = A x for the leading part.
@@ -100,7 +100,7 @@ bool PatchSolver::solve(const SymmetricBlockMatrix& matrix, const BlockVector& r
   has_direct_ = false;
   iterations_ = 0;
   if (has_kept_ && iterate(matrix, rhs, kMost, solution)) {
-    kept_.renew(matrix, iterations_ > kFew ? kShare : kLeastShare);
+    kept_.renew(matrix, iterations_ > kFew ? kShare : kMinShare);
     return true;
   }
   has_kept_ = kept_.factorise(matrix);
@@ -158,7 +158,7 @@ bool PatchSolver::iterate(const SymmetricBlockMatrix& matrix, const BlockVector&
   direction_ = preconditioned_;
   double error = residual_.cwiseProduct(preconditioned_).sum();  // by the old factor's measure
   if (error == 0.0) return true;
-  double solved = 0.0, reduction = kLeastReduction;
+  double solved = 0.0, reduction = kMinReduction;
   for (int i = 0; i < most; ++i) {
     ++iterations_;
     const double length = addDirection(matrix, error, solution);
@@ -167,7 +167,7 @@ bool PatchSolver::iterate(const SymmetricBlockMatrix& matrix, const BlockVector&
     // energy; the next one would take as much less as this one did.
     const double taken = length * error;
     solved += taken;
-    if (taken * std::max(reduction, kLeastReduction) <=
+    if (taken * std::max(reduction, kMinReduction) <=
         std::max(kRelative * kRelative * solved, kEnergy)) {
       return true;
     }

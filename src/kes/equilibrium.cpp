@@ -20,10 +20,10 @@ Equilibrium::Equilibrium(const cloth::Cloth& cloth) : integrator_(cloth, solvedS
 
 void Equilibrium::settle(const cloth::Cloth& cloth, cloth::ClothState& state, double first_step) {
   constexpr double kLongestStep = 60.0;  // s
-  constexpr int kMostSteps = 60;
+  constexpr int kMaxSteps = 60;
   double time_step = first_step;
   state.velocities.assign(cloth.particleCount(), Eigen::Vector3d::Zero());
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     integrator_.step(cloth, state, time_step);
     // Without velocities: viscosity may balance for a while what is no equilibrium.
     state.velocities.assign(cloth.particleCount(), Eigen::Vector3d::Zero());

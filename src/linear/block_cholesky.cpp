@@ -7,11 +7,11 @@
 namespace haptex::linear {
 namespace {
 
-constexpr double kSmallestCut = 1e7;   // operations of a factorisation that is worth cutting
-constexpr double kLargestPart = 0.06;  // of all operations, in one subtree
-constexpr int kBlockColumns = 48;      // of a wide panel that are factorised together
-constexpr int kShareRows = 96;         // of a wide panel that a thread takes at a time
-constexpr int kFetchAhead = 8;         // entries before their blocks are read
+constexpr double kMinCut = 1e7;    // operations of a factorisation that is worth cutting
+constexpr double kMaxPart = 0.06;  // of all operations, in one subtree
+constexpr int kBlockColumns = 48;  // of a wide panel that are factorised together
+constexpr int kShareRows = 96;     // of a wide panel that a thread takes at a time
+constexpr int kFetchAhead = 8;     // entries before their blocks are read
 
 }  // namespace
 
@@ -78,9 +78,9 @@ void BasicBlockCholesky<T>::cutTree() {
   top_place_.assign(elimination_.order.size(), -1);
   std::vector<int> roots = children[count];
   const auto cheaper = [&](int a, int b) { return cost[a] < cost[b]; };
-  while (cost_ > kSmallestCut) {
+  while (cost_ > kMinCut) {
     const auto costliest = std::max_element(roots.begin(), roots.end(), cheaper);
-    if (cost[*costliest] <= kLargestPart * cost_) break;
+    if (cost[*costliest] <= kMaxPart * cost_) break;
     const int root = *costliest;
     roots.erase(costliest);
     top_.push_back(root);

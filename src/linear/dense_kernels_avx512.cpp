@@ -17,8 +17,8 @@ namespace haptex::linear::avx512 {
 namespace {
 
 constexpr int kLanes = 16;
-constexpr int kMostVectors = 4;  // by six columns, with the loads and a broadcast, in 32 registers
-constexpr int kDepth = 192;      // of A's part that stays in the first-level cache
+constexpr int kMaxVectors = 4;  // by six columns, with the loads and a broadcast, in 32 registers
+constexpr int kDepth = 192;     // of A's part that stays in the first-level cache
 
 enum class Store { kSubtract, kAssign };
 
@@ -103,9 +103,7 @@ HAPTEX_AVX512_INLINE void product(int rows, int columns, int depth, const float*
   for (int i = 0; i < rows;) {
     const int left = (rows - i + kLanes - 1) / kLanes;  // registers
     // Two of three registers rather than one of four and one of two.
-    const int vectors = left <= kMostVectors          ? left
-                        : left < 2 * kMostVectors - 1 ? 3
-                                                      : kMostVectors;
+    const int vectors = left <= kMaxVectors ? left : left < 2 * kMaxVectors - 1 ? 3 : kMaxVectors;
     const int height = std::min(rows - i, vectors * kLanes);
     switch (vectors) {
       case 1:

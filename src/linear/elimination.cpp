@@ -97,7 +97,7 @@ std::vector<std::vector<int>> factorColumns(const std::vector<std::vector<int>>&
 
 // Share of explicit zeros that a merged panel may hold. Of 0.05 to 0.3, 0.05 gave the shortest
 // factorisation and the smallest factor (scripts/bench linear_solver).
-constexpr double kMostZeros = 0.05;
+constexpr double kMaxZeros = 0.05;
 // Panels up to this many block columns are merged whatever zeros that brings: the dense kernels
 // need a few columns to be worth their call. Of 1 to 8, 5 was best with and without bending.
 constexpr int kNarrow = 5;
@@ -119,7 +119,7 @@ std::vector<Supernode> supernodesOf(const std::vector<std::vector<int>>& columns
       const double total_zeros = zeros[zeros.size() - 2] + zeros.back() + missing;
       const int width = child.width() + last.width();
       const double entries = width * (0.5 * (width + 1) + static_cast<double>(last.rows.size()));
-      if (missing > 0.0 && width > kNarrow && total_zeros > kMostZeros * entries) break;
+      if (missing > 0.0 && width > kNarrow && total_zeros > kMaxZeros * entries) break;
       supernodes[supernodes.size() - 2] = {child.first, last.end, last.rows};
       supernodes.pop_back();
       zeros[zeros.size() - 2] = total_zeros;

@@ -17,13 +17,13 @@ constexpr double kNumberOverBlock = 0.2;
 // What a factor is expected to need before one has been made.
 constexpr double kExpectedSolves = 8.0;
 constexpr double kExpectedIterations = 3.0;
-constexpr int kMostFreshIterations = 60;
+constexpr int kMaxFreshIterations = 60;
 constexpr int kFirstFreshSolves = 4;
-constexpr int kMostFreshSolves = 64;
+constexpr int kMaxFreshSolves = 64;
 constexpr int kFirstDirectSolves = 8;
-constexpr int kMostDirectSolves = 512;
-constexpr int kMostRefinements = 3;
-constexpr int kMostLastIterations = 100;
+constexpr int kMaxDirectSolves = 512;
+constexpr int kMaxRefinements = 3;
+constexpr int kMaxLastIterations = 100;
 // Patterns of up to this many rows hold a factor in double precision from the start.
 constexpr int kSmallPattern = 500;
 
@@ -57,7 +57,7 @@ int LinearSolver::iterationBudget() const {
   return std::max(1, static_cast<int>(mean_cost_ / block_iteration_cost_));
 }
 
-int LinearSolver::lastTry() const { return std::max(iterationBudget(), kMostLastIterations); }
+int LinearSolver::lastTry() const { return std::max(iterationBudget(), kMaxLastIterations); }
 
 SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
                                 double tolerance, BlockVector& x, Definiteness definiteness) {
@@ -75,7 +75,7 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
         return result;
       }
       direct_solves_left_ = direct_solves_next_;
-      direct_solves_next_ = std::min(2 * direct_solves_next_, kMostDirectSolves);
+      direct_solves_next_ = std::min(2 * direct_solves_next_, kMaxDirectSolves);
     } else {
       --direct_solves_left_;
     }
@@ -126,7 +126,7 @@ SolveResult LinearSolver::solveByKeptFactor(const SymmetricBlockMatrix& matrix,
       fresh_solves_next_ = kFirstFreshSolves;
     } else {
       fresh_solves_left_ = fresh_solves_next_;
-      fresh_solves_next_ = std::min(2 * fresh_solves_next_, kMostFreshSolves);
+      fresh_solves_next_ = std::min(2 * fresh_solves_next_, kMaxFreshSolves);
     }
   }
   if (!result.converged) {
@@ -134,7 +134,7 @@ SolveResult LinearSolver::solveByKeptFactor(const SymmetricBlockMatrix& matrix,
       result.indefinite = false;  // double precision decides
       return result;
     }
-    iterate(kMostFreshIterations);
+    iterate(kMaxFreshIterations);
     fresh_iterations_ = result.iterations;
   }
   result.iterations = spent;
@@ -162,7 +162,7 @@ SolveResult LinearSolver::solveDirectly(const SymmetricBlockMatrix& matrix, cons
   ++factorisations_;
   if (!cholesky_->factorise(matrix)) return result;
   residual_ = rhs;
-  for (int refinement = 0; refinement <= kMostRefinements; ++refinement) {
+  for (int refinement = 0; refinement <= kMaxRefinements; ++refinement) {
     cholesky_->solve(residual_);
     x += residual_;
     matrix.multiply(x, product_);

@@ -10,7 +10,7 @@ namespace {
 constexpr signed char kOutside = -1;
 constexpr signed char kSeparator = 2;  // 0 and 1 are the halves
 constexpr int kImproved = 3;           // candidates that are worth the work
-constexpr int kMostPasses = 8;
+constexpr int kMaxPasses = 8;
 constexpr int kFruitlessMoves = 50;
 
 /// Size of the separator, weighted by how uneven the halves are; an empty half separates nothing.
@@ -176,7 +176,7 @@ bool SeparatorFinder::improveOnce(const std::vector<int>& part, Counts& counts) 
 }
 
 double SeparatorFinder::improve(const std::vector<int>& part, Counts counts) {
-  for (int pass = 0; pass < kMostPasses; ++pass) {
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
     if (!improveOnce(part, counts)) break;
   }
   return costOf(counts);

@@ -9,8 +9,8 @@ namespace {
 
 // Pressure from one fitted point to the next: small enough for 2e-5 of the pressure.
 constexpr double kPressureRatio = 1.04;
-// The last step, which ends at kLargestFittedPressure, starts below this: it is not tiny.
-constexpr double kLargestStepStart = 0.99 * kLargestFittedPressure;
+// The last step, which ends at kMaxFittedPressure, starts below this: it is not tiny.
+constexpr double kMaxStepStart = 0.99 * kMaxFittedPressure;
 
 template <typename... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
@@ -24,8 +24,8 @@ void requirePoints(const std::vector<ThicknessPoint>& points) {
   if (points.size() < 2) refuse("points: has ", points.size(), " points, must have at least 2");
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& [pressure, thickness] = points[i];
-    if (!std::isfinite(pressure) || pressure < 0.0 || pressure > kLargestFittedPressure) {
-      refuse("points[", i, "]: pressure ", pressure, " must be from 0 to ", kLargestFittedPressure,
+    if (!std::isfinite(pressure) || pressure < 0.0 || pressure > kMaxFittedPressure) {
+      refuse("points[", i, "]: pressure ", pressure, " must be from 0 to ", kMaxFittedPressure,
              " Pa");
     }
     if (!std::isfinite(thickness) || thickness <= 0.0) {
@@ -87,10 +87,10 @@ Compression compressionFromPoints(const std::vector<ThicknessPoint>& points) {
     const double ratio = pressure / last.pressure;
     continued.push_back({pressure, last.thickness * std::pow(ratio, -1.0 / exponent)});
   };
-  for (double p = last.pressure * kPressureRatio; p < kLargestStepStart; p *= kPressureRatio) {
+  for (double p = last.pressure * kPressureRatio; p < kMaxStepStart; p *= kPressureRatio) {
     add(p);
   }
-  if (last.pressure < kLargestStepStart) add(kLargestFittedPressure);
+  if (last.pressure < kMaxStepStart) add(kMaxFittedPressure);
   return fitted(continued);
 }
 
@@ -110,9 +110,9 @@ Compression compressionFromKes(const KesCompression& kes) {
   const double core = tm - xm;
   const double a = rise / (std::pow(xm, -3.0) - std::pow(x0, -3.0));
   const double free_thickness = t0 + kKesLowPressure * std::pow(x0, 4.0) / (3.0 * a);
-  if (free_thickness > kLargestFreeThicknessRatio * t0) {
+  if (free_thickness > kMaxFreeThicknessRatio * t0) {
     refuse("WC: ", kes.work, " is too small: without pressure the fabric would be ", free_thickness,
-           " m thick, at most ", kLargestFreeThicknessRatio, " T0 is allowed");
+           " m thick, at most ", kMaxFreeThicknessRatio, " T0 is allowed");
   }
   std::vector<ThicknessPoint> points = {{0.0, free_thickness}};
   const auto add = [&](double pressure) {
@@ -124,8 +124,8 @@ Compression compressionFromKes(const KesCompression& kes) {
       std::ceil(std::log(kKesHighPressure / kKesLowPressure) / std::log(kPressureRatio)));
   const double step = std::pow(kKesHighPressure / kKesLowPressure, 1.0 / steps);
   for (int i = 0; i <= steps; ++i) add(kKesLowPressure * std::pow(step, i));
-  for (double p = kKesHighPressure * step; p < kLargestStepStart; p *= step) add(p);
-  add(kLargestFittedPressure);
+  for (double p = kKesHighPressure * step; p < kMaxStepStart; p *= step) add(p);
+  add(kMaxFittedPressure);
   return fitted(points);
 }
 

@@ -32,8 +32,8 @@ double readPositiveUpTo(const base::YamlValue& value, double most) {
 
 Yarns readYarns(const base::YamlValue& value) {
   value.requireKeys({"spacing", "height"});
-  return {readFromTo(value.at("spacing"), kSmallestYarnSpacing, kLargestYarnSpacing, " m"),
-          readFromTo(value.at("height"), 0.0, kLargestYarnHeight, " m")};
+  return {readFromTo(value.at("spacing"), kMinYarnSpacing, kMaxYarnSpacing, " m"),
+          readFromTo(value.at("height"), 0.0, kMaxYarnHeight, " m")};
 }
 
 WeaveKind readWeaveKind(const base::YamlValue& value) {
@@ -50,7 +50,7 @@ Weave readWeave(const base::YamlValue& value) {
   value.at("unit").oneOf({"m"});
   const Weave weave{readWeaveKind(value.at("kind")), readYarns(value.at("weft")),
                     readYarns(value.at("warp")),
-                    readFromTo(value.at("irregularity"), 0.0, kLargestIrregularity)};
+                    readFromTo(value.at("irregularity"), 0.0, kMaxIrregularity)};
   if (weave.weft.height == 0.0 && weave.warp.height == 0.0) {
     value.refuseBecause("the height of weft or warp must be > 0: the relief is flat");
   }
@@ -65,8 +65,8 @@ HeightFile readHeightFile(const base::YamlValue& value) {
     value.at("file").refuse("must end in .png or .raw");
   }
   return {(std::filesystem::path(value.file()).parent_path() / file).string(),
-          readPositiveUpTo(value.at("spacing"), kLargestSampleSpacing),
-          readPositiveUpTo(value.at("height"), kLargestFieldHeight),
+          readPositiveUpTo(value.at("spacing"), kMaxSampleSpacing),
+          readPositiveUpTo(value.at("height"), kMaxFieldHeight),
           value.at("periodic").oneOf({"true", "false"}) == "true"};
 }
 
@@ -81,7 +81,7 @@ Surface readSurface(const base::YamlValue& value, double friction) {
   kes.requireKeys({"unit", "provenance", "source", "SMD", "MMD"});
   kes.at("unit").oneOf({"m"});
   Surface surface;
-  surface.roughness = readPositiveUpTo(kes.at("SMD"), kLargestRoughness);
+  surface.roughness = readPositiveUpTo(kes.at("SMD"), kMaxRoughness);
   surface.friction_deviation = readFromTo(kes.at("MMD"), 0.0, 1.0);
   if (surface.friction_deviation > friction) {
     kes.at("MMD").refuse("must be at most the coefficient of friction, " + written(friction));

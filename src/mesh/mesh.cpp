@@ -30,22 +30,85 @@ void describe(std::ostringstream& text, const char* what, const std::vector<int>
   if (indices.empty()) return;
   if (text.tellp() > 0) text << "; ";
   text << what << ":";
-  constexpr std::size_t kMostNamed = 10;
-  for (std::size_t i = 0; i < std::min(indices.size(), kMostNamed); ++i) text << ' ' << indices[i];
-  if (indices.size() > kMostNamed) text << " and " << indices.size() - kMostNamed << " more";
+  constexpr std::size_t kMaxNamed = 10;
+  for (std::size_t i = 0; i < std::min(indices.size(), kMaxNamed); ++i) text << ' ' << indices[i];
+  if (indices.size() > kMaxNamed) text << " and " << indices.size() - kMaxNamed << " more";
 }
 
 /// Smallest altitude over longest edge of a rest triangle; 0 if a particle is repeated.
-double slenderness(const ClothMesh& mesh, const std::array<int, 3>& triangle) {
-  const Eigen::Vector2d& a = mesh.rest_coordinates[triangle[0]];
-  const Eigen::Vector2d ab = mesh.rest_coordinates[triangle[1]] - a;
-  const Eigen::Vector2d ac = mesh.rest_coordinates[triangle[2]] - a;
+double slenderness(const std::array<Eigen::Vector2d, 3>& corners) {
+  const Eigen::Vector2d ab = corners[1] - corners[0];
+  const Eigen::Vector2d ac = corners[2] - corners[0];
   const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
   if (longest == 0.0) return 0.0;
   return std::abs(ab.x() * ac.y() - ab.y() * ac.x()) / (longest * longest);
 }
 
+void findPanelDefects(const ClothMesh& mesh, MeshDefects& defects) {
+  const std::size_t triangles = mesh.triangles.size();
+  const bool fits =
+      (mesh.triangle_panels.empty() || mesh.triangle_panels.size() == triangles) &&
+      (mesh.corner_coordinates.empty() || mesh.corner_coordinates.size() == triangles);
+  defects.panel_mismatch = !fits;
+  for (std::size_t p = 0; p < mesh.panels.size(); ++p) {
+    const Panel& panel = mesh.panels[p];
+    if (panel.fabric >= 0 && std::isfinite(panel.grain)) continue;
+    defects.unsound_panels.push_back(static_cast<int>(p));
+  }
+  for (std::size_t t = 0; t < mesh.triangle_panels.size(); ++t) {
+    const int panel = mesh.triangle_panels[t];
+    if (panel >= 0 && panel < mesh.panelCount()) continue;
+    defects.unknown_panels.push_back(static_cast<int>(t));
+  }
+}
+
 }  // namespace
+
+Panel ClothMesh::panelOf(std::size_t triangle) const {
+  if (panels.empty()) return {};
+  return panels[triangle_panels.empty() ? 0 : triangle_panels[triangle]];
+}
+
+std::array<Eigen::Vector2d, 3> ClothMesh::restCorners(std::size_t triangle) const {
+  std::array<Eigen::Vector2d, 3> corners;
+  for (int i = 0; i < 3; ++i) {
+    corners[i] = corner_coordinates.empty() ? rest_coordinates[triangles[triangle][i]]
+                                            : corner_coordinates[triangle][i];
+  }
+  const double grain = panelOf(triangle).grain;
+  if (grain == 0.0) return corners;
+  const Eigen::Rotation2Dd into_fabric(-grain);
+  for (Eigen::Vector2d& corner : corners) corner = into_fabric * corner;
+  return corners;
+}
+
+CutPanel cutPanel(const ClothMesh& mesh, int panel) {
+  CutPanel cut;
+  std::vector<int> place(mesh.rest_coordinates.size(), -1);
+  std::vector<std::size_t> triangles;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!mesh.triangle_panels.empty() && mesh.triangle_panels[t] != panel) continue;
+    triangles.push_back(t);
+    for (const int particle : mesh.triangles[t]) place[particle] = 0;
+  }
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    if (place[i] < 0) continue;
+    place[i] = static_cast<int>(cut.particles.size());
+    cut.particles.push_back(static_cast<int>(i));
+    cut.sheet.initial_positions.push_back(mesh.initial_positions[i]);
+  }
+  cut.sheet.rest_coordinates.resize(cut.particles.size());
+  for (const std::size_t t : triangles) {
+    const std::array<Eigen::Vector2d, 3> corners = mesh.restCorners(t);
+    std::array<int, 3>& triangle = cut.sheet.triangles.emplace_back(mesh.triangles[t]);
+    for (int i = 0; i < 3; ++i) {
+      triangle[i] = place[triangle[i]];
+      cut.sheet.rest_coordinates[triangle[i]] = corners[i];
+    }
+  }
+  if (!mesh.panels.empty()) cut.panel = mesh.panels[panel];
+  return cut;
+}
 
 ClothMesh makeRectangle(double width, double height, int cells_u, int cells_v,
                         Triangulation triangulation) {
@@ -144,7 +207,8 @@ std::vector<int> sideParticles(const ClothMesh& mesh, Side side) {
 }
 
 bool MeshDefects::none() const {
-  return !empty && !size_mismatch && invalid_triangles.empty() && degenerate_triangles.empty() &&
+  return !empty && !size_mismatch && !panel_mismatch && unknown_panels.empty() &&
+         unsound_panels.empty() && invalid_triangles.empty() && degenerate_triangles.empty() &&
          duplicate_triangles.empty() && unreferenced_particles.empty() &&
          non_finite_particles.empty();
 }
@@ -156,7 +220,13 @@ std::string MeshDefects::description() const {
     if (text.tellp() > 0) text << "; ";
     text << "rest coordinates and initial positions differ in number";
   }
+  if (panel_mismatch) {
+    if (text.tellp() > 0) text << "; ";
+    text << "panels or corner coordinates are not as many as triangles";
+  }
   describe(text, "triangles with a particle that does not exist", invalid_triangles);
+  describe(text, "triangles of a panel that does not exist", unknown_panels);
+  describe(text, "panels of a fabric below 0 or with a grain that is not finite", unsound_panels);
   describe(text, "degenerate triangles", degenerate_triangles);
   describe(text, "duplicate triangles", duplicate_triangles);
   describe(text, "particles in no triangle", unreferenced_particles);
@@ -165,10 +235,12 @@ std::string MeshDefects::description() const {
 }
 
 MeshDefects findDefects(const ClothMesh& mesh) {
-  constexpr double kSmallestSlenderness = 1e-9;
+  constexpr double kMinSlenderness = 1e-9;
   MeshDefects defects;
   defects.empty = mesh.triangles.empty();
   defects.size_mismatch = mesh.rest_coordinates.size() != mesh.initial_positions.size();
+  findPanelDefects(mesh, defects);
+  const bool panels_fit = !defects.panel_mismatch && defects.unknown_panels.empty();
   const int particles = static_cast<int>(mesh.rest_coordinates.size());
   for (int i = 0; i < particles; ++i) {
     const bool finite = mesh.rest_coordinates[i].allFinite() &&
@@ -187,7 +259,7 @@ MeshDefects findDefects(const ClothMesh& mesh) {
     for (int particle : triangle) referenced[particle] = true;
     if (!seen.insert(triangle).second) defects.duplicate_triangles.push_back(static_cast<int>(t));
     // Negated so that a rest coordinate that is not a number counts as degenerate.
-    if (!(slenderness(mesh, triangle) >= kSmallestSlenderness)) {
+    if (panels_fit && !(slenderness(mesh.restCorners(t)) >= kMinSlenderness)) {
       defects.degenerate_triangles.push_back(static_cast<int>(t));
     }
   }

@@ -8,9 +8,9 @@ namespace haptex::proximity {
 namespace {
 
 void requireRadius(double radius) {
-  if (radius >= 0.0 && radius <= kLargestLength) return;  // false for NaN
+  if (radius >= 0.0 && radius <= kMaxLength) return;  // false for NaN
   std::ostringstream message;
-  message << "radius of a cursor " << radius << " m: must be from 0 to " << kLargestLength << " m";
+  message << "radius of a cursor " << radius << " m: must be from 0 to " << kMaxLength << " m";
   throw std::invalid_argument(message.str());
 }
 
@@ -20,7 +20,7 @@ void requirePlace(const Eigen::Vector3d& place, const std::string& what) {
   if (isPlace(place)) return;
   std::ostringstream message;
   message << what << " (" << place.x() << ", " << place.y() << ", " << place.z()
-          << ") m: must be finite and within " << kLargestLength << " m";
+          << ") m: must be finite and within " << kMaxLength << " m";
   throw std::invalid_argument(message.str());
 }
 

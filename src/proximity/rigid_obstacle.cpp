@@ -30,7 +30,7 @@ constexpr double kRigid = 1e-9;  // of the entries of R^T R - I
 }
 
 void requireLength(const std::string& what, double value, bool may_be_zero) {
-  const bool in_range = (value > 0.0 || (may_be_zero && value == 0.0)) && value <= kLargestLength;
+  const bool in_range = (value > 0.0 || (may_be_zero && value == 0.0)) && value <= kMaxLength;
   if (!in_range) refuse(what, value, std::string(may_be_zero ? ">= 0" : "> 0") + " and <= 1e9 m");
 }
 
@@ -212,7 +212,7 @@ RigidObstacle RigidObstacle::mesh(const std::vector<Vector3d>& vertices,
   }
   for (int i = 0; i < count; ++i) {
     for (const double coordinate : vertices[i]) {
-      if (!(std::abs(coordinate) <= kLargestLength)) {
+      if (!(std::abs(coordinate) <= kMaxLength)) {
         refuse("a coordinate of vertex " + std::to_string(i), coordinate,
                "finite and at most 1e9 m");
       }
@@ -226,7 +226,7 @@ void RigidObstacle::setPose(const Eigen::Isometry3d& pose) {
     throw std::invalid_argument("the pose of an obstacle is not finite");
   }
   const double farthest = pose.translation().cwiseAbs().maxCoeff();
-  if (farthest > kLargestLength) refuse("the place of an obstacle", farthest, "at most 1e9 m away");
+  if (farthest > kMaxLength) refuse("the place of an obstacle", farthest, "at most 1e9 m away");
   const Eigen::Matrix3d rotation = pose.linear();
   const double defect =
       (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();

@@ -26,8 +26,7 @@ Eigen::Vector3d readVector(const YamlValue& value) {
 Eigen::Vector3d readPosition(const YamlValue& value) {
   const Eigen::Vector3d position = readVector(value);
   for (int i = 0; i < 3; ++i) {
-    if (std::abs(position[i]) > kLargestSize)
-      value.items(3)[i].refuse("must be from -100 to 100 m");
+    if (std::abs(position[i]) > kMaxSize) value.items(3)[i].refuse("must be from -100 to 100 m");
   }
   return position;
 }
@@ -56,7 +55,7 @@ mesh::ObstacleMesh readMesh(const YamlValue& value) {
   mesh::ObstacleMesh mesh = mesh::loadObjSurface(path);
   requireTriangleCount(value, static_cast<long long>(mesh.triangles.size()));
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    if (mesh.vertices[i].cwiseAbs().maxCoeff() > kLargestSize) {
+    if (mesh.vertices[i].cwiseAbs().maxCoeff() > kMaxSize) {
       value.refuseBecause("position " + std::to_string(i + 1) + " of " + path +
                           " must be from -100 to 100 m along every axis");
     }

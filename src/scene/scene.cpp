@@ -20,7 +20,7 @@ namespace {
 
 using base::YamlValue;
 
-constexpr double kMostCurvature = 1000.0;  // 1/m
+constexpr double kMaxCurvature = 1000.0;  // 1/m
 const Eigen::Vector3d kDownwards(0.0, 0.0, -base::kStandardGravity);
 
 int readCells(const YamlValue& value) {
@@ -158,7 +158,7 @@ cloth::Air readAir(const YamlValue& scene) {
 
 double readCurvature(const YamlValue& value) {
   const double curvature = value.number();
-  if (std::abs(curvature) > kMostCurvature) value.refuse("must be from -1000 to 1000 1/m");
+  if (std::abs(curvature) > kMaxCurvature) value.refuse("must be from -1000 to 1000 1/m");
   return curvature;
 }
 

@@ -9,7 +9,7 @@ namespace {
 using base::YamlValue;
 namespace fs = std::filesystem;
 
-constexpr long long kMostTriangles = 200000;
+constexpr long long kMaxTriangles = 200000;
 
 // Names of the files of one kind, for a message that says what there is.
 std::string namesIn(const fs::path& directory, const std::string& extension) {
@@ -45,14 +45,14 @@ std::string resolveFile(const YamlValue& value, const std::string& kind,
 
 double readSize(const YamlValue& value) {
   const double size = value.number();
-  if (size <= 0.0 || size > kLargestSize) value.refuse("must be > 0 and <= 100 m");
+  if (size <= 0.0 || size > kMaxSize) value.refuse("must be > 0 and <= 100 m");
   return size;
 }
 
 void requireTriangleCount(const YamlValue& value, long long triangles) {
-  if (triangles > kMostTriangles) {
+  if (triangles > kMaxTriangles) {
     value.refuseBecause(std::to_string(triangles) + " triangles, at most " +
-                        std::to_string(kMostTriangles) + " are allowed");
+                        std::to_string(kMaxTriangles) + " are allowed");
   }
 }
 

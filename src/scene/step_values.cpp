@@ -10,7 +10,7 @@ using base::YamlValue;
 
 constexpr double kShortestTimeStep = 1e-6;  // s
 constexpr double kLongestTimeStep = 10.0;   // s
-constexpr int kMostNewtonIterations = 1000;
+constexpr int kMaxNewtonIterations = 1000;
 
 cloth::IntegrationMethod readIntegrator(const YamlValue& value) {
   const std::string name =
@@ -40,15 +40,15 @@ void readSolver(const YamlValue& value, cloth::StepSettings& settings) {
   }
   if (value.has("newton_iterations")) {
     settings.newton_iterations = value.at("newton_iterations").integer();
-    if (settings.newton_iterations < 1 || settings.newton_iterations > kMostNewtonIterations) {
+    if (settings.newton_iterations < 1 || settings.newton_iterations > kMaxNewtonIterations) {
       value.at("newton_iterations").refuse("must be an integer from 1 to 1000");
     }
   }
   if (value.has("threads")) {
     settings.threads = value.at("threads").integer();
-    if (settings.threads < 1 || settings.threads > cloth::kMostThreads) {
+    if (settings.threads < 1 || settings.threads > cloth::kMaxThreads) {
       value.at("threads").refuse("must be an integer from 1 to " +
-                                 std::to_string(cloth::kMostThreads));
+                                 std::to_string(cloth::kMaxThreads));
     }
   }
 }

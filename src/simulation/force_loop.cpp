@@ -10,10 +10,10 @@ using base::kFingers;
 using base::seconds;
 using base::Time;
 
-constexpr double kUsualPeriod = 0.0125;     // s, of simulated time, until two states have come
-constexpr double kLongestPeriod = 0.2;      // s, likewise; what comes later is another simulation
-constexpr int kTicksPerView = 3;            // between two views without a new state
-constexpr double kLeastNormalForce = 1e-9;  // N, weight of a contact without force
+constexpr double kUsualPeriod = 0.0125;   // s, of simulated time, until two states have come
+constexpr double kLongestPeriod = 0.2;    // s, likewise; what comes later is another simulation
+constexpr int kTicksPerView = 3;          // between two views without a new state
+constexpr double kMinNormalForce = 1e-9;  // N, weight of a contact without force
 
 std::optional<Time> timeOf(std::int64_t nanoseconds) {
   return nanoseconds < 0 ? std::nullopt : std::optional<Time>(Time(nanoseconds));
@@ -24,18 +24,18 @@ std::size_t index(Finger finger) { return static_cast<std::size_t>(finger); }
 }  // namespace
 
 ContactPicture::ContactPicture() {
-  positions.reserve(kMostParticles);
-  contact_forces.reserve(kMostParticles);
-  triangles.reserve(2 * kMostParticles);
+  positions.reserve(kMaxParticles);
+  contact_forces.reserve(kMaxParticles);
+  triangles.reserve(2 * kMaxParticles);
   for (contact::FingertipContact& contact : contacts.values) {
-    contact.points.reserve(contact::HapticLayer::kMostContactPoints);
+    contact.points.reserve(contact::HapticLayer::kMaxContactPoints);
   }
 }
 
 ForceLoop::ForceLoop(const base::PerFinger<double>& radii)
     : radii_(radii), state_period_(kUsualPeriod) {
   for (Rendered& rendered : rendered_.values) {
-    rendered.contact.points.reserve(contact::HapticLayer::kMostContactPoints);
+    rendered.contact.points.reserve(contact::HapticLayer::kMaxContactPoints);
   }
 }
 
@@ -247,7 +247,7 @@ double ForceLoop::loadGain() const {
   for (const Finger finger : kFingers) {
     const Rendered& rendered = rendered_[finger];
     if (!rendered.contact.touching) continue;
-    const double weight = rendered.contact.normal_force + kLeastNormalForce;
+    const double weight = rendered.contact.normal_force + kMinNormalForce;
     sum += weight * rendered.gain;
     weights += weight;
   }
@@ -275,8 +275,8 @@ void ForceLoop::showPicture() {
   picture_.contact_forces.clear();
   picture_.triangles.clear();
   const contact::Patch* patch = layer_ ? layer_->patch() : nullptr;
-  if (patch != nullptr && patch->particleCount() <= ContactPicture::kMostParticles &&
-      patch->triangles().size() <= 2 * ContactPicture::kMostParticles) {
+  if (patch != nullptr && patch->particleCount() <= ContactPicture::kMaxParticles &&
+      patch->triangles().size() <= 2 * ContactPicture::kMaxParticles) {
     picture_.positions = patch->positions();
     picture_.contact_forces = patch->contactForces();
     picture_.triangles = patch->triangles();

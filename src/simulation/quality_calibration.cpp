@@ -15,8 +15,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kUnmeasuredCycles = 4;  // in which solvers find their way
-constexpr std::size_t kMostCycles = 16;
-constexpr std::size_t kFewestCycles = 3;
+constexpr std::size_t kMaxCycles = 16;
+constexpr std::size_t kMinCycles = 3;
 constexpr double kEnough = 0.15;  // s of measured cycles
 // The motion, m and s: about that of a person who shakes the cloth.
 const Eigen::Vector3d kDisplacement(0.05, 0.0, 0.0);
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> attachedParticles(const scene::Scene& scene) {
 double medianCycle(SimulatedCloth& simulation) {
   std::vector<double> cycles;
   double measured = 0.0;
-  while (cycles.size() < kMostCycles && (cycles.size() < kFewestCycles || measured < kEnough)) {
+  while (cycles.size() < kMaxCycles && (cycles.size() < kMinCycles || measured < kEnough)) {
     const Clock::time_point begin = Clock::now();
     if (!simulation.step()) return std::numeric_limits<double>::infinity();
     cycles.push_back(since(begin));

@@ -10,10 +10,10 @@
 namespace haptex::simulation {
 namespace {
 
-constexpr double kSmoothing = 0.25;       // weight of the last cycle
-constexpr double kHighShare = 0.95;       // of the cycles that the next quality has to keep
-constexpr double kFewestRecorded = 10.0;  // cycles
-constexpr double kMostRecorded = 1000.0;  // cycles
+constexpr double kSmoothing = 0.25;      // weight of the last cycle
+constexpr double kHighShare = 0.95;      // of the cycles that the next quality has to keep
+constexpr double kMinRecorded = 10.0;    // cycles
+constexpr double kMaxRecorded = 1000.0;  // cycles
 
 [[noreturn]] void refuse(const char* name, double value, const char* allowed) {
   std::ostringstream message;
@@ -24,7 +24,7 @@ constexpr double kMostRecorded = 1000.0;  // cycles
 bool isPositive(double value) { return std::isfinite(value) && value > 0.0; }
 
 std::size_t recordedCycles(double cycle) {
-  return static_cast<std::size_t>(std::clamp(1.0 / cycle, kFewestRecorded, kMostRecorded));
+  return static_cast<std::size_t>(std::clamp(1.0 / cycle, kMinRecorded, kMaxRecorded));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ std::size_t QualityController::record(double step_seconds, int cycles) {
   next_ = (next_ + 1) % recorded_.size();
   count_ = std::min(count_ + 1, recorded_.size());
 
-  forgivable_ = std::min(forgivable_ + kForgivenShare, kMostForgiven);
+  forgivable_ = std::min(forgivable_ + kForgivenShare, kMaxForgiven);
   const bool missed = seconds > budget_;
   const bool forgiven = missed && forgivable_ >= 1.0;
   if (forgiven) {

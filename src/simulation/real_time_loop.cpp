@@ -160,7 +160,7 @@ void RealTimeLoop::takeDueStep(std::unique_lock<std::mutex>& lock) {
   const Clock::time_point now = Clock::now();
   const double simulated = simulation_.lastStepDuration();
   due_ += clockDuration(simulated);
-  const Clock::duration excess = now - due_ - clockDuration(kLargestBacklog);
+  const Clock::duration excess = now - due_ - clockDuration(kMaxBacklog);
   if (excess > Clock::duration::zero() && !cheapest) {
     simulation_.relieve();
   } else if (excess > Clock::duration::zero()) {

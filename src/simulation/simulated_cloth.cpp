@@ -19,10 +19,10 @@ template <typename... Parts>
 }
 
 void requirePlace(const std::string& name, const Eigen::Vector3d& place) {
-  if (!place.allFinite() || place.cwiseAbs().maxCoeff() > kLargestCoordinate) {
+  if (!place.allFinite() || place.cwiseAbs().maxCoeff() > kMaxCoordinate) {
     refuse(name, " = (", place.x(), ", ", place.y(), ", ", place.z(),
-           ") m: allowed are finite coordinates from ", -kLargestCoordinate, " to ",
-           kLargestCoordinate, " m");
+           ") m: allowed are finite coordinates from ", -kMaxCoordinate, " to ", kMaxCoordinate,
+           " m");
   }
 }
 

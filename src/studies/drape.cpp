@@ -49,9 +49,9 @@ DrapeOutcome drape(const material::Fabric& fabric, const DrapeTest& test, unsign
   settings.newton_iterations = 2;
   settings.tolerance = 1e-4;
   cloth::Integrator integrator(cloth, settings);
-  constexpr double kLeastTime = 0.5;  // s, before which it cannot be at rest
+  constexpr double kMinTime = 0.5;  // s, before which it cannot be at rest
   while (state.time < test.most_time &&
-         (state.time < kLeastTime || fastest(state) > test.rest_speed)) {
+         (state.time < kMinTime || fastest(state) > test.rest_speed)) {
     if (!integrator.step(cloth, state, test.time_step).accepted) {
       throw std::runtime_error("a step of the drape test was not finite");
     }

@@ -16,7 +16,7 @@ namespace {
 constexpr double kFirstStep = 0.01;    // s
 constexpr double kLongestStep = 30.0;  // s
 constexpr double kStepGrowth = 1.3;    // from step to step
-constexpr int kMostSteps = 400;
+constexpr int kMaxSteps = 400;
 constexpr double kNewtonTolerance = 1e-12;  // of steps that are solved to the end
 
 double largestSpeed(const cloth::ClothState& state) {
@@ -197,7 +197,7 @@ cloth::ClothState restOf(const cloth::Cloth& cloth) {
   cloth::Integrator integrator(cloth, kes::solvedSettings(kNewtonTolerance));
   const double extent = extentOf(state);
   double time_step = kFirstStep;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     if (!integrator.step(cloth, state, time_step).accepted) break;
     const double way = largestSpeed(state) * time_step;
     if (time_step == kLongestStep && way <= 1e-3 * kReturnTolerance * extent) {
@@ -220,12 +220,12 @@ double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& 
 
 Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
                 const cloth::ClothState& rest, cloth::ClothState& state) {
-  constexpr int kMostSteps = 200, kMostSolvedSteps = 20000;
+  constexpr int kMaxSteps = 200, kMaxSolvedSteps = 20000;
   Settling settling;
   const double period = slowestPeriod(extreme, extentOf(rest));
-  settling.slow = !settleBy(settingsOf(extreme), kMostSteps, period, cloth, rest, state, settling);
+  settling.slow = !settleBy(settingsOf(extreme), kMaxSteps, period, cloth, rest, state, settling);
   if (settling.slow) {
-    settleBy(kes::solvedSettings(kNewtonTolerance), kMostSolvedSteps, period, cloth, rest, state,
+    settleBy(kes::solvedSettings(kNewtonTolerance), kMaxSolvedSteps, period, cloth, rest, state,
              settling);
   }
   return settling;

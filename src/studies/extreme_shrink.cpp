@@ -74,7 +74,7 @@ std::vector<Change> changes() {
 
 ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
                               const std::function<bool(const ExtremeCase&)>& fails) {
-  constexpr int kMostTries = 300;  // a case that comes back late may take a second
+  constexpr int kMaxTries = 300;  // a case that comes back late may take a second
   ExtremeCase smallest = extreme;
   int tries = 0;
   for (bool changed = true; changed;) {
@@ -84,7 +84,7 @@ ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
       change(candidate);
       if (toText(candidate) == toText(smallest)) continue;
       if (candidate.shear > std::min(candidate.weft, candidate.warp)) continue;  // is never drawn
-      if (++tries > kMostTries) return smallest;
+      if (++tries > kMaxTries) return smallest;
       if (!fails(candidate)) continue;
       smallest = candidate;
       changed = true;

@@ -14,7 +14,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 bool mayBePreset(const TradeOffPoint& point) {
   return point.elasticity == cloth::Elasticity::kGreenLagrange && isImplicit(point.step.method) &&
-         point.cellSize() <= kLargestCell;
+         point.cellSize() <= kMaxCell;
 }
 
 Quality qualityOf(const TradeOffTable& table, std::size_t point) {
@@ -29,12 +29,11 @@ Quality qualityOf(const TradeOffTable& table, std::size_t point) {
   return quality;
 }
 
-/// Points of the front, each at least kLeastGain more accurate than the one kept before.
+/// Points of the front, each at least kMinGain more accurate than the one kept before.
 std::vector<std::size_t> usefulFront(const std::vector<CostAndError>& points) {
   std::vector<std::size_t> kept;
   for (std::size_t i : paretoFront(points)) {
-    if (kept.empty() || points[i].error * kLeastGain <= points[kept.back()].error)
-      kept.push_back(i);
+    if (kept.empty() || points[i].error * kMinGain <= points[kept.back()].error) kept.push_back(i);
   }
   return kept;
 }
@@ -50,9 +49,9 @@ double worstPosition(const Quality& quality) {
 void namePresets(const std::vector<CostAndError>& front, std::vector<Quality>& qualities) {
   std::size_t accurate = 0, fast = 0;
   for (std::size_t i = 0; i < front.size(); ++i) {
-    if (front[i].cost <= kMostCost) accurate = i;
+    if (front[i].cost <= kMaxCost) accurate = i;
   }
-  while (fast < accurate && worstPosition(qualities[fast]) > kMostPositionError * kSampleSize) {
+  while (fast < accurate && worstPosition(qualities[fast]) > kMaxPositionError * kSampleSize) {
     ++fast;
   }
   const std::vector<CostAndError> between(front.begin() + fast, front.begin() + accurate + 1);

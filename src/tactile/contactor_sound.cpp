@@ -13,8 +13,8 @@
 namespace haptex::tactile {
 namespace {
 
-constexpr double kMostSpeed = 1.0;   // m/s
-constexpr double kMostForce = 20.0;  // N
+constexpr double kMaxSpeed = 1.0;    // m/s
+constexpr double kMaxForce = 20.0;   // N
 constexpr double kWay = 1.0;         // s, to or fro
 constexpr double kTurning = 0.1;     // s, from speed to rest or from rest to speed
 constexpr int kMiddleContactor = 8;  // second row, third column
@@ -33,8 +33,8 @@ void requireUpTo(const char* what, double value, double most, const char* unit) 
 }
 
 void requireSound(const Rubbing& rubbing) {
-  requireUpTo("the speed", rubbing.speed, kMostSpeed, " m/s");
-  requireUpTo("the force", rubbing.force, kMostForce, " N");
+  requireUpTo("the speed", rubbing.speed, kMaxSpeed, " m/s");
+  requireUpTo("the force", rubbing.force, kMaxForce, " N");
   requireUpTo("the length", rubbing.seconds, kLongestSound, " s");
   if (!std::isfinite(rubbing.angle)) refuse("the angle", rubbing.angle, "finite numbers");
 }
@@ -112,7 +112,7 @@ ContactorSteps rubbedSteps(const tactile::Surface& surface, const Rubbing& rubbi
 
 WrittenSound writeSound(const std::string& path, const ContactorSteps& steps) {
   requireSound(steps);
-  constexpr double kLargestSample = 32767.0;
+  constexpr double kMaxSample = 32767.0;
   SoundFile file(path);
   tactile::DriveWaveform waveform(kSoundRate);
   WrittenSound written;
@@ -126,7 +126,7 @@ WrittenSound writeSound(const std::string& path, const ContactorSteps& steps) {
       written.largest = std::max(written.largest, std::abs(displacement));
       if (std::abs(displacement) > kFullScale) ++written.clipped;
       const double share = std::clamp(displacement / kFullScale, -1.0, 1.0);
-      samples.push_back(static_cast<short>(std::lround(kLargestSample * share)));
+      samples.push_back(static_cast<short>(std::lround(kMaxSample * share)));
     }
     written.samples += samples.size();
     file.write(samples);

@@ -10,10 +10,10 @@ namespace haptex::tactile {
 namespace {
 
 void requireCount(const char* name, int count) {
-  if (count >= 2 && count <= kMostSamples) return;
+  if (count >= 2 && count <= kMaxSamples) return;
   std::ostringstream message;
   message << "the height field has " << count << ' ' << name << ": allowed are 2 to "
-          << kMostSamples;
+          << kMaxSamples;
   throw std::invalid_argument(message.str());
 }
 

@@ -31,11 +31,11 @@ constexpr std::size_t kRawHeaderBytes = 4;
 }
 
 void requireSize(const std::string& path, std::size_t columns, std::size_t rows) {
-  const auto allowed = [](std::size_t count) { return count >= 2 && count <= kMostSamples; };
+  const auto allowed = [](std::size_t count) { return count >= 2 && count <= kMaxSamples; };
   if (allowed(columns) && allowed(rows)) return;
   std::ostringstream message;
   message << path << ": the height field has " << columns << " columns and " << rows
-          << " rows: allowed are 2 to " << kMostSamples << " of each";
+          << " rows: allowed are 2 to " << kMaxSamples << " of each";
   throw std::invalid_argument(message.str());
 }
 

@@ -17,8 +17,8 @@ using material::Weave;
 using material::WeaveKind;
 
 constexpr double kSampleSpacing = 1e-4;  // m, aimed at
-constexpr int kFewestSamples = 4;        // across a yarn: its shape needs them
-constexpr int kMostTileSamples = 128;    // along a side
+constexpr int kMinSamples = 4;           // across a yarn: its shape needs them
+constexpr int kMaxTileSamples = 128;     // along a side
 constexpr double kFibreLength = 0.04;    // m
 constexpr int kMapCells = 80;            // along a side: two fibres, see yarnNoise()
 constexpr std::uint64_t kSeed = 6;       // any
@@ -32,7 +32,7 @@ constexpr std::uint64_t kSeed = 6;       // any
 void requireSound(const Weave& weave) {
   const auto require_spacing = [](const char* name, double value) {
     // Written so that it refuses NaN.
-    if (value >= material::kSmallestYarnSpacing && value <= material::kLargestYarnSpacing) return;
+    if (value >= material::kMinYarnSpacing && value <= material::kMaxYarnSpacing) return;
     refuse(name, value, "0.0002 to 0.003 m");
   };
   const auto require_height = [](const char* name, double value) {
@@ -45,7 +45,7 @@ void requireSound(const Weave& weave) {
   if (!(weave.weft.height > 0.0 || weave.warp.height > 0.0)) {
     refuse("weft.height and warp.height", 0.0, "numbers of which one is > 0 m");
   }
-  if (!(weave.irregularity >= 0.0 && weave.irregularity <= material::kLargestIrregularity)) {
+  if (!(weave.irregularity >= 0.0 && weave.irregularity <= material::kMaxIrregularity)) {
     refuse("irregularity", weave.irregularity, "0 to 0.5");
   }
 }
@@ -147,8 +147,8 @@ struct Side {
 Side sideAcross(const material::Yarns& yarns, int repeat) {
   Side side;
   side.per_yarn = std::clamp(static_cast<int>(std::lround(yarns.spacing / kSampleSpacing)),
-                             kFewestSamples, kMostTileSamples / repeat);
-  side.yarns = repeat * (kMostTileSamples / (repeat * side.per_yarn));
+                             kMinSamples, kMaxTileSamples / repeat);
+  side.yarns = repeat * (kMaxTileSamples / (repeat * side.per_yarn));
   side.yarn_spacing = yarns.spacing;
   for (int i = 0; i < side.per_yarn; ++i) {
     const double cosine = std::cos(M_PI * i / side.per_yarn);

@@ -278,7 +278,7 @@ TEST(BackwardEuler, RefusesBadStepsAndSettings) {
   settings = {};
   settings.newton_iterations = 0;
   EXPECT_THROW(Integrator(cloth, settings), std::invalid_argument);
-  for (int threads : {-1, 0, kMostThreads + 1}) {
+  for (int threads : {-1, 0, kMaxThreads + 1}) {
     settings = {};
     settings.threads = threads;
     EXPECT_THROW(Integrator(cloth, settings), std::invalid_argument);

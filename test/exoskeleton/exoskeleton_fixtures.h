@@ -11,7 +11,7 @@
 
 #include "../exoskeleton/shipped_urdf.h"
 #include "haptex/exoskeleton/emulator/emulated_device.h"
-#include "haptex/exoskeleton/protocol/device_end.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 #include "haptex/exoskeleton/protocol/pseudo_terminal.h"
 #include "haptex/realtime/periodic_thread.h"
 
@@ -40,7 +40,7 @@ class TemporaryDirectory {
 /// The firmware's end of a pseudo-terminal: one period of its life.
 class DeviceOnALine {
  public:
-  explicit DeviceOnALine(const std::string& link) : terminal_(link), end_(identity()) {}
+  explicit DeviceOnALine(const std::string& link) : terminal_(link), firmware_(identity()) {}
 
   const std::string& port() const { return terminal_.path(); }
 
@@ -54,20 +54,20 @@ class DeviceOnALine {
   DeviceCommand listen(Time now) {
     std::array<std::uint8_t, 1024> bytes{};
     const std::size_t count = terminal_.read(bytes.data(), bytes.size());
-    end_.receive(bytes.data(), count, now);
-    const Bytes answer = end_.answer();
+    firmware_.receive(bytes.data(), count, now);
+    const Bytes answer = firmware_.answer();
     if (!answer.empty()) terminal_.write(answer);
-    return end_.command(now);
+    return firmware_.command(now);
   }
 
   void report(const DeviceState& state, Time now) {
-    const Bytes bytes = end_.report(state, now);
+    const Bytes bytes = firmware_.report(state, now);
     if (!bytes.empty()) terminal_.write(bytes);
   }
 
  private:
   PseudoTerminal terminal_;
-  DeviceEnd end_;
+  FirmwareModel firmware_;
 };
 
 /// Says once per millisecond, on a thread of its own, that nothing moves.

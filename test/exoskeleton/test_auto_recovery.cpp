@@ -61,7 +61,7 @@ TEST(AutoRecovery, EnablesAgainAfterAStallWithASoftStart) {
 TEST(AutoRecovery, GivesUpAfterThreeStallsInARowUntilAPersonEnables) {
   Recovering all;
   all.run(0.1);
-  for (int i = 0; i < AutoRecovery::kMostInARow; ++i) {
+  for (int i = 0; i < AutoRecovery::kMaxInARow; ++i) {
     EXPECT_EQ(all.given_up, 0);
     all.stall(0.2);
     all.run(1.0);
@@ -84,7 +84,7 @@ TEST(AutoRecovery, GivesUpAfterThreeStallsInARowUntilAPersonEnables) {
 TEST(AutoRecovery, StallsThatAreFarApartAreNotInARow) {
   Recovering all;
   all.run(0.1);
-  constexpr int kMost = AutoRecovery::kMostInARow;
+  constexpr int kMost = AutoRecovery::kMaxInARow;
   for (int i = 0; i < base::unlessSanitized(2 * kMost, kMost + 1); ++i) {
     all.stall(0.2);
     all.run(11.0);

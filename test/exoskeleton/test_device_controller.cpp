@@ -194,8 +194,8 @@ TEST(DeviceController, ForcesBeyondTheDeviceAreSaturatedAndCounted) {
   ControlledDevice device = rendering(kZero);
   device.want(Finger::kIndex, {0.0, 0.0, 50.0});
   device.run(0.3);
-  EXPECT_LE(desired(device), kMaximumForce + 1e-9);
-  EXPECT_GT(desired(device), 0.99 * kMaximumForce);
+  EXPECT_LE(desired(device), kMaxForce + 1e-9);
+  EXPECT_GT(desired(device), 0.99 * kMaxForce);
   EXPECT_GT(device.controller.measured(Finger::kIndex).safety.saturated, 290u);
 }
 
@@ -369,7 +369,7 @@ TEST(DeviceController, WhateverThePersonTheLineAndTheCommanderDoTorquesAreSafe) 
       const Vector3d force = device.controller.measured(finger).desired_force;
       Vector3d& last = before[static_cast<std::size_t>(finger)];
       ASSERT_LE((force - last).norm(), 1.0 + 1e-9) << i;
-      ASSERT_LE(force.norm(), kMaximumForce + 1e-9);
+      ASSERT_LE(force.norm(), kMaxForce + 1e-9);
       ASSERT_TRUE(device.obeyed.torques[finger].allFinite());
       ASSERT_LE(device.obeyed.torques[finger].cwiseAbs().maxCoeff(), 32767 * kTorqueStep);
       last = force;

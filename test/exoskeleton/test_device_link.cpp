@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "haptex/exoskeleton/protocol/device_end.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {
@@ -201,7 +201,7 @@ TEST(DeviceLink, AFrameThatWasInterruptedForAsLongAsATimeoutIsDropped) {
 
 TEST(DeviceLink, SpeaksWithADevice) {
   DeviceLink link;
-  DeviceEnd device(kDevice);
+  FirmwareModel device(kDevice);
   for (int i = 0; i < 1000; ++i) {
     const Time now = milliseconds(i);
     const auto toDevice = [&](Bytes bytes) { device.receive(bytes.data, bytes.size, now); };

@@ -109,7 +109,7 @@ TEST(EmulatedDevice, SaturatesAtTheEndOfTheSensorsRange) {
 
 TEST(EmulatedDevice, LimitsTheMotorsTorques) {
   EmulatedDevice device(shippedUrdf(), 1);
-  const double limit = EmulatedDevice::kLargestTorque;
+  const double limit = EmulatedDevice::kMaxTorque;
   DeviceCommand command;
   command.mode = DriveMode::kForce;
   command.torques[Finger::kIndex] = MotorVector(1.0, -1.0, 0.5 * limit);

@@ -101,12 +101,12 @@ TEST_F(EmulatorLine, GivesUpAndCountsWhatItCannotCatchUpWith) {
   samples.clear();
   const Time stall = milliseconds(1000);
   emulator.advanceTo(now + stall);
-  const auto caught_up = static_cast<std::size_t>(Emulator::kLargestLag / Emulator::kPeriod) + 1;
+  const auto caught_up = static_cast<std::size_t>(Emulator::kMaxLag / Emulator::kPeriod) + 1;
   EXPECT_EQ(samples.size(), caught_up);
   EXPECT_EQ(samples.back().time, now + stall);
   const EmulatorStatus status = emulator.status();
   EXPECT_EQ(status.skips, 1u);
-  EXPECT_EQ(status.skipped, stall - Emulator::kPeriod - Emulator::kLargestLag);
+  EXPECT_EQ(status.skipped, stall - Emulator::kPeriod - Emulator::kMaxLag);
   EXPECT_EQ(status.largest_lag, stall - Emulator::kPeriod);
   EXPECT_EQ(emulator.status().largest_lag, Time{0}) << "since the last look";
 }

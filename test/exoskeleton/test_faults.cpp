@@ -26,7 +26,7 @@ using std::chrono::milliseconds;
 constexpr double kCommanded = 3.0;  // N
 /// N per millisecond. The safety chain lets through 1; feedback on the force sensor, damping, the
 /// motion of the finger while a torque stays, and the rounding of torques come on top.
-constexpr double kLargestChange = 1e-3 * kMaximumSlew + 0.15;
+constexpr double kMaxChange = 1e-3 * kMaxSlew + 0.15;
 /// N, 20 ms after the commander's death. The motors are off for 13 ms then; the person's finger
 /// returns from a deflection of 7.5 mm and accelerates 9 to 12 g of device and rotors, whose weight
 /// and friction it always feels. Motors that are off at once leave 0.32 N (validate exoskeleton).
@@ -123,8 +123,8 @@ class FaultyLoop {
 
 void expectSafe(const Worst& worst, const std::string& what) {
   EXPECT_TRUE(worst.finite) << what;
-  EXPECT_LE(worst.contact_force, kMaximumForce) << what;
-  EXPECT_LE(worst.change, kLargestChange) << what;
+  EXPECT_LE(worst.contact_force, kMaxForce) << what;
+  EXPECT_LE(worst.change, kMaxChange) << what;
 }
 
 class FaultsOfTheLine : public testing::TestWithParam<bool> {};
@@ -173,7 +173,7 @@ TEST(Faults, AClosedPortTakesTheForceToZeroUntilItIsClearedAndEnabledAgain) {
   faulty.loop.closePort();
   const Worst worst = faulty.watch(milliseconds(300));
   expectSafe(worst, "closed");
-  EXPECT_LE(worst.motors_on - closed, DeviceEnd::kRamp + kOnTheLine);
+  EXPECT_LE(worst.motors_on - closed, FirmwareModel::kRamp + kOnTheLine);
   EXPECT_LT(faulty.contactForce(), kWeightAndFriction);
   EXPECT_EQ(faulty.loop.controller().operatingState().mode, Mode::kFault);
   EXPECT_EQ(faulty.loop.controller().clearFault(), "");

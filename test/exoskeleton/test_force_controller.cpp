@@ -78,8 +78,8 @@ TEST(ForceController, CorrectionIsBoundedHoweverWrongTheSensorIs) {
     controller.tick(input(kZero, wrong));
     largest = std::max(largest, controller.correction().norm());
   }
-  EXPECT_LE(largest, ForceController::kMaximumCorrection + 1e-12);
-  EXPECT_GT(largest, 0.9 * ForceController::kMaximumCorrection);
+  EXPECT_LE(largest, ForceController::kMaxCorrection + 1e-12);
+  EXPECT_GT(largest, 0.9 * ForceController::kMaxCorrection);
 }
 
 TEST(ForceController, DoesNotWindUp) {
@@ -155,7 +155,7 @@ TEST(ForceController, ReleaseEndsEverythingWithinTenMillisecondsAndWithoutAJump)
   while (!controller.released() && ticks < 100) {
     desired = std::max(0.0, desired - 1.0);
     const Vector3d force = forceOf(controller.release(input({0.0, 0.0, desired}, kZero)));
-    EXPECT_LE((force - before).norm(), kMaximumSlew * ForceController::kPeriod + 1e-9);
+    EXPECT_LE((force - before).norm(), kMaxSlew * ForceController::kPeriod + 1e-9);
     before = force;
     ++ticks;
   }
@@ -169,7 +169,7 @@ TEST(ForceController, WhateverIsMeasuredTorquesAreFiniteBoundedAndObeyTheSlewLim
   const double odd[] = {kNan, std::numeric_limits<double>::infinity(), 1e300, -1e300, 1e-300, 50.0};
   ForceController controller;
   Vector3d desired = kZero, before = kZero;
-  const double most = kMaximumForce + ForceController::kMaximumCorrection;
+  const double most = kMaxForce + ForceController::kMaxCorrection;
   double fastest = 0.0;
   for (int i = 0; i < 200000; ++i) {
     if (generator() % 50 == 0) desired = saturated(5.0 * Vector3d(normal(generator), 1.0, 0.0), 5);
@@ -186,7 +186,7 @@ TEST(ForceController, WhateverIsMeasuredTorquesAreFiniteBoundedAndObeyTheSlewLim
     }
     const Vector3d force = forceOf(torques);
     if (!releasing) {
-      ASSERT_LE((force - before).norm(), kMaximumSlew * ForceController::kPeriod + 1e-9) << i;
+      ASSERT_LE((force - before).norm(), kMaxSlew * ForceController::kPeriod + 1e-9) << i;
       fastest = std::max(fastest, (force - before).norm());
     }
     before = force;

@@ -42,7 +42,7 @@ TEST(MotorEncoders, CountOnAcrossTheWrapAround) {
 TEST(MotorEncoders, RefuseWhatNoMotorCanDo) {
   MotorEncoders encoders;
   EXPECT_TRUE(encoders.update({0, 0, 0}, kPeriod));
-  const int most = static_cast<int>(MotorEncoders::kMaximumSpeed * kPeriod / kCount);
+  const int most = static_cast<int>(MotorEncoders::kMaxSpeed * kPeriod / kCount);
   EXPECT_TRUE(encoders.update({most, 0, 0}, kPeriod));
   const MotorVector angles = encoders.angles(), velocities = encoders.velocities();
   EXPECT_FALSE(encoders.update({most, 0, most + 2}, kPeriod));

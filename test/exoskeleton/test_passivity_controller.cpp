@@ -49,9 +49,9 @@ TEST(PassivityController, AddsUpWhatTheObjectAbsorbs) {
 TEST(PassivityController, RemembersNeitherCreditNorDebtWithoutLimit) {
   PassivityController passivity;
   passivity.observe({5.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, 1.0);
-  EXPECT_EQ(passivity.energy(), PassivityController::kMaximumCredit);
+  EXPECT_EQ(passivity.energy(), PassivityController::kMaxCredit);
   passivity.observe({5.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 1.0);
-  EXPECT_EQ(passivity.energy(), -PassivityController::kMaximumDebt);
+  EXPECT_EQ(passivity.energy(), -PassivityController::kMaxDebt);
 }
 
 TEST(PassivityController, DoesNothingWhileTheObjectIsPassive) {
@@ -77,7 +77,7 @@ TEST(PassivityController, DampingIsBoundedAndNeverMoreThanTheForce) {
   PassivityController passivity;
   passivity.observe({5.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 1.0);
   passivity.apply({5.0, 0.0, 0.0}, {0.1, 0.0, 0.0}, kPeriod);
-  EXPECT_EQ(passivity.damping(), PassivityController::kMaximumDamping);
+  EXPECT_EQ(passivity.damping(), PassivityController::kMaxDamping);
   EXPECT_TRUE(passivity.apply({0.2, 0.0, 0.0}, {1.0, 0.0, 0.0}, kPeriod).isZero(1e-15));
   EXPECT_EQ(passivity.apply({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, kPeriod), Vector3d::Zero());
 }

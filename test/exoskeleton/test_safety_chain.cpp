@@ -133,7 +133,7 @@ TEST(SafetyChain, NotFiniteForcesAndVelocitiesAreCountedAndGiveNothing) {
 TEST(SafetyChain, SaturatesAtFiveNewtonsAndCounts) {
   Ticked ticked = Ticked::rendering({60.0, 0.0, 80.0});
   EXPECT_TRUE(ticked.chain.force().isApprox(Vector3d(3.0, 0.0, 4.0), 1e-12));
-  EXPECT_LE(ticked.chain.force().norm(), kMaximumForce * (1.0 + 1e-15));
+  EXPECT_LE(ticked.chain.force().norm(), kMaxForce * (1.0 + 1e-15));
   EXPECT_EQ(ticked.chain.statistics().saturated, 600u);
 }
 
@@ -337,14 +337,14 @@ TEST(SafetyChain, WhateverHappensItIsFiniteBoundedAndDoesNotJump) {
     now += period;
     const Vector3d force = chain.tick(wanted, 0.1 * chaos.vector(), now);
     ASSERT_TRUE(force.allFinite()) << i;
-    const double allowed = kMaximumSlew * std::min(seconds(period), kLongestSlew);
+    const double allowed = kMaxSlew * std::min(seconds(period), kLongestSlew);
     ASSERT_LE((force - before).norm(), allowed + kRounding) << i;
     largest = std::max(largest, force.norm());
     fastest = std::max(fastest, (force - before).norm() / allowed);
     before = force;
   }
-  EXPECT_LE(largest, kMaximumForce + kRounding);
-  EXPECT_GT(largest, 0.99 * kMaximumForce) << "the test did not go to the limits";
+  EXPECT_LE(largest, kMaxForce + kRounding);
+  EXPECT_GT(largest, 0.99 * kMaxForce) << "the test did not go to the limits";
   EXPECT_GT(fastest, 0.999) << "the test did not go to the limits";
   EXPECT_GT(chain.statistics().watchdog_trips, 100u);
   EXPECT_GT(chain.statistics().not_finite, 1000u);

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "../malloc_counter.h"
-#include "haptex/exoskeleton/protocol/device_end.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 #include "haptex/exoskeleton/protocol/pseudo_terminal.h"
 #include "haptex/exoskeleton/protocol/serial_port.h"
 #include "serial_fixtures.h"
@@ -27,7 +27,7 @@ TEST(SerialAllocation, NeitherEndOfTheLineAllocatesWhateverArrives) {
   EXPECT_GT(at_start, 0) << "the count does not work";
 
   DeviceLink link;
-  DeviceEnd device(Identity{});
+  FirmwareModel device(Identity{});
   std::uint64_t states = 0;
   for (int i = 0; i < 1000; ++i) {
     const Time now = milliseconds(i < 500 ? i : i + 1000);  // a time-out in between

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "haptex/exoskeleton/emulator/fault_injector.h"
-#include "haptex/exoskeleton/protocol/device_end.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {
@@ -222,7 +222,7 @@ TEST(SerialFuzz, EveryUnharmedFrameIsTakenAtOnceBehindAllFaultsTogether) {
 // Both ends behind bad lines in both directions, with a driver that comes and goes.
 TEST(SerialFuzz, BothEndsSurviveAndTheTorqueNeverOutlivesTheDriver) {
   FaultInjector to_device(14), to_driver(15);
-  DeviceEnd device(Identity{});
+  FirmwareModel device(Identity{});
   DeviceLink link;
   std::mt19937 generator(16);
   std::uint64_t bytes = 0, states = 0, obeyed = 0;

@@ -91,9 +91,9 @@ TEST(SmoothCommand, ForcesBeyondTheDeviceCountAsItsLargest) {
   smooth.take(constant({1e300, 0.0, 0.0}), kZero, kZero);
   for (int i = 0; i < 200; ++i) smooth.tick(kZero, kZero);
   EXPECT_TRUE(smooth.saturated());
-  EXPECT_NEAR(smooth.tick(kZero, kZero).x(), kMaximumForce, 1e-9);
+  EXPECT_NEAR(smooth.tick(kZero, kZero).x(), kMaxForce, 1e-9);
   smooth.take(constant({1.0, 0.0, 0.0}), kZero, kZero);
-  EXPECT_NEAR(smooth.tick(kZero, kZero).x(), kMaximumForce - 4.0 * stepResponse(1), 1e-9);
+  EXPECT_NEAR(smooth.tick(kZero, kZero).x(), kMaxForce - 4.0 * stepResponse(1), 1e-9);
   EXPECT_FALSE(smooth.saturated());
 }
 

@@ -85,7 +85,7 @@ TEST(ForceMarkers, PointFromTheSkinAlongTheForce) {
 
 TEST(ForceMarkers, HaveNoArrowForNoForce) {
   base::PerFinger<exoskeleton::FingerMeasurement> measured;
-  measured[Finger::kIndex].force = Eigen::Vector3d(0.5 * kLeastForce, 0.0, 0.0);
+  measured[Finger::kIndex].force = Eigen::Vector3d(0.5 * kMinForce, 0.0, 0.0);
   measured[Finger::kThumb].force.setConstant(std::numeric_limits<double>::quiet_NaN());
   for (const auto& marker : forceMarkers(measured, ros::Time(3.0)).markers) {
     EXPECT_EQ(marker.action, visualization_msgs::Marker::DELETE);

@@ -146,7 +146,7 @@ TEST(RealTimeLoop, GivesUpNoTimeWhileALowerQualityIsLeft) {
   std::promise<std::size_t> plan_of_second;
   std::promise<void> second, third;
   int steps = 0;
-  const auto beyond_backlog = std::chrono::duration<double>(1.5 * RealTimeLoop::kLargestBacklog);
+  const auto beyond_backlog = std::chrono::duration<double>(1.5 * RealTimeLoop::kMaxBacklog);
   RealTimeLoop loop(governedSimulation(), ignore, [&](SimulatedCloth& simulation) {
     ++steps;
     if (steps == 2) {  // the first one has been accounted for

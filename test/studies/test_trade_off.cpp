@@ -212,7 +212,7 @@ TEST_F(TradeOffStudy, ChoosesAmongStableImplicitPointsOfTheFront) {
   double cost = 0.0;
   for (const scene::Quality& quality : qualities) {
     EXPECT_TRUE(cloth::isImplicit(quality.step.method));
-    EXPECT_LE(quality.cell_size, kLargestCell);
+    EXPECT_LE(quality.cell_size, kMaxCell);
     ASSERT_EQ(quality.measured.size(), 2u);
     const double worst = std::max(quality.measured[0].cost, quality.measured[1].cost);
     EXPECT_GT(worst, cost);

@@ -20,7 +20,7 @@ TEST(HeightField, IsRowByRow) {
 
 TEST(HeightField, OfTheSmallestAndOfTheLargestSideIsSound) {
   EXPECT_EQ(refusalOf(flatField(2, 2)), "");
-  EXPECT_EQ(refusalOf(flatField(kMostSamples, 2)), "");
+  EXPECT_EQ(refusalOf(flatField(kMaxSamples, 2)), "");
 }
 
 TEST(HeightField, RefusalsNameFieldValueAndWhatIsAllowed) {

@@ -52,7 +52,7 @@ struct FingertipContact {
   Eigen::Vector2d fabric_velocity = Eigen::Vector2d::Zero();   ///< m/s, sliding in (weft, warp)
   /// How (weft, warp) change with the place along the cloth in the world frame, no unit.
   Eigen::Matrix<double, 2, 3> to_fabric = Eigen::Matrix<double, 2, 3>::Zero();
-  std::vector<ContactPoint> points;  ///< at most kMostContactPoints
+  std::vector<ContactPoint> points;  ///< at most kMaxContactPoints
 };
 
 /// The cloth around the fingertips, refined and stepped at 1 kHz between the states of the
@@ -62,10 +62,11 @@ struct FingertipContact {
 /// Another one may call preparePatch() at the same time.
 class HapticLayer {
  public:
-  static constexpr std::size_t kMostContactPoints = 1024;
+  static constexpr std::size_t kMaxContactPoints = 1024;
 
   /// @param mesh, fabric, effects those of the large-scale layer
-  /// @throws std::invalid_argument what requireTouchable() or cloth::Cloth throws
+  /// @throws std::invalid_argument what requireTouchable() or cloth::Cloth throws, or if the mesh has
+  ///   several panels
   HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric, const cloth::ModelledEffects& effects,
               const HapticSettings& settings);
 

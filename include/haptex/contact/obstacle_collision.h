@@ -12,8 +12,8 @@
 namespace haptex::contact {
 
 /// Steps a cloth among obstacles. Before a step it finds what particles could touch within it, and
-/// gives the cloth contacts that its implicit step keeps (cloth::ContactStep); after the step
-/// what has gone through a surface nevertheless is brought back to the side that it came from,
+/// gives the cloth contacts that its implicit step keeps (cloth::ActiveSetContactSolver); after the
+/// step what has gone through a surface nevertheless is brought back to the side that it came from,
 /// without the velocity into the obstacle. Explicit steps know no contacts: they are only brought
 /// back, without friction.
 ///

@@ -8,10 +8,10 @@
 namespace haptex::material {
 
 /// KES measures thickness at 0.5 gf/cm^2 (T0) and at 50 gf/cm^2 (Tm), 1 gf/cm^2 = 98.0665 Pa.
-constexpr double kKesLowPressure = 49.03325;        ///< Pa
-constexpr double kKesHighPressure = 4903.325;       ///< Pa
-constexpr double kLargestFittedPressure = 2e6;      ///< Pa: compression curves are known up to here
-constexpr double kLargestFreeThicknessRatio = 2.0;  ///< of the thickness without pressure to T0
+constexpr double kKesLowPressure = 49.03325;    ///< Pa
+constexpr double kKesHighPressure = 4903.325;   ///< Pa
+constexpr double kMaxFittedPressure = 2e6;      ///< Pa: compression curves are known up to here
+constexpr double kMaxFreeThicknessRatio = 2.0;  ///< of the thickness without pressure to T0
 
 struct ThicknessPoint {
   double pressure;   ///< Pa
@@ -27,10 +27,10 @@ struct KesCompression {
 
 /// The monotone C1 curve through the points. Beyond the last one it follows
 ///   pressure = last pressure (last thickness / thickness)^n
-/// up to kLargestFittedPressure, with the n that continues the slope of the last interval: no
+/// up to kMaxFittedPressure, with the n that continues the slope of the last interval: no
 /// pressure makes the thickness vanish.
 /// @param points at least two: the first at pressure 0, then pressure strictly rising up to at most
-///   kLargestFittedPressure and thickness strictly falling, > 0
+///   kMaxFittedPressure and thickness strictly falling, > 0
 /// @throws std::invalid_argument naming the offending point by index, its value and what is allowed
 Compression compressionFromPoints(const std::vector<ThicknessPoint>& points);
 
@@ -43,7 +43,7 @@ Compression compressionFromPoints(const std::vector<ThicknessPoint>& points);
 /// T0 down to pressure 0.
 /// @throws std::invalid_argument naming T0, Tm or WC, its value and what is allowed: all finite,
 ///   0 < Tm < T0, WC so large that the thickness without pressure is at most
-///   kLargestFreeThicknessRatio T0, and so small that the core is not negative
+///   kMaxFreeThicknessRatio T0, and so small that the core is not negative
 Compression compressionFromKes(const KesCompression& kes);
 
 }  // namespace haptex::material

@@ -8,13 +8,13 @@ namespace haptex::material {
 
 // Samples of 0.1 mm show yarns from two samples on; a piece of a few millimetres holds a repeat of
 // yarns up to the largest spacing.
-constexpr double kSmallestYarnSpacing = 2e-4;  ///< m
-constexpr double kLargestYarnSpacing = 3e-3;   ///< m
-constexpr double kLargestYarnHeight = 3e-3;    ///< m
-constexpr double kLargestIrregularity = 0.5;
-constexpr double kLargestSampleSpacing = 1e-3;  ///< m
-constexpr double kLargestFieldHeight = 1e-2;    ///< m
-constexpr double kLargestRoughness = 1e-3;      ///< m
+constexpr double kMinYarnSpacing = 2e-4;  ///< m
+constexpr double kMaxYarnSpacing = 3e-3;  ///< m
+constexpr double kMaxYarnHeight = 3e-3;   ///< m
+constexpr double kMaxIrregularity = 0.5;
+constexpr double kMaxSampleSpacing = 1e-3;  ///< m
+constexpr double kMaxFieldHeight = 1e-2;    ///< m
+constexpr double kMaxRoughness = 1e-3;      ///< m
 
 /// How warp and weft yarns interlace. The number of a twill is what a warp yarn passes over and
 /// under, of a satin its repeat, of a rib the weft yarns that lie together.
@@ -22,8 +22,8 @@ enum class WeaveKind { kPlain, kTwill22, kTwill31, kSatin5, kRib2 };
 
 /// One of the two systems of parallel yarns.
 struct Yarns {
-  double spacing;  ///< m, from yarn to yarn, kSmallestYarnSpacing to kLargestYarnSpacing
-  /// m, of their crowns above the middle of the fabric, 0 to kLargestYarnHeight
+  double spacing;  ///< m, from yarn to yarn, kMinYarnSpacing to kMaxYarnSpacing
+  /// m, of their crowns above the middle of the fabric, 0 to kMaxYarnHeight
   double height;
 };
 
@@ -32,22 +32,22 @@ struct Weave {
   WeaveKind kind;
   Yarns weft;
   Yarns warp;
-  /// Coefficient of variation of the yarns along their length, 0 to kLargestIrregularity.
+  /// Coefficient of variation of the yarns along their length, 0 to kMaxIrregularity.
   double irregularity;
 };
 
 /// A measured relief in a file.
 struct HeightFile {
   std::string path;
-  /// m, between neighbouring samples, > 0, at most kLargestSampleSpacing
+  /// m, between neighbouring samples, > 0, at most kMaxSampleSpacing
   double spacing;
-  /// m, of the largest value of a sample above the smallest, > 0, at most kLargestFieldHeight
+  /// m, of the largest value of a sample above the smallest, > 0, at most kMaxFieldHeight
   double height;
   bool periodic;  ///< whether the field continues at its opposite edge
 };
 
 struct Surface {
-  /// m, KES SMD: mean deviation of the height, > 0, at most kLargestRoughness
+  /// m, KES SMD: mean deviation of the height, > 0, at most kMaxRoughness
   double roughness;
   /// KES MMD: mean deviation of the coefficient of friction, 0 to 1 and at most that coefficient
   double friction_deviation;

@@ -8,12 +8,40 @@
 
 namespace haptex::mesh {
 
-/// A piece of cloth as triangles between particles.
+/// A piece that is cut from a fabric.
+struct Panel {
+  int fabric = 0;  ///< which of the cloth's fabrics
+  double grain =
+      0.0;  ///< rad, from the axes of its rest coordinates to weft and warp of the fabric
+};
+
+/// Cloth as triangles between particles. A sheet is one panel, whose particles have one rest
+/// coordinate each. Where panels are sewn together they share the particles of the seam, and every
+/// corner of a triangle has the rest coordinate that it has in its own panel.
 struct ClothMesh {
   std::vector<Eigen::Vector2d> rest_coordinates;   ///< (u along weft, v along warp), m
   std::vector<Eigen::Vector3d> initial_positions;  ///< m, world frame
   std::vector<std::array<int, 3>> triangles;       ///< particle indices
+
+  std::vector<Panel> panels = {};         ///< empty: one panel of fabric 0 along the grain
+  std::vector<int> triangle_panels = {};  ///< per triangle; empty: all are of panel 0
+  /// Per triangle and corner, m, in the axes of the panel; empty: those of the particles.
+  std::vector<std::array<Eigen::Vector2d, 3>> corner_coordinates = {};
+
+  int panelCount() const { return panels.empty() ? 1 : static_cast<int>(panels.size()); }
+  Panel panelOf(std::size_t triangle) const;
+  /// Of the corners of a triangle, (u along weft, v along warp) of its fabric, m.
+  std::array<Eigen::Vector2d, 3> restCorners(std::size_t triangle) const;
 };
+
+/// One panel of a mesh as a sheet of its own, with rest coordinates along weft and warp.
+struct CutPanel {
+  ClothMesh sheet;
+  std::vector<int> particles;  ///< of the mesh, for every one of the sheet, ascending
+  Panel panel;
+};
+/// @param mesh sound @param panel of it
+CutPanel cutPanel(const ClothMesh& mesh, int panel);
 
 /// How makeRectangle() splits its cells into two triangles.
 enum class Triangulation {
@@ -55,8 +83,11 @@ struct MeshDefects {
   std::vector<int> duplicate_triangles;   ///< same three particles as an earlier triangle
   std::vector<int> unreferenced_particles;
   std::vector<int> non_finite_particles;  ///< rest coordinate or position
-  bool size_mismatch = false;  ///< rest_coordinates and initial_positions differ in length
-  bool empty = false;          ///< no triangle
+  std::vector<int> unknown_panels;        ///< triangles whose panel does not exist
+  std::vector<int> unsound_panels;        ///< fabric below 0, or grain not finite
+  bool panel_mismatch = false;  ///< panels or corner coordinates are not as many as triangles
+  bool size_mismatch = false;   ///< rest_coordinates and initial_positions differ in length
+  bool empty = false;           ///< no triangle
 
   bool none() const;
   /// One line that names every kind of defect found and the first ten indices of each.

@@ -10,12 +10,12 @@ namespace haptex::proximity {
 
 /// Places, radii and distances may not be larger than this (m): far beyond any workspace, but small
 /// enough that no sum or square overflows.
-constexpr double kLargestLength = 1e9;
+constexpr double kMaxLength = 1e9;
 
-/// Whether a place is finite and each coordinate within kLargestLength.
+/// Whether a place is finite and each coordinate within kMaxLength.
 inline bool isPlace(const Eigen::Vector3d& place) {
-  return std::abs(place.x()) <= kLargestLength && std::abs(place.y()) <= kLargestLength &&
-         std::abs(place.z()) <= kLargestLength;  // false for NaN
+  return std::abs(place.x()) <= kMaxLength && std::abs(place.y()) <= kMaxLength &&
+         std::abs(place.z()) <= kMaxLength;  // false for NaN
 }
 
 /// @throws std::invalid_argument naming the place, called `what`, unless isPlace()
@@ -39,7 +39,7 @@ struct TaperedCapsule {
 /// A union of volumes, in the frame of the mesh it is held against. Every shape that a cursor may
 /// have is a special case of the tapered capsule. The factories
 /// @throws std::invalid_argument naming the value unless all numbers are finite and at most
-/// kLargestLength, all radii are >= 0 and there is at least one sphere
+/// kMaxLength, all radii are >= 0 and there is at least one sphere
 class Cursor {
  public:
   static Cursor point(const Eigen::Vector3d& place);

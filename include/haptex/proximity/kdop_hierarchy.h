@@ -57,7 +57,7 @@ class KdopHierarchy {
   ///   coordinates, so that neighbours in the fabric share a volume however it is folded. The
   ///   volumes are fitted to them.
   /// @throws std::invalid_argument naming what is wrong: no triangle, an index outside of the
-  ///   positions, a position that is not finite or beyond kLargestLength, triangles_per_leaf < 1,
+  ///   positions, a position that is not finite or beyond kMaxLength, triangles_per_leaf < 1,
   ///   an instruction set that the processor lacks
   KdopHierarchy(std::vector<std::array<int, 3>> triangles,
                 const std::vector<Eigen::Vector3d>& positions,
@@ -65,7 +65,7 @@ class KdopHierarchy {
 
   /// Adapts all volumes to new positions, from the leaves to the root.
   /// @throws std::invalid_argument if their number differs, or one is not finite or beyond
-  ///   kLargestLength; volumes and positions are then as before
+  ///   kMaxLength; volumes and positions are then as before
   void refit(const std::vector<Eigen::Vector3d>& positions);
 
   /// The elements near a cursor or another body, sorted by isNearer().

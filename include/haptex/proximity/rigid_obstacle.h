@@ -24,7 +24,7 @@ struct SurfaceDistance {
 /// degenerate triangles too.
 class RigidObstacle {
  public:
-  // Lengths are finite and at most kLargestLength, otherwise the factories
+  // Lengths are finite and at most kMaxLength, otherwise the factories
   // @throws std::invalid_argument naming the value and what is allowed
 
   /// Solid.
@@ -42,7 +42,7 @@ class RigidObstacle {
                             const std::vector<std::array<int, 3>>& triangles);
 
   /// From the obstacle's own frame to that of the mesh it is held against; identity at first.
-  /// @throws std::invalid_argument naming what is wrong unless it is finite, at most kLargestLength
+  /// @throws std::invalid_argument naming what is wrong unless it is finite, at most kMaxLength
   ///   away and rigid: no scale, shear or reflection beyond 1e-9
   void setPose(const Eigen::Isometry3d& pose);
   const Eigen::Isometry3d& pose() const { return pose_; }

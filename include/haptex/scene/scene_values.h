@@ -7,7 +7,7 @@
 
 namespace haptex::scene {
 
-constexpr double kLargestSize = 100.0;  ///< m, of what a scene file describes
+constexpr double kMaxSize = 100.0;  ///< m, of what a scene file describes
 
 /// The path of a file that a scene names. A name without a separator lies in the directory `kind`
 /// beside the scene's, a path is relative to the scene's directory.
@@ -16,7 +16,7 @@ constexpr double kLargestSize = 100.0;  ///< m, of what a scene file describes
 std::string resolveFile(const base::YamlValue& value, const std::string& kind,
                         const std::string& extension);
 
-/// A length (m), > 0 and at most kLargestSize.
+/// A length (m), > 0 and at most kMaxSize.
 /// @throws std::invalid_argument naming file, key, value and what is allowed
 double readSize(const base::YamlValue& value);
 

@@ -37,7 +37,7 @@ struct LayerUpdate {
 
 /// For those who ask what is near the fingertips and tell the cloth what acts on it.
 struct LoopView {
-  LoopView() { loads.reserve(cloth::Cloth::kMostPointLoads); }
+  LoopView() { loads.reserve(cloth::Cloth::kMaxPointLoads); }
 
   std::uint64_t states = 0;   ///< of the cloth, taken so far
   double state_period = 0.0;  ///< s, of simulated time, between the last two
@@ -49,7 +49,7 @@ struct LoopView {
 
 /// For markers.
 struct ContactPicture {
-  static constexpr std::size_t kMostParticles = 8192;  ///< a patch with more is not shown
+  static constexpr std::size_t kMaxParticles = 8192;  ///< a patch with more is not shown
 
   ContactPicture();
 

@@ -21,7 +21,7 @@ struct CycleTimes {
 /// two for the one that runs. Downwards it goes at once, to the most accurate that the load lets
 /// into kTarget of the budget: when the smoothed time comes to kNear of the budget, or when a cycle
 /// misses it that is not forgiven. A few misses are: any machine stumbles, and a cheaper quality
-/// would not help. After kMostForgiven in a row each further one needs 1 / kForgivenShare cycles.
+/// would not help. After kMaxForgiven in a row each further one needs 1 / kForgivenShare cycles.
 /// What is forgiven does not count for the smoothed time.
 ///
 /// Upwards it goes by one, when the quality has run for kHold and the next one would have kept
@@ -32,7 +32,7 @@ class QualityController {
  public:
   static constexpr double kTarget = 0.8;  ///< of the budget, that a choice may take
   static constexpr double kNear = 0.9;    ///< of the budget
-  static constexpr double kMostForgiven = 2.0;
+  static constexpr double kMaxForgiven = 2.0;
   static constexpr double kForgivenShare = 0.025;  ///< of the cycles, in the long run
   static constexpr double kHold = 0.5;             ///< s
   static constexpr double kTrial = 2.0;            ///< s

@@ -44,12 +44,12 @@ struct StepsTaken {
 /// come meanwhile wait for the next gap, so that neither steps nor commands starve.
 ///
 /// Every step has a time at which it is due. When the steps take longer than they simulate, the
-/// loop computes without rest and its lag grows. Beyond kLargestBacklog the simulation goes to the
+/// loop computes without rest and its lag grows. Beyond kMaxBacklog the simulation goes to the
 /// cheapest quality that its controller knows. What exceeds the backlog after a step by that one is
 /// given up and counted: simulated time falls behind, and the real-time factor shows by how much.
 class RealTimeLoop {
  public:
-  static constexpr double kLargestBacklog = 0.1;  ///< s
+  static constexpr double kMaxBacklog = 0.1;  ///< s
 
   /// Runs on the loop's thread after an accepted step, and after commands while paused or while
   /// steps are rejected. `rests` is true if no step follows at once: the state is the last one for

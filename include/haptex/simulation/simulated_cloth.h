@@ -19,7 +19,7 @@ namespace haptex::simulation {
 
 /// Attached particles may not be sent farther from the world origin than this (m, per axis): far
 /// beyond any workspace, but near enough to keep the numbers of a step finite.
-constexpr double kLargestCoordinate = 100.0;
+constexpr double kMaxCoordinate = 100.0;
 
 /// How a step of the scene is taken: in equal substeps, each by these settings.
 struct StepPlan {
@@ -102,7 +102,7 @@ class SimulatedCloth {
 
   /// Attaches particles to places, reached at the end of the next step.
   /// @throws std::invalid_argument also if there is not one finite place within
-  ///   kLargestCoordinate for each
+  ///   kMaxCoordinate for each
   void attach(const std::vector<std::uint32_t>& particles,
               const std::vector<Eigen::Vector3d>& places);
 
@@ -110,7 +110,7 @@ class SimulatedCloth {
   /// now, which they reach exactly. An earlier path ends here.
   /// @param duration s of simulated time; 0: within the next step
   /// @throws std::invalid_argument also if one is not attached, the displacement or the duration
-  ///   is not finite, the duration negative, or an end beyond kLargestCoordinate
+  ///   is not finite, the duration negative, or an end beyond kMaxCoordinate
   void move(const std::vector<std::uint32_t>& particles, const Eigen::Vector3d& displacement,
             double duration);
 

@@ -24,20 +24,20 @@ struct TradeOffTable {
 CostAndError overall(const std::vector<TradeOffResult>& results);
 
 /// Points of the front that a scene may ask for, by rising cost and falling error (overall()): with
-/// Green-Lagrange elements and an implicit method, cells of at most kLargestCell, stable in all
-/// cases, and each more accurate than the one before by kLeastGain at least. Three of them have the
+/// Green-Lagrange elements and an implicit method, cells of at most kMaxCell, stable in all
+/// cases, and each more accurate than the one before by kMinGain at least. Three of them have the
 /// names of presets, by rule:
-///   accurate: the least error of those whose cost is at most kMostCost
-///   fast:     the least cost of those whose error in position is at most kMostPositionError of the
+///   accurate: the least error of those whose cost is at most kMaxCost
+///   fast:     the least cost of those whose error in position is at most kMaxPositionError of the
 ///             sample's size in every case
 ///   balanced: kneeOf() those between both
 /// the others are called point_1, point_2, ... by their place.
 std::vector<scene::Quality> chooseQualities(const TradeOffTable& table);
 
-constexpr double kLargestCell = 0.017;  ///< m, the width of a fingertip
-constexpr double kLeastGain = 1.05;
-constexpr double kMostCost = 1.0;  ///< computing time of one core over simulated time
-constexpr double kMostPositionError = 0.2;
+constexpr double kMaxCell = 0.017;  ///< m, the width of a fingertip
+constexpr double kMinGain = 1.05;
+constexpr double kMaxCost = 1.0;  ///< computing time of one core over simulated time
+constexpr double kMaxPositionError = 0.2;
 
 /// CSV, a line per point and case that was followed, and one per reference with its own errors. In
 /// the columns position_limited, force_limited, energy_limited 1 stands for an error that is the

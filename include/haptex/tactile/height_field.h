@@ -15,10 +15,10 @@ struct HeightField {
   double at(int column, int row) const { return heights[columns * row + column]; }
 };
 
-/// @throws std::invalid_argument naming field, value and what is allowed: 2 to kMostSamples columns
+/// @throws std::invalid_argument naming field, value and what is allowed: 2 to kMaxSamples columns
 ///   and rows, as many heights as that, finite, and spacings > 0
 void requireSound(const HeightField& field);
-constexpr int kMostSamples = 4096;
+constexpr int kMaxSamples = 4096;
 
 /// Takes off the least-squares plane.
 /// @param field sound, see above

@@ -23,10 +23,16 @@ void requireDensity(const material::Fabric& fabric) {
   }
 }
 
-std::vector<double> lumpedMasses(const mesh::ClothMesh& mesh, double density) {
+/// @param fabrics that the panels name, at least
+std::vector<double> lumpedMasses(const mesh::ClothMesh& mesh,
+                                 const std::vector<material::Fabric>& fabrics) {
   std::vector<double> masses(mesh.rest_coordinates.size(), 0.0);
-  for (const MembraneElement& element : restElements(mesh)) {
-    for (int particle : element.particles) masses[particle] += density * element.area / 3.0;
+  const std::vector<MembraneElement> elements = restElements(mesh);
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    const double density = fabrics[mesh.panelOf(t).fabric].areal_density;
+    for (int particle : elements[t].particles) {
+      masses[particle] += density * elements[t].area / 3.0;
+    }
   }
   return masses;
 }
@@ -47,26 +53,32 @@ Eigen::Vector3d AttachmentPath::velocity(double time) const {
 }
 
 Cloth::Cloth(mesh::ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects)
+    : Cloth(std::move(mesh), std::vector<material::Fabric>{std::move(fabric)}, effects) {}
+
+Cloth::Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
+             const ModelledEffects& effects)
     : revision_(nextRevision()),
       mesh_(std::move(mesh)),
       effects_(effects),
       attachments_(mesh_.rest_coordinates.size()) {
   requireSound(mesh_);
-  takeFabric(std::move(fabric));
+  takeFabrics(std::move(fabrics));
   if (!effects.contacts) return;
   contacts_.reserve(particleCount());
   touched_.resize(particleCount());
 }
 
-/// Makes all that depends on the fabric; user-defined forces and point loads stay.
-void Cloth::takeFabric(material::Fabric fabric) {
-  requireDensity(fabric);
-  std::vector<double> masses = lumpedMasses(mesh_, fabric.areal_density);
+/// Makes all that depends on the fabrics; user-defined forces and point loads stay.
+void Cloth::takeFabrics(std::vector<material::Fabric> fabrics) {
+  for (const material::Fabric& fabric : fabrics) requireDensity(fabric);
   auto forces = std::make_unique<ForceSum>();
+  ForceSum of_fabrics;
+  addFabricForces(mesh_, fabrics, effects_, of_fabrics);
+  std::vector<double> masses = lumpedMasses(mesh_, fabrics);
   auto constant = std::make_unique<ConstantForces>(masses, effects_.gravity);
   if (constant_ != nullptr) constant->copyUserForces(*constant_);
   ConstantForces& added = forces->add(std::move(constant));
-  addFabricForces(mesh_, fabric, effects_, *forces);
+  forces->addAll(std::move(of_fabrics));
   PointLoads* loads = nullptr;
   if (effects_.point_loads) loads = &forces->add(std::make_unique<PointLoads>(mesh_));
   if (point_loads_ != nullptr) loads->set(point_loads_->loads());
@@ -75,7 +87,7 @@ void Cloth::takeFabric(material::Fabric fabric) {
   forces->bind(matrix);
   // Nothing throws from here on.
   pattern_size_ = matrix.lowerCount();
-  fabric_ = std::move(fabric);
+  fabrics_ = std::move(fabrics);
   masses_ = std::move(masses);
   forces_ = std::move(forces);
   constant_ = &added;
@@ -106,7 +118,9 @@ void Cloth::remember(ClothState& state) const {
 }
 
 void Cloth::setFabric(material::Fabric fabric) {
-  takeFabric(std::move(fabric));
+  std::vector<material::Fabric> fabrics = fabrics_;
+  fabrics.front() = std::move(fabric);
+  takeFabrics(std::move(fabrics));
   revision_ = nextRevision();
 }
 

@@ -13,7 +13,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Eigen::Vector3d;
 
-constexpr double kMostStepGrowth = 2.0;  // of BDF-2 from step to step
+constexpr double kMaxStepGrowth = 2.0;  // of BDF-2 from step to step
 
 void requireFraction(const char* name, double value) {
   if (!std::isfinite(value) || value <= 0.0 || value >= 1.0) {
@@ -31,9 +31,9 @@ const StepSettings& requireSound(const StepSettings& settings) {
     message << "newton_iterations is " << settings.newton_iterations << "; it must be at least 1";
     throw std::invalid_argument(message.str());
   }
-  if (settings.threads < 1 || settings.threads > kMostThreads) {
+  if (settings.threads < 1 || settings.threads > kMaxThreads) {
     std::ostringstream message;
-    message << "threads is " << settings.threads << "; it must lie from 1 to " << kMostThreads;
+    message << "threads is " << settings.threads << "; it must lie from 1 to " << kMaxThreads;
     throw std::invalid_argument(message.str());
   }
   return settings;
@@ -186,7 +186,7 @@ const std::vector<ContactReaction>& Integrator::contactReactions() const {
 }
 
 bool Integrator::continuesHistory(const ClothState& begin, double h) const {
-  return history_->time_step > 0.0 && h <= kMostStepGrowth * history_->time_step &&
+  return history_->time_step > 0.0 && h <= kMaxStepGrowth * history_->time_step &&
          begin.time == history_->last.time && begin.positions == history_->last.positions &&
          begin.velocities == history_->last.velocities;
 }
@@ -200,7 +200,7 @@ bool Integrator::continuesHistory(const ClothState& begin, double h) const {
 /// the blend is of the first, and the step still of the second order.
 void Integrator::takeMidpoint(const Cloth& cloth, const ClothState& begin, double h,
                               StepReport& report) {
-  constexpr double kMostBlend = 0.5;
+  constexpr double kMaxBlend = 0.5;
   const double potential = cloth.potentialEnergy(begin);
   while (true) {
     const double theta = 0.5 + report.blend;
@@ -208,10 +208,10 @@ void Integrator::takeMidpoint(const Cloth& cloth, const ClothState& begin, doubl
                    {begin.positions, begin.velocities, theta * h}, end_, report);
     const double work = outerWork(cloth, begin, h, theta);
     extrapolate(cloth, begin, theta);
-    if (report.blend >= kMostBlend) return;
+    if (report.blend >= kMaxBlend) return;
     const double enough = blendAgainstGrowth(cloth, begin, potential + work);
     if (!(enough > 0.0)) return;
-    report.blend = std::min(kMostBlend, std::max(2.0 * report.blend, report.blend + enough));
+    report.blend = std::min(kMaxBlend, std::max(2.0 * report.blend, report.blend + enough));
   }
 }
 

@@ -52,11 +52,11 @@ void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess
 bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
                           const std::function<bool()>& enough, ClothState& result,
                           StepReport& report) {
-  constexpr int kLeastSolves = 20;
+  constexpr int kMinSolves = 20;
   hold(cloth, stage, stage.base, true);
   const double potential = touching() ? incrementalPotential(cloth, stage, result)
                                       : retreatTowardsRest(cloth, stage, result);
-  return iterateNewton(cloth, stage, potential, std::max(kLeastSolves, settings_.newton_iterations),
+  return iterateNewton(cloth, stage, potential, std::max(kMinSolves, settings_.newton_iterations),
                        enough, result, report);
 }
 
@@ -93,7 +93,7 @@ void StageSolver::hold(const Cloth& cloth, const Stage& stage, const ClothState&
 /// there until it is not.
 /// @return the incremental potential of the result
 double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
-  constexpr double kLeastShare = 1e-9;
+  constexpr double kMinShare = 1e-9;
   const auto placeAt = [&](double share) {
     for (int i = 0; i < matrix_.size(); ++i) {
       const Vector3d velocity = result.velocities[i];
@@ -109,7 +109,7 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
   if (potential <= at_rest) return potential;
   double share = 1.0;
   do {
-    share = share > kLeastShare ? 0.5 * share : 0.0;
+    share = share > kMinShare ? 0.5 * share : 0.0;
     potential = placeAt(share);
   } while (!(potential <= at_rest) && share > 0.0);
   std::swap(result.positions, trial_.positions);
@@ -153,19 +153,19 @@ void StageSolver::eliminate() {
 /// The linear solve of the linearised stage, as often as the contacts ask for it.
 bool StageSolver::solveFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                              StepReport& report) {
-  constexpr int kMostRounds = 10;
+  constexpr int kMaxRounds = 10;
   if (contacts_) contacts_->begin(cloth, stage, guess.velocities, fixed_, matrix_, rhs_);
   if (!touching()) {
     eliminate();
     return solveLinear(report);
   }
   bool solved = false;
-  for (int round = 1; round <= kMostRounds; ++round) {
+  for (int round = 1; round <= kMaxRounds; ++round) {
     any_fixed_ = contacts_->prepareRound(matrix_, rhs_, fixed_, prescribed_);
     eliminate();
     solved = solveLinear(report);
     ++report.contact_rounds;
-    if (!contacts_->update(solution_, round == kMostRounds)) break;
+    if (!contacts_->update(solution_, round == kMaxRounds)) break;
   }
   return solved;
 }
@@ -269,13 +269,13 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
                                              ClothState& result, double& potential) {
   constexpr double kSufficientDecrease = 1e-4;
   constexpr double kRounding = 1e-14;
-  constexpr int kMostHalvings = 40;
+  constexpr int kMaxHalvings = 40;
   const double descent = rhs_.cwiseProduct(solution_).sum();
   const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
   if (!(descent > 0.0) && !contacts_change_)
     return below_rounding ? Descent::kBelowRounding : Descent::kNone;
   double step = 1.0;
-  for (int halving = 0; halving < kMostHalvings; ++halving, step *= 0.5) {
+  for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
     for (int i = 0; i < matrix_.size(); ++i) {
       const Vector3d change = step * solution_.col(i);
       trial_.velocities[i] = result.velocities[i] + change;

@@ -9,11 +9,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-MembraneElement restElement(const mesh::ClothMesh& mesh, std::array<int, 3> particles) {
-  std::sort(particles.begin(), particles.end());
-  const Eigen::Vector2d& a = mesh.rest_coordinates[particles[0]];
-  const Eigen::Vector2d& b = mesh.rest_coordinates[particles[1]];
-  const Eigen::Vector2d& c = mesh.rest_coordinates[particles[2]];
+MembraneElement restElement(const mesh::ClothMesh& mesh, std::size_t triangle) {
+  std::array<int, 3> order = {0, 1, 2};
+  const std::array<int, 3>& corners = mesh.triangles[triangle];
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return corners[i] < corners[j]; });
+  const std::array<int, 3> particles = {corners[order[0]], corners[order[1]], corners[order[2]]};
+  const std::array<Eigen::Vector2d, 3> rest = mesh.restCorners(triangle);
+  const Eigen::Vector2d &a = rest[order[0]], &b = rest[order[1]], &c = rest[order[2]];
   const double ua = a.x(), va = a.y(), ub = b.x(), vb = b.y(), uc = c.x(), vc = c.y();
   const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
   MembraneElement element{};
@@ -26,11 +28,12 @@ MembraneElement restElement(const mesh::ClothMesh& mesh, std::array<int, 3> part
 
 }  // namespace
 
-std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh) {
+std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh, std::optional<int> panel) {
   std::vector<MembraneElement> elements;
   elements.reserve(mesh.triangles.size());
-  for (const std::array<int, 3>& triangle : mesh.triangles) {
-    elements.push_back(restElement(mesh, triangle));
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const int of = mesh.triangle_panels.empty() ? 0 : mesh.triangle_panels[t];
+    if (!panel || *panel == of) elements.push_back(restElement(mesh, t));
   }
   bindElements({static_cast<int>(mesh.rest_coordinates.size()), mesh.triangles}, elements);
   return elements;

@@ -1,8 +1,14 @@
 #include "haptex/cloth/forces/force_sum.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace haptex::cloth {
+
+void ForceSum::addAll(ForceSum&& other) {
+  std::move(other.forces_.begin(), other.forces_.end(), std::back_inserter(forces_));
+  other.forces_.clear();
+}
 
 /// Calls with each force and the state with its own memory.
 template <typename Call>

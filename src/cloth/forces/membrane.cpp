@@ -182,17 +182,18 @@ void Membrane::assembleLinearised(const ForceState& state, const StageTimes& tim
   }
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     if (viscosity_) {
-      addStepOf<true>(elements_[t], positions, velocities, times, matrix, rhs);
+      assembleElement<true>(elements_[t], positions, velocities, times, matrix, rhs);
     } else {
-      addStepOf<false>(elements_[t], positions, velocities, times, matrix, rhs);
+      assembleElement<false>(elements_[t], positions, velocities, times, matrix, rhs);
     }
   }
 }
 
 template <bool kViscous>
-void Membrane::addStepOf(const MembraneElement& element, const Positions& positions,
-                         const Velocities& velocities, const StageTimes& times,
-                         linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const {
+void Membrane::assembleElement(const MembraneElement& element, const Positions& positions,
+                               const Velocities& velocities, const StageTimes& times,
+                               linear::SymmetricBlockMatrix& matrix,
+                               linear::BlockVector& rhs) const {
   const Frame at = frame(element, positions);
   const Frame derivative = frame(element, velocities);
   const MembraneStrain rate = at.rate(derivative);

@@ -40,44 +40,70 @@ void requireModelled(const material::Fabric& fabric, const ModelledEffects& effe
   }
 }
 
-void addElasticity(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
-                   const ModelledEffects& effects, ForceSum& forces) {
-  switch (effects.elasticity) {
-    case Elasticity::kMassSpring:
-      forces.add(std::make_unique<SpringLattice>(mesh, fabric, effects.viscosity, effects.bending));
-      return;
-    case Elasticity::kCorotational:
-      forces.add(std::make_unique<Corotational>(restElements(mesh), fabric, effects.viscosity));
-      return;
-    case Elasticity::kGreenLagrange:
-      forces.add(std::make_unique<Membrane>(restElements(mesh), fabric, effects.viscosity,
-                                            effects.contraction));
-      return;
+int fabricOf(const mesh::ClothMesh& mesh, int panel) {
+  return mesh.panels.empty() ? 0 : mesh.panels[panel].fabric;
+}
+
+void requirePanels(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
+                   const ModelledEffects& effects) {
+  for (int p = 0; p < mesh.panelCount(); ++p) {
+    if (fabricOf(mesh, p) < static_cast<int>(fabrics.size())) continue;
+    throw std::invalid_argument("panel " + std::to_string(p) + " is of fabric " +
+                                std::to_string(fabricOf(mesh, p)) + "; there are " +
+                                std::to_string(fabrics.size()));
+  }
+  if (mesh.panelCount() > 1 && effects.elasticity == Elasticity::kMassSpring) {
+    throw std::invalid_argument("springs know one panel, and the mesh has " +
+                                std::to_string(mesh.panelCount()));
   }
 }
 
-/// But where springs do it.
-void addBending(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
+/// The membrane or the corotational elements of every panel, or the springs of the only one.
+void addElasticity(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
+                   const ModelledEffects& effects, ForceSum& forces) {
+  if (effects.elasticity == Elasticity::kMassSpring) {
+    forces.add(
+        std::make_unique<SpringLattice>(mesh, fabrics.front(), effects.viscosity, effects.bending));
+    return;
+  }
+  for (int p = 0; p < mesh.panelCount(); ++p) {
+    const material::Fabric& fabric = fabrics[fabricOf(mesh, p)];
+    std::vector<MembraneElement> elements = restElements(mesh, p);
+    if (effects.elasticity == Elasticity::kCorotational) {
+      forces.add(std::make_unique<Corotational>(std::move(elements), fabric, effects.viscosity));
+    } else {
+      forces.add(std::make_unique<Membrane>(std::move(elements), fabric, effects.viscosity,
+                                            effects.contraction));
+    }
+  }
+}
+
+void addBending(const mesh::CutPanel& cut, const material::Fabric& fabric,
                 const ModelledEffects& effects, ForceSum& forces) {
-  if (effects.elasticity == Elasticity::kMassSpring) return;
-  auto bending = std::make_unique<Bending>(mesh, *fabric.bending, effects.bending_settings);
+  auto bending = std::make_unique<Bending>(cut.sheet, *fabric.bending, effects.bending_settings);
   if (effects.bending_hysteresis) {
-    const material::BendingHysteresis& hysteresis = *fabric.bending_hysteresis;
-    auto friction = std::make_unique<BendingFriction>(mesh, bending->hinges(), bending->corners(),
-                                                      *fabric.bending, hysteresis);
+    auto friction =
+        std::make_unique<BendingFriction>(cut.sheet, bending->hinges(), bending->corners(),
+                                          *fabric.bending, *fabric.bending_hysteresis);
+    friction->renumber(cut.particles);
     if (friction->memorySize() > 0) forces.add(std::move(friction));
   }
+  bending->renumber(cut.particles);
   forces.add(std::move(bending));
 }
 
 }  // namespace
 
-void addFabricForces(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
+void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                      const ModelledEffects& effects, ForceSum& forces) {
-  requireModelled(fabric, effects);
-  addElasticity(mesh, fabric, effects, forces);
+  requirePanels(mesh, fabrics, effects);
+  for (const material::Fabric& fabric : fabrics) requireModelled(fabric, effects);
+  addElasticity(mesh, fabrics, effects, forces);
   if (effects.air) forces.add(std::make_unique<Aerodynamics>(restElements(mesh), *effects.air));
-  if (effects.bending) addBending(mesh, fabric, effects, forces);
+  if (!effects.bending || effects.elasticity == Elasticity::kMassSpring) return;
+  for (int p = 0; p < mesh.panelCount(); ++p) {
+    addBending(mesh::cutPanel(mesh, p), fabrics[fabricOf(mesh, p)], effects, forces);
+  }
 }
 
 }  // namespace haptex::cloth

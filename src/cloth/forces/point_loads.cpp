@@ -85,13 +85,13 @@ PointLoad checkedLoad(const PointLoad& load, std::size_t index, std::size_t tria
 
 PointLoads::PointLoads(const mesh::ClothMesh& mesh)
     : triangles_(mesh.triangles), elements_(restElements(mesh)) {
-  loads_.reserve(kMost);
+  loads_.reserve(kMax);
 }
 
 void PointLoads::set(const std::vector<PointLoad>& loads) {
-  if (loads.size() > kMost) {
+  if (loads.size() > kMax) {
     throw std::invalid_argument("there are " + std::to_string(loads.size()) +
-                                " point loads; allowed are " + std::to_string(kMost));
+                                " point loads; allowed are " + std::to_string(kMax));
   }
   for (std::size_t i = 0; i < loads.size(); ++i) checkedLoad(loads[i], i, triangles_.size());
   loads_.clear();

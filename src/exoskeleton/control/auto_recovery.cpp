@@ -34,7 +34,7 @@ RecoveryStep AutoRecovery::enabled(Time now) {
 RecoveryStep AutoRecovery::faulted(bool stall, Time now) {
   const bool is_new = last_mode_ != Mode::kFault;
   if (is_new) {
-    recovering_ = stall && (was_enabled_ || recovering_) && in_a_row_ < kMostInARow;
+    recovering_ = stall && (was_enabled_ || recovering_) && in_a_row_ < kMaxInARow;
     const bool gives_up = stall && was_enabled_ && !recovering_;
     if (!recovering_) was_enabled_ = false;
     if (gives_up) return RecoveryStep::kGiveUp;

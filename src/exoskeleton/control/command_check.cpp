@@ -76,11 +76,11 @@ class Explanation {
 
 CommandFlaw findFlaw(const ForceCommand& command) {
   if (!isFinite(command)) return CommandFlaw::kNotFinite;
-  const bool possible = isWithin(command.force, kLargestCommandedForce) &&
+  const bool possible = isWithin(command.force, kMaxCommandedForce) &&
                         isWithin(command.position, kFarthestPosition) &&
                         isWithin(command.velocity, kFastestVelocity) &&
-                        isWithin(command.stiffness, kLargestStiffness) &&
-                        isWithin(command.damping, kLargestDamping);
+                        isWithin(command.stiffness, kMaxCommandedStiffness) &&
+                        isWithin(command.damping, kMaxCommandedDamping);
   if (!possible) return CommandFlaw::kTooLarge;
   const bool passive = isPassive(command.stiffness) && isPassive(command.damping);
   return passive ? CommandFlaw::kNone : CommandFlaw::kActive;
@@ -96,11 +96,11 @@ std::string explainFlaw(const ForceCommand& command) {
     why.notFinite("stiffness", command.stiffness);
     why.notFinite("damping", command.damping);
   } else if (flaw == CommandFlaw::kTooLarge) {
-    why.tooLarge("force", command.force, kLargestCommandedForce, "N");
+    why.tooLarge("force", command.force, kMaxCommandedForce, "N");
     why.tooLarge("position", command.position, kFarthestPosition, "m");
     why.tooLarge("velocity", command.velocity, kFastestVelocity, "m/s");
-    why.tooLarge("stiffness", command.stiffness, kLargestStiffness, "N/m");
-    why.tooLarge("damping", command.damping, kLargestDamping, "N s/m");
+    why.tooLarge("stiffness", command.stiffness, kMaxCommandedStiffness, "N/m");
+    why.tooLarge("damping", command.damping, kMaxCommandedDamping, "N s/m");
   } else if (flaw == CommandFlaw::kActive) {
     why.active("stiffness", command.stiffness, "N/m");
     why.active("damping", command.damping, "N s/m");

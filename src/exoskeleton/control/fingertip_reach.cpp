@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostSteps = 100;
+constexpr int kMaxSteps = 100;
 constexpr int kGrid = 15;          // places along each motor's range
 constexpr double kSettled = 1e-9;  // m, an improvement that is none
 
@@ -57,7 +57,7 @@ FingertipReach::Place FingertipReach::descend(const Vector3d& target, const Moto
   place.position = kinematics_.fingertip(joints).translation();
   double distance = (target - place.position).norm();
   double caution = 1e-4;  // relative to the largest diagonal element
-  for (int step = 0; step < kMostSteps && distance > 0.1 * kTolerance; ++step) {
+  for (int step = 0; step < kMaxSteps && distance > 0.1 * kTolerance; ++step) {
     Eigen::Matrix3d jacobian = kinematics_.motorJacobian(joints);
     const MotorVector downhill = jacobian.transpose() * (target - place.position);
     for (int i = 0; i < kMotors; ++i) {

@@ -55,7 +55,7 @@ void ForceController::integrate(const Vector3d& desired, const Vector3d& measure
   error_ += kErrorShare * (expected_ - measured - error_);
   const double change = (desired - slow_).norm();
   const Vector3d next = saturated(
-      integral_ + kIntegral * kPeriod / (1.0 + change / kLargeChange) * error_, kMaximumCorrection);
+      integral_ + kIntegral * kPeriod / (1.0 + change / kLargeChange) * error_, kMaxCorrection);
   // The torques are at their limit: more of the same would only have to be undone later.
   if (torque_limited_ && next.norm() > integral_.norm()) return;
   integral_ = next;
@@ -67,7 +67,7 @@ MotorVector ForceController::torques(const ForceInput& input) {
       input.jacobian.transpose() * force_ - release_left_ * kDamping * input.motor_velocities;
   torque_limited_ = false;
   for (int i = 0; i < kMotors; ++i) {
-    const double needed = (kMaximumForce + kMaximumCorrection) * input.jacobian.col(i).norm();
+    const double needed = (kMaxForce + kMaxCorrection) * input.jacobian.col(i).norm();
     const double limit = std::min(needed, kEncodable);
     if (std::abs(torques[i]) <= limit) continue;
     torque_limited_ = true;
@@ -90,7 +90,7 @@ MotorVector ForceController::tick(const ForceInput& input) {
     integrate(input.desired, input.measured);
   }
   share_ = std::clamp(share_ + (feedback ? kFadeStep : -kFadeStep), 0.0, 1.0);
-  correction_ = share_ * saturated(integral_ + kProportional * error_, kMaximumCorrection);
+  correction_ = share_ * saturated(integral_ + kProportional * error_, kMaxCorrection);
   return torques(input);
 }
 

@@ -25,7 +25,7 @@ bool MotorEncoders::update(const std::array<std::int32_t, kMotors>& counts, doub
   MotorVector moved;
   for (int i = 0; i < kMotors; ++i) {
     moved[i] = kRadiansPerCount * difference(counts[i], counts_[i]);
-    if (std::abs(moved[i]) > kMaximumSpeed * dt) return false;
+    if (std::abs(moved[i]) > kMaxSpeed * dt) return false;
   }
   // Whole counts are added up, because sums of angles would drift by their rounding.
   for (int i = 0; i < kMotors; ++i) {

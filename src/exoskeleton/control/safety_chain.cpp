@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "haptex/exoskeleton/protocol/device_end.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 
 namespace haptex::exoskeleton {
 namespace {
@@ -11,12 +11,12 @@ namespace {
 constexpr double kFastest = 10.0;
 // How far the return has come for a device that got no command for dt (s).
 Time returned(double dt) {
-  const double left = seconds(DeviceEnd::kMotorsOff) - dt;
-  const double share = std::clamp(left / seconds(DeviceEnd::kRamp), 0.0, 1.0);
+  const double left = seconds(FirmwareModel::kMotorsOff) - dt;
+  const double share = std::clamp(left / seconds(FirmwareModel::kRamp), 0.0, 1.0);
   return std::chrono::duration_cast<Time>(std::chrono::duration<double>(share * kReturn));
 }
 
-// A ramp at exactly kMaximumSlew must end in exactly zero, not in what rounding leaves of it.
+// A ramp at exactly kMaxSlew must end in exactly zero, not in what rounding leaves of it.
 constexpr double kRounding = 1.0 + 1e-12;
 
 }  // namespace
@@ -36,7 +36,7 @@ Vector3d saturated(const Vector3d& force, double limit) {
 }
 
 Vector3d slewLimited(const Vector3d& target, const Vector3d& previous, double dt) {
-  const double most = kMaximumSlew * std::clamp(dt, 0.0, kLongestSlew);
+  const double most = kMaxSlew * std::clamp(dt, 0.0, kLongestSlew);
   const Vector3d change = target - previous;
   const double size = change.norm();
   if (size <= most * kRounding) return target;
@@ -69,7 +69,7 @@ void SafetyChain::commandAccepted(Time now) {
 
 void SafetyChain::commanderDied(Time now) {
   const Time ramp =
-      std::chrono::duration_cast<Time>(std::chrono::duration<double>(force_.norm() / kMaximumSlew));
+      std::chrono::duration_cast<Time>(std::chrono::duration<double>(force_.norm() / kMaxSlew));
   last_command_ = std::min(last_command_, now + ramp - kCommandTimeout - kWatchdogRamp);
 }
 
@@ -88,7 +88,7 @@ Vector3d SafetyChain::watchdog(const Vector3d& force, Time now, double dt) {
   if (!stopped) return force;
   // Whatever `force` does, nobody vouches for it any more: if it cannot be followed within what is
   // left, straight on from what is rendered.
-  const double left = kMaximumSlew * seconds(commandsEnd() - now);
+  const double left = kMaxSlew * seconds(commandsEnd() - now);
   const Vector3d followed = slewLimited(saturated(force, left), force_, dt);
   return followed.norm() <= left * kRounding ? followed : saturated(force_, left);
 }
@@ -112,7 +112,7 @@ const Vector3d& SafetyChain::tick(const Vector3d& wanted, const Vector3d& veloci
   const Vector3d measured = saturated(finiteOrZero(velocity, velocity_finite), kFastest);
   if (!force_finite || !velocity_finite) ++statistics_.not_finite;
 
-  const Vector3d within = saturated(force, kMaximumForce);
+  const Vector3d within = saturated(force, kMaxForce);
   if (within != force) ++statistics_.saturated;
 
   slewed_ = slewLimited(within, slewed_, dt);
@@ -130,8 +130,8 @@ const Vector3d& SafetyChain::tick(const Vector3d& wanted, const Vector3d& veloci
       started_ ? softStartGain(seconds(now - start_)) * returnGain(seconds(now - return_)) : 0.0;
   force = latchedFault(watchdog(force, now, dt), now);
 
-  force = slewLimited(saturated(finiteOrZero(force, force_finite), kMaximumForce), force_, dt);
-  force_ = saturated(force, kMaximumForce);
+  force = slewLimited(saturated(finiteOrZero(force, force_finite), kMaxForce), force_, dt);
+  force_ = saturated(force, kMaxForce);
   // When the commands return, the slew limit starts from what is rendered then.
   if (stopping()) slewed_ = force_;
   last_tick_ = now;

@@ -15,7 +15,7 @@ const double kLeft = std::exp(-SmoothCommand::kPeriod / SmoothCommand::kSmoothin
 
 Vector3d SmoothCommand::value(const Vector3d& p, const Vector3d& v) const {
   const Vector3d force = evaluate(command_, p, v);
-  return force.allFinite() ? haptex::exoskeleton::saturated(force, kMaximumForce) : force;
+  return force.allFinite() ? haptex::exoskeleton::saturated(force, kMaxForce) : force;
 }
 
 void SmoothCommand::take(const ForceCommand& command, const Vector3d& p, const Vector3d& v) {

@@ -54,7 +54,7 @@ void EmulatedDevice::step(const DeviceCommand& command) {
     EmulatedSide& side = fingers_[finger];
     MotorVector torques = command.torques[finger];
     if (command.mode == DriveMode::kOff || !torques.allFinite()) torques.setZero();
-    torques = torques.cwiseMax(-kLargestTorque).cwiseMin(kLargestTorque);
+    torques = torques.cwiseMax(-kMaxTorque).cwiseMin(kMaxTorque);
     side.dynamics.relax(command.mode == DriveMode::kHoming);
     side.dynamics.step(torques, 1.0 / kRate);
     side.updateTruth(torques);

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSmallestSingularValue = 1e-5;  // m/rad of a motor, below it the thimble is stuck
+constexpr double kMinSingularValue = 1e-5;  // m/rad of a motor, below it the thimble is stuck
 
 }  // namespace
 
@@ -132,7 +132,7 @@ Vector3d EmulatedFinger::forceOf(const MotorVector& torques) const {
   Vector3d force = Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const double singular_value = svd.singularValues()[i];
-    if (singular_value < kSmallestSingularValue) continue;
+    if (singular_value < kMinSingularValue) continue;
     force += svd.matrixU().col(i) * (svd.matrixV().col(i).dot(torques) / singular_value);
   }
   return force;

@@ -9,7 +9,7 @@ namespace {
 using Kind = EmulatorFault::Kind;
 
 constexpr unsigned kDeviceSeed = 3;
-constexpr std::size_t kMostFaults = 32;  // more than there are in both directions
+constexpr std::size_t kMaxFaults = 32;  // more than there are in both directions
 constexpr int kSteps = static_cast<int>(EmulatedDevice::kRate * seconds(Emulator::kPeriod));
 
 Identity identity() {
@@ -48,9 +48,9 @@ Emulator::Emulator(const std::string& urdf, const std::string& link, Observer ob
       line_(link),
       device_(urdf, kDeviceSeed),
       firmware_(identity()) {
-  active_faults_.reserve(kMostFaults);
-  shown_faults_.reserve(kMostFaults);
-  requested_faults_.reserve(kMostFaults);
+  active_faults_.reserve(kMaxFaults);
+  shown_faults_.reserve(kMaxFaults);
+  requested_faults_.reserve(kMaxFaults);
 }
 
 void Emulator::setTarget(Finger finger, const Eigen::Vector3d& target) {
@@ -70,9 +70,9 @@ void Emulator::advanceTo(Time now) {
       status_.largest_lag = std::max(status_.largest_lag, lag);
     }
   }
-  if (lag > kLargestLag) {
-    due_ = now - kLargestLag;
-    skipped_ += lag - kLargestLag;
+  if (lag > kMaxLag) {
+    due_ = now - kMaxLag;
+    skipped_ += lag - kMaxLag;
     ++skips_;
   }
   for (; due_ <= now; due_ += kPeriod) livePeriod(due_);

@@ -9,7 +9,7 @@
 namespace haptex::exoskeleton {
 namespace {
 
-constexpr std::size_t kMostDroppedBytes = 4, kMostFlippedBits = 8, kMostGarbage = 64;
+constexpr std::size_t kMaxDroppedBytes = 4, kMaxFlippedBits = 8, kMaxGarbage = 64;
 constexpr Time kLongestDelay = std::chrono::milliseconds(20);
 
 }  // namespace
@@ -90,11 +90,11 @@ void FaultInjector::damage(std::vector<std::uint8_t>& bytes, Time now) {
     std::vector<std::size_t> bits(8 * bytes.size());
     for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = i;
     std::shuffle(bits.begin(), bits.end(), generator_);  // so that none is flipped back
-    bits.resize(std::min(draw(1, kMostFlippedBits), bits.size()));
+    bits.resize(std::min(draw(1, kMaxFlippedBits), bits.size()));
     for (const std::size_t bit : bits) bytes[bit / 8] ^= static_cast<std::uint8_t>(1 << bit % 8);
   }
   if (meets(LineFault::kDropBytes, now)) {
-    const std::size_t count = std::min(draw(1, kMostDroppedBytes), bytes.size());
+    const std::size_t count = std::min(draw(1, kMaxDroppedBytes), bytes.size());
     for (std::size_t i = 0; i < count; ++i) bytes.erase(bytes.begin() + draw(0, bytes.size() - 1));
   }
   if (meets(LineFault::kTruncate, now) && !bytes.empty()) bytes.resize(draw(0, bytes.size() - 1));
@@ -103,7 +103,7 @@ void FaultInjector::damage(std::vector<std::uint8_t>& bytes, Time now) {
 std::vector<std::uint8_t> FaultInjector::noiseBefore(Time now) {
   std::vector<std::uint8_t> noise;
   if (meets(LineFault::kGarbage, now)) {
-    noise.resize(draw(1, kMostGarbage));
+    noise.resize(draw(1, kMaxGarbage));
     for (std::uint8_t& byte : noise) byte = drawByte();
   }
   if (meets(LineFault::kOversize, now)) {

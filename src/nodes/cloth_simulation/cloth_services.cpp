@@ -12,7 +12,7 @@
 namespace haptex::nodes {
 namespace {
 
-constexpr std::uint32_t kMostSteps = 100000;
+constexpr std::uint32_t kMaxSteps = 100000;
 
 std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
@@ -52,9 +52,9 @@ bool ClothNode::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Re
 
 bool ClothNode::step(StepCloth::Request& request, StepCloth::Response& response) {
   return answer("step", response, [&] {
-    if (request.steps < 1 || request.steps > kMostSteps) {
+    if (request.steps < 1 || request.steps > kMaxSteps) {
       throw std::invalid_argument("steps = " + std::to_string(request.steps) +
-                                  ": allowed are 1 to " + std::to_string(kMostSteps));
+                                  ": allowed are 1 to " + std::to_string(kMaxSteps));
     }
     const simulation::StepsTaken taken = loop_.takeSteps(request.steps);
     const std::string message = "took " + counted(taken.steps, "step");

@@ -36,10 +36,10 @@ std::vector<cloth::PointLoad> pointLoads(const haptex::ContactForces& message,
                                          std::size_t triangle_count) {
   requireFixedFrame(message.header);
   const std::size_t points = message.triangles.size();
-  if (points > cloth::Cloth::kMostPointLoads) {
+  if (points > cloth::Cloth::kMaxPointLoads) {
     throw std::invalid_argument("triangles has " + std::to_string(points) +
                                 " elements: allowed are " +
-                                std::to_string(cloth::Cloth::kMostPointLoads));
+                                std::to_string(cloth::Cloth::kMaxPointLoads));
   }
   requireLength("barycentric", message.barycentric.size(), points, 3);
   requireLength("positions", message.positions.size(), points, 1);
@@ -62,10 +62,10 @@ std::vector<cloth::PointLoad> pointLoads(const haptex::ContactForces& message,
     load.force = {force.x, force.y, force.z};
     load.stiffness =
         Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&message.stiffness[9 * i]);
-    requireWithin("force", i, load.force, kLargestPointForce, "N");
-    requireWithin("stiffness", i, load.stiffness, kLargestPointStiffness, "N/m");
+    requireWithin("force", i, load.force, kMaxPointForce, "N");
+    requireWithin("stiffness", i, load.stiffness, kMaxPointStiffness, "N/m");
     requireWithin("position", i, load.position, kFarthestPoint, "m");
-    requireWithin("weights", i, load.weights, kLargestWeights, "");
+    requireWithin("weights", i, load.weights, kMaxWeights, "");
     loads.push_back(cloth::checkedLoad(load, i, triangle_count));
   }
   return loads;

@@ -71,7 +71,7 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
       budget_(request.budget > 0.0 ? request.budget : std::numeric_limits<double>::infinity()),
       reducible_(request.reducible()) {
   const double cycle = scene_.time_step;
-  if (reducible_) budget_ = std::min(budget_, kLargestShare * cycle);
+  if (reducible_) budget_ = std::min(budget_, kMaxShare * cycle);
   std::vector<scene::Quality> preset;
   if (!request.preset_path.empty()) preset.push_back(loadPreset(request.preset_path));
   std::vector<scene::Quality> front = scene::loadQualities(findConfigFile("presets", "front"));

@@ -91,7 +91,7 @@ visualization_msgs::MarkerArray forceMarkers(
     marker.scale.z = 0.0;  // the head's length is a share of the arrow's
     const Eigen::Vector3d& force = measured[finger].force;
     const double norm = force.norm();
-    if (norm >= kLeastForce) {
+    if (norm >= kMinForce) {
       const Eigen::Vector3d tail = measured[finger].pose.translation() + kSkin / norm * force;
       marker.points = {pointMessage(tail), pointMessage(tail + kForceScale * force)};
     }

@@ -43,7 +43,7 @@ Shape shapeOf(const Request& request) {
 }
 
 bool isLength(double value) {
-  return std::isfinite(value) && std::abs(value) <= proximity::kLargestLength;
+  return std::isfinite(value) && std::abs(value) <= proximity::kMaxLength;
 }
 
 void requirePlaces(const std::string& name, const std::vector<geometry_msgs::Point>& points) {
@@ -51,7 +51,7 @@ void requirePlaces(const std::string& name, const std::vector<geometry_msgs::Poi
     if (proximity::isPlace({points[i].x, points[i].y, points[i].z})) continue;
     std::ostringstream message;
     message << name << "[" << i << "] = (" << points[i].x << ", " << points[i].y << ", "
-            << points[i].z << "): allowed are finite numbers up to " << proximity::kLargestLength
+            << points[i].z << "): allowed are finite numbers up to " << proximity::kMaxLength
             << " m";
     throw std::invalid_argument(message.str());
   }
@@ -62,7 +62,7 @@ void requireDistance(const std::string& name, double value) {
   if (isLength(value) && value >= 0.0) return;
   std::ostringstream message;
   message << name << " = " << value << ": allowed are finite numbers from 0 to "
-          << proximity::kLargestLength << " m";
+          << proximity::kMaxLength << " m";
   throw std::invalid_argument(message.str());
 }
 
@@ -133,7 +133,7 @@ RestMesh restMesh(const haptex::ClothMesh& message) {
     if (!isLength(weft[i]) || !isLength(warp[i])) {
       std::ostringstream text;
       text << "rest coordinates of particle " << i << " = (" << weft[i] << ", " << warp[i]
-           << "): allowed are finite numbers up to " << proximity::kLargestLength << " m";
+           << "): allowed are finite numbers up to " << proximity::kMaxLength << " m";
       throw std::invalid_argument(text.str());
     }
     mesh.rest_coordinates.emplace_back(weft[i], warp[i], 0.0);

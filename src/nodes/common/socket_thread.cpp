@@ -15,7 +15,7 @@ namespace {
 using base::Time;
 
 constexpr Time kQuickLook = std::chrono::microseconds(10);  // shorter than a message takes
-constexpr int kMostQuickLooks = 10;
+constexpr int kMaxQuickLooks = 10;
 constexpr Time kBreak = std::chrono::microseconds(50);
 
 /// roscpp's thread of the sockets, which calls look() whenever it looks for what is to be done.
@@ -36,7 +36,7 @@ class SocketThread {
     const Time now = realtime::steadyNow();
     quick_looks_ = now - last_look_ < kQuickLook ? quick_looks_ + 1 : 0;
     last_look_ = now;
-    if (quick_looks_ < kMostQuickLooks) return;
+    if (quick_looks_ < kMaxQuickLooks) return;
     realtime::sleepUntil(now + kBreak);
     quick_looks_ = 0;
   }

@@ -41,7 +41,7 @@ void DriverNode::recover(const exoskeleton::DriverSnapshot& snapshot) {
   if (step == RecoveryStep::kNone) return;
   if (step == RecoveryStep::kGiveUp) {
     ROS_ERROR("auto_recover gives up after %d stalls in a row; from now on a person enables",
-              exoskeleton::AutoRecovery::kMostInARow);
+              exoskeleton::AutoRecovery::kMaxInARow);
     return;
   }
   const exoskeleton::Refusal refusal = loop_.ask(request(step));

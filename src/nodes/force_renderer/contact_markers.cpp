@@ -108,7 +108,7 @@ void ContactMarkers::updateForce(Finger finger, const simulation::ContactPicture
   const Eigen::Vector3d force = picture.gains[finger] * contact.force;
   const double norm = force.norm();
   marker.points.clear();
-  if (norm >= kLeastShownForce) {
+  if (norm >= kMinShownForce) {
     const Eigen::Vector3d direction = force / norm;
     const Eigen::Vector3d tail = contact.position + kSkin * direction;
     marker.points = {pointMessage(tail), pointMessage(tail + arrowLength(norm) * direction)};

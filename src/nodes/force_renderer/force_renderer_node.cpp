@@ -26,7 +26,7 @@ using base::Time;
 // Spheres at the ends of the fingers in urdf/hand_exoskeleton.urdf.
 constexpr double kIndexRadius = 0.0075;       // m
 constexpr double kThumbRadius = 0.009;        // m
-constexpr double kLargestRadius = 0.1;        // m
+constexpr double kMaxRadius = 0.1;            // m
 constexpr double kMarkerPeriod = 1.0 / 30.0;  // s
 constexpr std::uint32_t kContactQueue = 5;    // messages, for a subscriber that is slow for 20 ms
 constexpr int kTicksPerContact = 4;
@@ -38,10 +38,10 @@ constexpr Time kOldestTransform = std::chrono::milliseconds(20);
 
 double readRadius(const ros::NodeHandle& private_node, const std::string& name, double fallback) {
   const double radius = readPositive(private_node, name, fallback);
-  if (radius <= kLargestRadius) return radius;
+  if (radius <= kMaxRadius) return radius;
   std::ostringstream message;
   message << "parameter " << private_node.resolveName(name) << " = " << radius
-          << ": allowed are numbers > 0 and up to " << kLargestRadius << " m";
+          << ": allowed are numbers > 0 and up to " << kMaxRadius << " m";
   throw std::invalid_argument(message.str());
 }
 

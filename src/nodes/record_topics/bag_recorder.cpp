@@ -90,7 +90,7 @@ void BagRecorder::lookForSpace() {
   std::error_code error;
   const auto directory = std::filesystem::absolute(path_).parent_path();
   const std::filesystem::space_info space = std::filesystem::space(directory, error);
-  const bool has_space = !error && space.available >= kLeastSpace;
+  const bool has_space = !error && space.available >= kMinSpace;
   if (has_space_.exchange(has_space) && !has_space) {
     ROS_ERROR("%s is not written any more: less than 1 GiB is free in %s", path_.c_str(),
               directory.c_str());

@@ -33,8 +33,7 @@ void requireWithin(const char* field, const Array& values, double largest, const
 }
 
 void requirePress(const char* field, int index, double force) {
-  require(force >= 0.0 && force <= kLargestPress, field, index, force, "numbers >= 0",
-          kLargestPress, " N");
+  require(force >= 0.0 && force <= kMaxPress, field, index, force, "numbers >= 0", kMaxPress, " N");
 }
 
 void requireSound(const haptex::Contact& message) {
@@ -42,8 +41,8 @@ void requireSound(const haptex::Contact& message) {
   requireWithin("fabric_velocity", message.fabric_velocity, kFastestStroke, " m/s");
   requireWithin("fabric_position", message.fabric_position, kFarthestPlace, " m");
   requireWithin("array_origin", message.array_origin, kFarthestPlace, " m");
-  requireWithin("array_x", message.array_x, kLargestStretch, "");
-  requireWithin("array_y", message.array_y, kLargestStretch, "");
+  requireWithin("array_x", message.array_x, kMaxStretch, "");
+  requireWithin("array_y", message.array_y, kMaxStretch, "");
   requirePress("normal_force", -1, message.normal_force);
   for (int i = 0; i < tactile::kContactors; ++i) {
     requirePress("contactor_forces", i, message.contactor_forces[i]);

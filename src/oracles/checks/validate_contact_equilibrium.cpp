@@ -73,13 +73,13 @@ std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand,
   std::vector<double> forces;
   base::Quantity settled{"contact/stretch/" + name + "/reference_settled", 0.0, 0.0, 0.0,
                          kSettledTolerance};
-  constexpr int kMostSteps = 60;
+  constexpr int kMaxSteps = 60;
   double reached = 0.0;
   for (double extension : extensions) {
     move(hand, {0.0, 0.0, reached - extension}, 0.0, 0.4, 0.08, step(0.08));
     reached = extension;
     double before = 0.0;
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < kMaxSteps; ++i) {
       before = force();
       cloth.step(hand.fingertips(), 0.25);
       if (std::abs(force() - before) < 0.1 * kSettledTolerance * std::abs(force())) break;

@@ -19,7 +19,7 @@ constexpr double kPhase = 2.0 * M_PI * kTimeStep;  // of a 1 Hz oscillator per s
 constexpr int kStepsPerPeriod = 80;
 constexpr double kOrderTolerance = 0.1;    // what terms of higher order still add
 constexpr double kEnergyTolerance = 2e-4;  // the two-step Euler ends a little out of phase
-constexpr double kMostLoss = 0.01;         // of the energy per period, second-order methods
+constexpr double kMaxLoss = 0.01;          // of the energy per period, second-order methods
 
 /// @param solves per stage
 StepSettings settingsOf(IntegrationMethod method, int solves) {
@@ -150,7 +150,7 @@ void validateIntegrators(const material::Fabric& linear, const material::Fabric&
     if (!isImplicit(named.method) || orderOf(named.method) < 2) continue;
     const auto sinkLoss = [&](const std::string& of, const ClothSwing& swing, int solves) {
       const double loss = lossPerPeriod(swing, settingsOf(named.method, solves));
-      sink({name + "/swing_loss/" + of, 0.0, loss, std::abs(loss), kMostLoss});
+      sink({name + "/swing_loss/" + of, 0.0, loss, std::abs(loss), kMaxLoss});
     };
     sinkLoss(linear.name, linear_swing, 2);
     // The midpoint rule stretches a stiff cloth at the ends of its steps, and has to be damped.

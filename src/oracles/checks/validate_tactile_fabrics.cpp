@@ -16,10 +16,10 @@ base::Quantity atLeast(double least, std::string name, double measured) {
 
 /// Rough fabrics feel strong.
 void validateRanking(const std::string& config_directory, const Sink& sink) {
-  constexpr double kLeastFabrics = 8.0, kLowest = 1e-6, kHighest = 15e-6;
+  constexpr double kMinFabrics = 8.0, kLowest = 1e-6, kHighest = 15e-6;
   constexpr double kTolerance = 0.05;
   const std::vector<RenderedFabric> fabrics = renderFabrics(config_directory);
-  sink(atLeast(kLeastFabrics, "tactile/ranking/fabrics", static_cast<double>(fabrics.size())));
+  sink(atLeast(kMinFabrics, "tactile/ranking/fabrics", static_cast<double>(fabrics.size())));
   if (fabrics.size() < 2) return;
   sink(atLeast(kHighest / kLowest, "tactile/ranking/span_of_roughness",
                fabrics.back().roughness / fabrics.front().roughness));
@@ -38,7 +38,7 @@ void validateRanking(const std::string& config_directory, const Sink& sink) {
 /// Weaves of the same yarns, SMD and MMD differ in the ratio of the two channels: the least
 /// difference between any two.
 void validateWeaves(const std::string& config_directory, const Sink& sink) {
-  constexpr double kLeastPercent = 5.0;
+  constexpr double kMinPercent = 5.0;
   std::vector<double> ratios;
   for (const RenderedFabric& weave : renderWeaves(config_directory)) {
     ratios.push_back(weave.stroke.ratio());
@@ -48,7 +48,7 @@ void validateWeaves(const std::string& config_directory, const Sink& sink) {
   for (std::size_t i = 1; i < ratios.size(); ++i) {
     least = std::min(least, 100.0 * (ratios[i] / ratios[i - 1] - 1.0));
   }
-  sink(atLeast(kLeastPercent, "tactile/weaves/least_difference_of_ratio_percent", least));
+  sink(atLeast(kMinPercent, "tactile/weaves/least_difference_of_ratio_percent", least));
 }
 
 }  // namespace

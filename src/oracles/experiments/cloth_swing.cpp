@@ -16,7 +16,7 @@ using cloth::ClothState;
 using Eigen::Vector3d;
 
 constexpr double kFrequency = 2.0 * M_PI;  // rad/s
-constexpr double kMostAmplitude = 0.1;     // m
+constexpr double kMaxAmplitude = 0.1;      // m
 constexpr int kCellsInWidth = 2;
 
 double length() {
@@ -28,7 +28,7 @@ Cloth hangingSheet(const material::Fabric& fabric, int cells, double amplitude) 
   if (cells <= 0) {
     throw std::invalid_argument("cells is " + std::to_string(cells) + "; it must be positive");
   }
-  if (!(std::abs(amplitude) <= kMostAmplitude)) {
+  if (!(std::abs(amplitude) <= kMaxAmplitude)) {
     throw std::invalid_argument("the amplitude is " + std::to_string(amplitude) +
                                 " m; it must be at most 0.1 m to either side");
   }

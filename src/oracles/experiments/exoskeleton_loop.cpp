@@ -40,7 +40,7 @@ const std::vector<std::uint8_t>& SimulatedLine::arrived(Time now) {
 ExoskeletonLoop::ExoskeletonLoop(const std::string& urdf, unsigned seed,
                                  const FingerMechanics& mechanics)
     : device_(urdf, seed, mechanics),
-      device_end_(Identity{}),
+      firmware_(Identity{}),
       to_device_(seed + 1, exoskeleton::kBaudRate),
       to_driver_(seed + 2, exoskeleton::kBaudRate),
       controller_(urdf) {
@@ -105,13 +105,13 @@ void ExoskeletonLoop::step() {
 
 void ExoskeletonLoop::stepDevice() {
   const std::vector<std::uint8_t>& bytes = to_device_.arrived(now_);
-  device_end_.receive(bytes.data(), bytes.size(), now_);
-  if (!driver_lives_ || !port_open_) device_end_.hangUp(now_);
-  device_.step(motors_live_ ? device_end_.command(now_) : DeviceCommand{});
+  firmware_.receive(bytes.data(), bytes.size(), now_);
+  if (!driver_lives_ || !port_open_) firmware_.hangUp(now_);
+  device_.step(motors_live_ ? firmware_.command(now_) : DeviceCommand{});
   if (!port_open_) return;
-  to_driver_.send(device_end_.answer(), now_);
+  to_driver_.send(firmware_.answer(), now_);
   if (steps_ % kStepsPerTick == 0) {
-    to_driver_.send(device_end_.report(device_.read(), now_), now_);
+    to_driver_.send(firmware_.report(device_.read(), now_), now_);
   }
 }
 

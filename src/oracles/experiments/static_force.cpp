@@ -87,7 +87,7 @@ std::vector<StaticForce> staticForces(const std::string& urdf, int poses,
   for (int i = 0; i < poses; ++i) {
     PerFinger<Pose> pose;
     for (const Finger finger : kFingers) {
-      pose[finger] = draws[finger].draw(kMaximumForce);
+      pose[finger] = draws[finger].draw(kMaxForce);
       loop.device().setTarget(finger, pose[finger].target);
     }
     loop.commandForce(Vector3d::Zero());

@@ -24,9 +24,9 @@ constexpr double kPress = 2.0;                        // N, in the cycles
 constexpr int kMove = 200;                            // ms, to the wall, into it, or out of it
 constexpr int kRest = 200;                            // ms, in the wall and before it
 constexpr milliseconds kSettle{2000}, kWindow{3000};  // of a hold
-constexpr double kMostRipple = 0.01;                  // N RMS
-constexpr double kMostOvershoot = 0.2;
-constexpr double kLargestShare = 0.01;
+constexpr double kMaxRipple = 0.01;                   // N RMS
+constexpr double kMaxOvershoot = 0.2;
+constexpr double kMaxShare = 0.01;
 // J. The sensor's noise, as a constant error, along the way into the wall and out: 2 * 5 mm.
 constexpr double kNoiseEnergy = EmulatedDevice::kForceNoise * 0.01;
 
@@ -215,10 +215,10 @@ class Experiment {
 
 }  // namespace
 
-bool WallTouch::steady() const { return ripple < kMostRipple && overshoot < kMostOvershoot; }
+bool WallTouch::steady() const { return ripple < kMaxRipple && overshoot < kMaxOvershoot; }
 
 bool WallTouch::observedPassive() const {
-  return observed_energy >= -kNoiseEnergy && controller_share < kLargestShare;
+  return observed_energy >= -kNoiseEnergy && controller_share < kMaxShare;
 }
 
 PerFinger<WallTouch> touchWalls(const std::string& urdf, const FingerMechanics& mechanics,

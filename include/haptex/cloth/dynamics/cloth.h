@@ -45,14 +45,18 @@ struct AttachmentPath {
 
 class Cloth {
  public:
-  static constexpr std::size_t kMostPointLoads = PointLoads::kMost;
+  static constexpr std::size_t kMaxPointLoads = PointLoads::kMax;
 
   /// @throws std::invalid_argument if the mesh has defects, the density is not finite and > 0,
   ///   gravity is not finite, or as addFabricForces()
+  Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
+        const ModelledEffects& effects);
+  /// Of one fabric.
   Cloth(mesh::ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects);
 
   const mesh::ClothMesh& mesh() const { return mesh_; }
-  const material::Fabric& fabric() const { return fabric_; }
+  /// The first one, and the only one of a sheet.
+  const material::Fabric& fabric() const { return fabrics_.front(); }
   const ModelledEffects& effects() const { return effects_; }
   std::size_t particleCount() const { return masses_.size(); }
   /// Lumped particle masses (kg): a third of each adjacent triangle.
@@ -68,9 +72,9 @@ class Cloth {
   /// The state at rest in the initial positions at time 0, without friction in what is bent there.
   ClothState initialState() const;
 
-  /// Changes the fabric from the next step on: masses and curves, not positions or velocities.
-  /// With bending another rigidity may change pattern(): make a new integrator. Where forces
-  /// remember, a state of another fabric is refused: forget() first.
+  /// Changes the first fabric from the next step on: masses and curves, not positions or
+  /// velocities. With bending another rigidity may change pattern(): make a new integrator. Where
+  /// forces remember, a state of another fabric is refused: forget() first.
   /// @throws std::invalid_argument if the density is not finite and > 0, or as addFabricForces();
   ///   nothing has changed then
   void setFabric(material::Fabric fabric);
@@ -134,14 +138,14 @@ class Cloth {
                                       const std::vector<int>& particles) const;
 
  private:
-  void takeFabric(material::Fabric fabric);
+  void takeFabrics(std::vector<material::Fabric> fabrics);
   void requireParticle(int particle) const;
   void requireState(const ClothState& state) const;
   void requireParticles(const ClothState& state) const;
 
   std::uint64_t revision_;
   mesh::ClothMesh mesh_;
-  material::Fabric fabric_;
+  std::vector<material::Fabric> fabrics_;
   ModelledEffects effects_;
   std::vector<double> masses_;
   std::unique_ptr<ForceSum> forces_;

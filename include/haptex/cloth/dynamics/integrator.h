@@ -36,7 +36,7 @@ namespace haptex::cloth {
 class Integrator {
  public:
   /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1),
-  ///   newton_iterations is less than 1, or threads is not from 1 to kMostThreads
+  ///   newton_iterations is less than 1, or threads is not from 1 to kMaxThreads
   Integrator(const Cloth& cloth, const StepSettings& settings);
 
   /// Advances `state` by `time_step` seconds; steps need not be uniform.

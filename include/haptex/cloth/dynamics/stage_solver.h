@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "haptex/cloth/dynamics/active_set_contact_solver.h"
 #include "haptex/cloth/dynamics/cloth.h"
-#include "haptex/cloth/dynamics/contact_step.h"
 #include "haptex/cloth/dynamics/stage.h"
 #include "haptex/cloth/dynamics/step.h"
 #include "haptex/linear/block_matrix.h"
@@ -32,8 +32,8 @@ namespace haptex::cloth {
 /// xg + ahead vg: what turns is stretched there, and stiff fabrics that do not resist compression
 /// then gain energy without bounds.
 ///
-/// Contacts of the cloth hold as ContactStep says; the linear solve of a stage is then repeated
-/// until they are found. Newton iterations look for them anew by their own residual.
+/// Contacts of the cloth hold as ActiveSetContactSolver says; the linear solve of a stage is then
+/// repeated until they are found. Newton iterations look for them anew by their own residual.
 ///
 /// Allocates nothing after construction.
 class StageSolver {
@@ -67,7 +67,7 @@ class StageSolver {
   void forget() { solution_.setZero(); }
 
   /// Null if the cloth has been modelled without contacts.
-  const ContactStep* contacts() const { return contacts_ ? &*contacts_ : nullptr; }
+  const ActiveSetContactSolver* contacts() const { return contacts_ ? &*contacts_ : nullptr; }
 
  private:
   enum class Descent { kFound, kBelowRounding, kNone };
@@ -102,7 +102,7 @@ class StageSolver {
   double linearised_norm_ = 0.0;    // N s, of the right-hand side of the linearised stage
   std::vector<char> fixed_;
   bool any_fixed_ = false;
-  std::optional<ContactStep> contacts_;
+  std::optional<ActiveSetContactSolver> contacts_;
   bool contacts_change_ = false;       // in this Newton iteration
   ClothState trial_;                   // of a line search; empty where there is none
   std::vector<Eigen::Vector3d> held_;  // by the forces: Force::hold()

@@ -44,7 +44,7 @@ constexpr bool isImplicit(IntegrationMethod method) {
 }
 
 /// Threads that a step may have.
-constexpr int kMostThreads = 64;
+constexpr int kMaxThreads = 64;
 
 struct StepSettings {
   IntegrationMethod method = IntegrationMethod::kBackwardEuler;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "haptex/cloth/forces/jacobian_rows.h"
@@ -22,9 +23,10 @@ struct MembraneElement {
   double area;                         ///< at rest, m^2
 };
 
-/// The elements of all triangles of a mesh without defects, with the slots of a matrix that has the
-/// edges of the triangles and nothing else.
-std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh);
+/// The elements of all triangles of a mesh without defects, or of one panel's, with the slots of a
+/// matrix that has the edges of the triangles and nothing else.
+std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh,
+                                          std::optional<int> panel = std::nullopt);
 
 /// Looks up the slots of elements in a matrix whose pattern has more than that.
 /// @throws std::out_of_range if the pattern lacks one of them

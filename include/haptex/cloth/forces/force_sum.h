@@ -20,6 +20,9 @@ class ForceSum final : public Force {
     return added;
   }
 
+  /// Takes all forces of another sum.
+  void addAll(ForceSum&& other);
+
   /// The first force of a kind; null if there is none.
   template <typename AForce>
   const AForce* find() const {

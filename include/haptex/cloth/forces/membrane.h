@@ -66,9 +66,9 @@ class Membrane final : public Force {
   static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
   void makeBatches();
   template <bool kViscous>
-  void addStepOf(const MembraneElement& element, const Positions& positions,
-                 const Velocities& velocities, const StageTimes& times,
-                 linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
+  void assembleElement(const MembraneElement& element, const Positions& positions,
+                       const Velocities& velocities, const StageTimes& times,
+                       linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
   static Response respond(const Curves& curves, const MembraneStrain& strain);
   Response respondElastic(const MembraneStrain& strain) const;
   double elasticDensity(const MembraneStrain& strain) const;

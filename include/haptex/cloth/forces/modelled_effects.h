@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "haptex/cloth/forces/aerodynamics.h"
 #include "haptex/cloth/forces/bending/bending.h"
@@ -33,13 +34,16 @@ struct ModelledEffects {
   bool point_loads = false;                              ///< forces on points of triangles
 };
 
-/// Adds the forces that a fabric and the air have on a cloth; a new kind of force is added here.
-/// @param mesh without defects
-/// @throws std::invalid_argument if the mesh is not what the elasticity needs
-///   (findLatticeSprings()), bending, its hysteresis or contraction is modelled and the fabric has
-///   none, contraction is modelled with another elasticity than Green-Lagrange, hysteresis without
-///   bending or with bend springs, or as Bending, BendingFriction and Aerodynamics
-void addFabricForces(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
+/// Adds the forces that fabrics and the air have on a cloth; a new kind of force is added here.
+/// Each panel bends by itself: a seam resists no bending.
+/// @param mesh    without defects
+/// @param fabrics that the panels name
+/// @throws std::invalid_argument if a panel's fabric is not there, the mesh is not what the
+///   elasticity needs (findLatticeSprings(), or several panels of springs), bending, its hysteresis
+///   or contraction is modelled and the fabric has none, contraction is modelled with another
+///   elasticity than Green-Lagrange, hysteresis without bending or with bend springs, or as
+///   Bending, BendingFriction and Aerodynamics
+void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                      const ModelledEffects& effects, ForceSum& forces);
 
 }  // namespace haptex::cloth

@@ -26,7 +26,7 @@ struct PointLoad {
 /// a stiff contact stays stable at every time step.
 class PointLoads final : public Force {
  public:
-  static constexpr std::size_t kMost = 4096;
+  static constexpr std::size_t kMax = 4096;
 
   /// @param mesh without defects
   explicit PointLoads(const mesh::ClothMesh& mesh);
@@ -35,7 +35,7 @@ class PointLoads final : public Force {
   /// the tolerances leave a little beside it. Allocates nothing.
   /// @throws std::invalid_argument naming the load if its triangle does not exist, a number is not
   ///   finite, the weights do not sum to 1 within 1e-6, the stiffness is not symmetric and positive
-  ///   semidefinite to 1e-6 of its norm, or there are more than kMost; nothing has changed then
+  ///   semidefinite to 1e-6 of its norm, or there are more than kMax; nothing has changed then
   void set(const std::vector<PointLoad>& loads);
   const std::vector<PointLoad>& loads() const { return loads_; }
 
@@ -54,7 +54,7 @@ class PointLoads final : public Force {
  private:
   std::vector<std::array<int, 3>> triangles_;
   std::vector<MembraneElement> elements_;  // on the triangles
-  std::vector<PointLoad> loads_;           // has the capacity of kMost
+  std::vector<PointLoad> loads_;           // has the capacity of kMax
 };
 
 }  // namespace haptex::cloth

@@ -11,12 +11,12 @@ enum class RecoveryStep { kNone, kClearFault, kHome, kEnable, kGiveUp };
 /// Asks for the next step after a fault that is a stall (DeviceController::faultIsAStall()) of a
 /// device that was ENABLED. Any other fault is left to a person, and so is a device that a person
 /// has disabled or paused. Forces come back with the soft start of every enabling. After
-/// kMostInARow stalls without kSteady of ENABLED between them it gives up until a person enables.
+/// kMaxInARow stalls without kSteady of ENABLED between them it gives up until a person enables.
 ///
 /// Not thread-safe, does not allocate.
 class AutoRecovery {
  public:
-  static constexpr int kMostInARow = 3;
+  static constexpr int kMaxInARow = 3;
   static constexpr Time kSteady = std::chrono::seconds(10);
   /// Between two requests: one that is refused is asked again, for example while the device is
   /// still silent.

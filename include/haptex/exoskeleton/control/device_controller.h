@@ -29,7 +29,7 @@ class DeviceController {
   /// Without a state for this long while the motors are on the device is lost, which is a fault. A
   /// serial adapter may hold back bytes for 16 ms, and a busy machine either process for longer.
   static constexpr Time kLostAfter = std::chrono::milliseconds(50);
-  /// Just before the firmware starts to take the motors to zero, DeviceEnd::kRampStart.
+  /// Just before the firmware starts to take the motors to zero, FirmwareModel::kRampStart.
   static constexpr Time kRoundTrip = std::chrono::microseconds(13500);
 
   /// @param urdf text of the exoskeleton's URDF

@@ -30,7 +30,7 @@ struct ForceInput {
 /// Explicit force control: torques = J^T (r + c) - kDamping w with
 ///   r, the feed-forward: the desired force, in which SmoothCommand has left no steps;
 ///   c, the correction: kProportional e + kIntegral times the integral of e, of norm at most
-///     kMaximumCorrection, where e is what is expected to be measured minus what is measured, low-
+///     kMaxCorrection, where e is what is expected to be measured minus what is measured, low-
 ///     pass filtered with kErrorFilter;
 ///   w, the motors' velocities.
 /// Friction, the weight of the links, errors of motors and kinematics are not modelled: the
@@ -49,7 +49,7 @@ struct ForceInput {
 /// 100 N/m: the device has to follow the give of the finger, against its own friction. The loop is
 /// stable with three times the gains, and with 10 ms instead of 3.
 ///
-/// r + c changes at most by kMaximumSlew, whatever the sensor says.
+/// r + c changes at most by kMaxSlew, whatever the sensor says.
 ///
 /// To be called once per millisecond. Not thread-safe, does not allocate.
 class ForceController {
@@ -69,7 +69,7 @@ class ForceController {
   /// N. The links weigh 0.25 N, friction is up to 0.1 N, and 10 % of an error of the motors' torque
   /// constant are 0.5 N at the largest force. The person feels no more than this if the feedback
   /// is wrong.
-  static constexpr double kMaximumCorrection = 1.0;
+  static constexpr double kMaxCorrection = 1.0;
   /// s, in which the correction fades when there is no feedback, and comes back.
   static constexpr double kFade = 0.02;
   /// s, in which release() takes the correction to zero, if the slew limit allows.
@@ -80,8 +80,8 @@ class ForceController {
   /// Starts over from no force.
   void reset();
 
-  /// One period. @returns N m, finite, each at most what a force of kMaximumForce +
-  ///   kMaximumCorrection needs and what a DeviceCommand can say
+  /// One period. @returns N m, finite, each at most what a force of kMaxForce +
+  ///   kMaxCorrection needs and what a DeviceCommand can say
   MotorVector tick(const ForceInput& input);
 
   /// Instead of tick(), when commands have stopped or the motors are to be switched off: the

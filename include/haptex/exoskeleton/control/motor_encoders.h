@@ -22,10 +22,10 @@ class MotorEncoders {
  public:
   static constexpr double kVelocityBandwidth = 60.0;  ///< Hz
   /// rad/s. 45 rad/s at the joint behind a reduction of 14: three times what tapping fingers reach.
-  static constexpr double kMaximumSpeed = 630.0;
+  static constexpr double kMaxSpeed = 630.0;
 
   /// Takes the counts of a state. @param dt s since those before, > 0; ignored the first time
-  /// @returns false if a motor would have turned faster than kMaximumSpeed: these are counts of
+  /// @returns false if a motor would have turned faster than kMaxSpeed: these are counts of
   ///   another life of the device, or the encoder is broken. Nothing changes then
   bool update(const std::array<std::int32_t, kMotors>& counts, double dt);
 

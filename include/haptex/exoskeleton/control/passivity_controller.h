@@ -13,20 +13,20 @@ namespace haptex::exoskeleton {
 /// dE = -f . v dt, of the force f that was really asked for and the measured velocity v. While E
 /// stays above zero the object is passive and the controller does nothing. Where the next period
 /// would take E below zero, it adds a damping force -a v with the smallest a that prevents this,
-/// at most kMaximumDamping and of at most the norm of f: that stops any flow of energy to the
+/// at most kMaxDamping and of at most the norm of f: that stops any flow of energy to the
 /// person, and where there is no force there is nothing to damp.
 class PassivityController {
  public:
   /// N s/m. The velocity is about 8 ms old when its force arrives (filter, line and motors), and
   /// damping a of a mass m with a delay T needs a T / m below pi/2 to be stable: with the 0.05 kg
   /// that device and fingertip have together, 2 N s/m is at 0.32, a phase margin of 72 degrees.
-  static constexpr double kMaximumDamping = 2.0;
+  static constexpr double kMaxDamping = 2.0;
   /// J. An elastic object gives back what pressing it took, 5 N against 250 N/m: 0.05 J. More is
   /// not remembered, so that long rubbing does not pay for an oscillation afterwards.
-  static constexpr double kMaximumCredit = 0.05;
+  static constexpr double kMaxCredit = 0.05;
   /// J. A moving object may do work on the person for as long as it likes; what it owes is
   /// forgotten beyond this, so that the damping ends soon (at 0.1 m/s within 0.5 s).
-  static constexpr double kMaximumDebt = 0.01;
+  static constexpr double kMaxDebt = 0.01;
   /// m/s. Slower than this is noise of the encoders, which damping would make audible.
   static constexpr double kSlowest = 0.005;
 

@@ -9,9 +9,9 @@
 
 namespace haptex::exoskeleton {
 
-constexpr double kMaximumForce = 5.0;    ///< N, continuous force of the device
-constexpr double kMaximumSlew = 1000.0;  ///< N/s, of the norm of the change
-constexpr double kSoftStart = 0.5;       ///< s, from nothing to the whole force after enabling
+constexpr double kMaxForce = 5.0;    ///< N, continuous force of the device
+constexpr double kMaxSlew = 1000.0;  ///< N/s, of the norm of the change
+constexpr double kSoftStart = 0.5;   ///< s, from nothing to the whole force after enabling
 /// The last command is held for so long: it is passive by itself (command_check.h), so that
 /// messages that are late do not open the hand. Then the watchdog ramps.
 constexpr Time kCommandTimeout = std::chrono::microseconds(12500);
@@ -25,9 +25,9 @@ constexpr double kLongestSlew = 0.002;
 
 /// Counts since the construction, no units, and the observed energy.
 struct SafetyStatistics {
-  std::uint64_t not_finite = 0;    ///< commands or measurements that were not finite
-  std::uint64_t saturated = 0;     ///< ticks in which the commanded norm exceeded kMaximumForce
-  std::uint64_t slew_limited = 0;  ///< ticks
+  std::uint64_t not_finite = 0;         ///< commands or measurements that were not finite
+  std::uint64_t saturated = 0;          ///< ticks in which the commanded norm exceeded kMaxForce
+  std::uint64_t slew_limited = 0;       ///< ticks
   std::uint64_t passivity_limited = 0;  ///< ticks in which the passivity controller dissipated
   std::uint64_t watchdog_trips = 0;     ///< times the commands stopped while a force was rendered
   double observed_energy = 0.0;         ///< J, see PassivityController
@@ -41,7 +41,7 @@ Eigen::Vector3d finiteOrZero(const Eigen::Vector3d& vector, bool& finite);
 /// The finite force, shortened to `limit` if its norm is above.
 Eigen::Vector3d saturated(const Eigen::Vector3d& force, double limit);
 
-/// From `previous` towards `target`, by at most kMaximumSlew * min(dt, kLongestSlew).
+/// From `previous` towards `target`, by at most kMaxSlew * min(dt, kLongestSlew).
 Eigen::Vector3d slewLimited(const Eigen::Vector3d& target, const Eigen::Vector3d& previous,
                             double dt);
 
@@ -53,19 +53,19 @@ double softStartGain(double since_start);
 double returnGain(double since_return);
 
 /// The next point of a straight line from `previous`, at `before`, to zero at `end`. Used by a
-/// latched fault: if the norm of what it starts from is at most kMaximumForce, the line obeys
-/// kMaximumSlew, because kWatchdogRamp = kMaximumForce / kMaximumSlew.
+/// latched fault: if the norm of what it starts from is at most kMaxForce, the line obeys
+/// kMaxSlew, because kWatchdogRamp = kMaxForce / kMaxSlew.
 Eigen::Vector3d rampedDown(const Eigen::Vector3d& previous, Time before, Time now, Time end);
 
 /// One finger's chain: isfinite, saturation, slew limit, passivity, soft start, return, watchdog,
 /// latched fault, and clamped again last. Whatever goes in and however irregular the ticks are,
-/// what comes out is finite, at most kMaximumForce, and differs from what came out before by at
-/// most kMaximumSlew * min(period, kLongestSlew). Ticked every millisecond, it is zero at the
+/// what comes out is finite, at most kMaxForce, and differs from what came out before by at
+/// most kMaxSlew * min(period, kLongestSlew). Ticked every millisecond, it is zero at the
 /// latest kCommandTimeout + kWatchdogRamp + one period after the last command, and kWatchdogRamp +
 /// one period after the commander is known to be dead.
 ///
-/// The watchdog lets through kMaximumSlew times the time that is left until then: a force of less
-/// than kMaximumForce is held for longer, and goes to zero as steeply.
+/// The watchdog lets through kMaxSlew times the time that is left until then: a force of less
+/// than kMaxForce is held for longer, and goes to zero as steeply.
 ///
 /// Not thread-safe, does not allocate.
 class SafetyChain {
@@ -87,12 +87,13 @@ class SafetyChain {
   /// A command or measurement was dropped because it was not finite.
   void countNotFinite() { ++statistics_.not_finite; }
 
-  /// The command of the coming tick was shortened to kMaximumForce before it came here.
+  /// The command of the coming tick was shortened to kMaxForce before it came here.
   void countSaturated() { ++statistics_.saturated; }
 
   /// There is no force to be rendered for a moment: when there is one again it comes back within
   /// kReturn, as it does where the commands had expired. After a tick that came so late that the
-  /// device's watchdog has taken a share of the torques (DeviceEnd), it comes back from the rest.
+  /// device's watchdog has taken a share of the torques (FirmwareModel), it comes back from the
+  /// rest.
   void interrupt() { interrupted_ = true; }
 
   /// Latches: the force goes to zero within kWatchdogRamp, from the next tick on, and stays there

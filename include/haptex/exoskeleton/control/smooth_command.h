@@ -31,7 +31,7 @@ class SmoothCommand {
   /// No force; the next tick() begins from there.
   void rest();
 
-  /// One period. @returns N, of at most kMaximumForce before the differences are taken off; not
+  /// One period. @returns N, of at most kMaxForce before the differences are taken off; not
   ///   finite if the command is not at this place and velocity
   Eigen::Vector3d tick(const Eigen::Vector3d& p, const Eigen::Vector3d& v);
 

@@ -27,7 +27,7 @@ class EmulatedDevice {
  public:
   static constexpr double kRate = 8000.0;  ///< Hz
   /// N m, what the current limit leaves of each motor's torque: representative.
-  static constexpr double kLargestTorque = 0.06;
+  static constexpr double kMaxTorque = 0.06;
   /// The force sensor of each component: its range is -kForceRange to kForceRange (N), its noise is
   /// normal with this standard deviation (N). Both are representative.
   static constexpr double kForceRange = 10.0;

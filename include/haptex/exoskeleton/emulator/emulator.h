@@ -15,8 +15,8 @@
 #include "haptex/exoskeleton/emulator/emulated_line.h"
 #include "haptex/exoskeleton/emulator/emulator_fault.h"
 #include "haptex/exoskeleton/finger.h"
-#include "haptex/exoskeleton/protocol/device_end.h"
 #include "haptex/exoskeleton/protocol/device_messages.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 
 namespace haptex::exoskeleton {
 
@@ -47,8 +47,8 @@ class Emulator {
   static constexpr Time kPeriod = std::chrono::milliseconds(1);
   /// More lag than this is given up. Less than it takes the firmware's watchdog to act, so that
   /// catching up never trips it.
-  static constexpr Time kLargestLag = std::chrono::milliseconds(4);
-  static_assert(kLargestLag < DeviceEnd::kRampStart);
+  static constexpr Time kMaxLag = std::chrono::milliseconds(4);
+  static_assert(kMaxLag < FirmwareModel::kRampStart);
   /// How long the device is off when its power is cycled.
   static constexpr Time kOffTime = std::chrono::milliseconds(200);
 
@@ -94,8 +94,8 @@ class Emulator {
   Observer observer_;
   EmulatedLine line_;
   EmulatedDevice device_;
-  std::optional<DeviceEnd> firmware_;  // none while the device is off
-  DeviceState last_report_;            // since it was switched on
+  std::optional<FirmwareModel> firmware_;  // none while the device is off
+  DeviceState last_report_;                // since it was switched on
   std::uint64_t watchdog_trips_ = 0;
   Time switch_on_at_{0};
   // What device_ counted when it was switched on.

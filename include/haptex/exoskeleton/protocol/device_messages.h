@@ -60,7 +60,7 @@ struct DeviceState {
 };
 
 /// To the device, once per millisecond. A device that gets none takes its motors to zero, see
-/// device_end.h.
+/// firmware_model.h.
 struct DeviceCommand {
   DriveMode mode = DriveMode::kOff;
   PerFinger<MotorVector> torques{

@@ -12,14 +12,14 @@ namespace haptex::nodes {
 
 /// Bounds of a point's numbers, the same as those of a commanded force: see
 /// exoskeleton/command_check.h. A fingertip's force and stiffness are the sums over its points.
-constexpr double kLargestPointForce = 1000.0;   ///< N, norm
-constexpr double kLargestPointStiffness = 1e5;  ///< N/m, Frobenius norm
-constexpr double kFarthestPoint = 100.0;        ///< m, norm, from the origin of the world
-constexpr double kLargestWeights = 100.0;       ///< no unit, norm
+constexpr double kMaxPointForce = 1000.0;   ///< N, norm
+constexpr double kMaxPointStiffness = 1e5;  ///< N/m, Frobenius norm
+constexpr double kFarthestPoint = 100.0;    ///< m, norm, from the origin of the world
+constexpr double kMaxWeights = 100.0;       ///< no unit, norm
 
 /// @param triangle_count of the cloth
 /// @throws std::invalid_argument naming what is wrong: the frame is not kFixedFrame, the arrays
-///   differ in length, there are more points than Cloth::kMostPointLoads, a number is beyond the
+///   differ in length, there are more points than Cloth::kMaxPointLoads, a number is beyond the
 ///   bounds above, or what Cloth::setPointLoads() refuses
 std::vector<cloth::PointLoad> pointLoads(const haptex::ContactForces& message,
                                          std::size_t triangle_count);

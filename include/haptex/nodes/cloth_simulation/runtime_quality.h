@@ -43,7 +43,7 @@ class RuntimeQuality {
   static constexpr double kAllowance = 1.5;          ///< s, for the front
   static constexpr double kBorrowedAllowance = 0.5;  ///< s, for borrowedSettings()
   /// Of a cycle, the longest budget of a quality that may be reduced: the rest is for messages.
-  static constexpr double kLargestShare = 0.8;
+  static constexpr double kMaxShare = 0.8;
 
   /// @param request with any()
   /// @throws std::exception naming what was wrong with a file

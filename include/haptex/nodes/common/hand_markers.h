@@ -20,7 +20,7 @@ visualization_msgs::MarkerArray targetMarkers(const exoskeleton::HandPlace& plac
 /// Length of the arrow of a force (m/N), so that 0.05 N are seen, and below which force (N) there
 /// is none: of a length near 0 it would have no direction.
 constexpr double kForceScale = 0.05;
-constexpr double kLeastForce = 0.01;
+constexpr double kMinForce = 0.01;
 
 /// The measured forces as arrows from the skin of the fingertips, in hand_base: rviz draws a
 /// WrenchStamped in hand_base at the origin of hand_base.

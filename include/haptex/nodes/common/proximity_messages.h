@@ -29,11 +29,11 @@ struct RestMesh {
 /// Triangles without area are allowed.
 /// @throws std::invalid_argument naming field, value and what is allowed: no triangle, arrays that
 ///   do not fit together, a particle that does not exist, a number that is not finite or beyond
-///   proximity::kLargestLength
+///   proximity::kMaxLength
 RestMesh restMesh(const haptex::ClothMesh& message);
 
 /// @throws std::invalid_argument likewise: another frame than kFixedFrame, a position that is not
-///   finite or beyond proximity::kLargestLength
+///   finite or beyond proximity::kMaxLength
 void requireValid(const haptex::ClothState& message);
 
 /// Everything about a request but its frame and the obstacles that there are.
@@ -43,7 +43,7 @@ void requireValid(const haptex::QueryProximity::Request& request);
 
 /// The cursor of a valid request for another shape than OBSTACLE.
 /// @param world_from_frame transform from the frame of the points to the world frame
-/// @throws std::invalid_argument if that takes it beyond proximity::kLargestLength
+/// @throws std::invalid_argument if that takes it beyond proximity::kMaxLength
 proximity::Cursor cursorInWorld(const haptex::QueryProximity::Request& request,
                                 const Eigen::Isometry3d& world_from_frame);
 

@@ -20,9 +20,9 @@ struct LoopRates {
 };
 
 /// Length (m) of the arrow of a force (N): logarithmic, so that 0.01 N (9 mm) and 5 N (81 mm) are
-/// seen on the same picture. Below kLeastShownForce there is none.
+/// seen on the same picture. Below kMinShownForce there is none.
 double arrowLength(double force);
-constexpr double kLeastShownForce = 0.001;  // N
+constexpr double kMinShownForce = 0.001;  // N
 
 /// Where on the colour map the contact force on a particle lies: logarithmic over three decades up
 /// to 0.1 N.

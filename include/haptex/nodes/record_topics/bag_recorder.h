@@ -29,13 +29,13 @@ struct RecordedTopics {
 /// Messages wait where they arrive and are written all together, kWritePeriod after the last time,
 /// so that one thread is woken up fifty times a second: rosbag's record wakes one of ten up for
 /// every message. They carry the time at which they arrived. Chunks are compressed by LZ4. Until it
-/// is closed the bag has the suffix .active. Where less than kLeastSpace is left on the disk,
+/// is closed the bag has the suffix .active. Where less than kMinSpace is left on the disk,
 /// nothing is written, which is said on the console.
 class BagRecorder {
  public:
   static constexpr std::chrono::milliseconds kWritePeriod{20};
-  static constexpr std::chrono::seconds kSearchPeriod{1};                 ///< for new topics
-  static constexpr std::uintmax_t kLeastSpace = std::uintmax_t{1} << 30;  ///< bytes
+  static constexpr std::chrono::seconds kSearchPeriod{1};               ///< for new topics
+  static constexpr std::uintmax_t kMinSpace = std::uintmax_t{1} << 30;  ///< bytes
 
   /// @throws rosbag::BagException if the bag cannot be made
   BagRecorder(std::string path, RecordedTopics topics);

@@ -14,10 +14,10 @@
 namespace haptex::nodes {
 
 /// The largest numbers of a contact that are believed.
-constexpr double kFastestStroke = 100.0;    ///< m/s
-constexpr double kLargestPress = 1000.0;    ///< N
-constexpr double kFarthestPlace = 1000.0;   ///< m, on a fabric
-constexpr double kLargestStretch = 1000.0;  ///< of weft or warp per length of the array
+constexpr double kFastestStroke = 100.0;   ///< m/s
+constexpr double kMaxPress = 1000.0;       ///< N
+constexpr double kFarthestPlace = 1000.0;  ///< m, on a fabric
+constexpr double kMaxStretch = 1000.0;     ///< of weft or warp per length of the array
 
 /// How a fingertip lies on the fabric; nothing if it does not touch. Where the message does not say
 /// how the array lies (array_x and array_y all zero), its axes are weft and warp, and its origin is

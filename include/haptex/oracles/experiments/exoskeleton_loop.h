@@ -13,8 +13,8 @@
 #include "haptex/exoskeleton/control/device_controller.h"
 #include "haptex/exoskeleton/emulator/emulated_device.h"
 #include "haptex/exoskeleton/emulator/fault_injector.h"
-#include "haptex/exoskeleton/protocol/device_end.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 
 namespace haptex::oracles {
 
@@ -120,7 +120,7 @@ class ExoskeletonLoop {
   void stepDriver();
 
   exoskeleton::EmulatedDevice device_;
-  exoskeleton::DeviceEnd device_end_;
+  exoskeleton::FirmwareModel firmware_;
   SimulatedLine to_device_, to_driver_;
   exoskeleton::DeviceLink link_;
   exoskeleton::DeviceController controller_;

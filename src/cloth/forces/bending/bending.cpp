@@ -111,6 +111,19 @@ void Bending::couple(const mesh::ClothMesh& mesh) {
   }
 }
 
+void Bending::renumber(const std::vector<int>& particles) {
+  for (HingeCorner& corner : corners_) corner.particle = particles[corner.particle];
+  for (Coupling& coupling : couplings_) {
+    coupling.row = particles[coupling.row];
+    coupling.column = particles[coupling.column];
+  }
+  for (std::array<int, 2>& pair : pairs_) pair = {particles[pair[0]], particles[pair[1]]};
+  std::vector<double> diagonal(particles.back() + 1, 0.0);
+  for (std::size_t i = 0; i < particles.size(); ++i) diagonal[particles[i]] = diagonal_[i];
+  diagonal_ = std::move(diagonal);
+  if (rest_) rest_->renumber(particles);
+}
+
 void Bending::bind(const linear::SymmetricBlockMatrix& matrix) {
   for (Coupling& coupling : couplings_) coupling.slot = matrix.slot(coupling.row, coupling.column);
 }
@@ -169,8 +182,8 @@ void Bending::assembleLinearised(const ForceState& state, const StageTimes& time
     rhs.col(coupling.column) -= impulse;
     matrix.lower(coupling.slot).diagonal().array() += times.a * times.a * coupling.stiffness;
   }
-  for (int i = 0; i < matrix.size(); ++i) {
-    matrix.diagonal(i).diagonal().array() += times.a * times.a * diagonal_[i];
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+    matrix.diagonal(static_cast<int>(i)).diagonal().array() += times.a * times.a * diagonal_[i];
   }
   if (rest_) rest_->assembleLinearised(positions, velocities, times, rhs);
 }

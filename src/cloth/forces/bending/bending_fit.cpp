@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 /// A direction in which a fabric does not resist bending at all is fitted as if it had this part of
 /// the other's rigidity, to compare errors with something.
-constexpr double kLeastRatio = 1e-6;
+constexpr double kMinRatio = 1e-6;
 /// How much more an error of the weft's and warp's rigidity counts than one of twist or coupling.
 constexpr double kEmphasis = 30.0;
 /// Rounding leaves 1e-12 of the target on grids; the least irregular meshes leave 1e-2.
@@ -77,8 +77,8 @@ bool addFitted(const BendingStencils& found, const BendingNeighbourhood& around,
 
 PlateRigidity::PlateRigidity(const material::BendingRigidity& rigidity) {
   const double largest = std::max(rigidity.weft, rigidity.warp);
-  const double weft = std::max(rigidity.weft, kLeastRatio * largest);
-  const double warp = std::max(rigidity.warp, kLeastRatio * largest);
+  const double weft = std::max(rigidity.weft, kMinRatio * largest);
+  const double warp = std::max(rigidity.warp, kMinRatio * largest);
   scale_ = Vector3d(std::sqrt(weft), std::sqrt(warp), std::sqrt(2.0 * std::sqrt(weft * warp)));
   wanted_ = Vector3d(rigidity.weft, rigidity.warp, 2.0 * std::sqrt(rigidity.weft * rigidity.warp))
                 .cwiseQuotient(scale_.cwiseAbs2());

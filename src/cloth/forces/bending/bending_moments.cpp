@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 /// Pivots below this part of the largest are not used: particles near a conic section say too
 /// little of what lies across it.
-constexpr double kLeastPivot = 1e-3;
+constexpr double kMinPivot = 1e-3;
 /// How much sooner the corners of the edge's own triangles are used than those around them.
 constexpr double kNearness = 3.0;
 
@@ -98,7 +98,7 @@ std::vector<Weighted> slopeAcross(const mesh::ClothMesh& mesh, const std::array<
   VectorXd weights = q.leftCols(3) * fixed;
   const MatrixXd freedom = q.rightCols(count - 3);
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> correction;
-  correction.setThreshold(kLeastPivot);
+  correction.setThreshold(kMinPivot);
   correction.compute(quadratic * freedom);
   weights += freedom * correction.solve(-quadratic * weights);
   std::vector<Weighted> slope;

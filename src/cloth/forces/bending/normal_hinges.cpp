@@ -42,6 +42,10 @@ NormalHinges::NormalHinges(const mesh::ClothMesh& mesh, const std::vector<Hinge>
   }
 }
 
+void NormalHinges::renumber(const std::vector<int>& particles) {
+  for (Corner& corner : corners_) corner.particle = particles[corner.particle];
+}
+
 Matrix3d NormalHinges::hessian(const Frame& at, const Corner& row, const Corner& column) {
   const Matrix3d weft = crossMatrix(at.weft), warp = crossMatrix(at.warp);
   // Second derivative of b . n by U x V at the same b.

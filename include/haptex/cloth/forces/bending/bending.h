@@ -56,6 +56,10 @@ class Bending final : public Force {
   Bending(const mesh::ClothMesh& mesh, const material::BendingRigidity& rigidity,
           const BendingSettings& settings = {});
 
+  /// Makes it one on some particles of a larger mesh. Before bind().
+  /// @param particles of that mesh, for every one of this, ascending
+  void renumber(const std::vector<int>& particles);
+
   const std::vector<Hinge>& hinges() const { return hinges_; }
   const std::vector<HingeCorner>& corners() const { return corners_; }
   /// Null if there is none.

@@ -39,6 +39,9 @@ class BendingFriction final : public Force {
                   const material::BendingRigidity& rigidity,
                   const material::BendingHysteresis& hysteresis);
 
+  /// As Bending::renumber().
+  void renumber(const std::vector<int>& particles) { hinges_.renumber(particles); }
+
   void bind(const linear::SymmetricBlockMatrix& matrix) override;
 
   /// The plastic bend of every hinge with friction, m.

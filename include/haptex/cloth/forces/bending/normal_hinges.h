@@ -45,6 +45,9 @@ class NormalHinges {
   NormalHinges(const mesh::ClothMesh& mesh, const std::vector<Hinge>& hinges,
                const std::vector<HingeCorner>& corners, const Eigen::Vector2d& curvature);
 
+  /// Makes them hinges on some particles of a larger mesh, by the numbers there.
+  void renumber(const std::vector<int>& particles);
+
   const std::vector<NormalHinge>& hinges() const { return hinges_; }
   const std::vector<Corner>& corners() const { return corners_; }
 

@@ -20,6 +20,9 @@ class RestCurvature {
   RestCurvature(const mesh::ClothMesh& mesh, const std::vector<Hinge>& hinges,
                 const std::vector<HingeCorner>& corners, const Eigen::Vector2d& curvature);
 
+  /// As Bending::renumber().
+  void renumber(const std::vector<int>& particles) { curved_.renumber(particles); }
+
   double energy(const Positions& positions) const;  ///< J
   void addForces(const Positions& positions, std::vector<Eigen::Vector3d>& forces) const;
   /// Adds what it contributes to a linearised stage (Stage), rhs += a F(x + ahead v). The matrix

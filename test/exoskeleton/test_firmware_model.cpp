@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "haptex/exoskeleton/protocol/device_end.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton {
@@ -11,34 +11,34 @@ namespace {
 
 constexpr int kSteps = 1000;
 
-void receive(DeviceEnd& device, const ByteVector& bytes, Time now) {
+void receive(FirmwareModel& device, const ByteVector& bytes, Time now) {
   device.receive(bytes.data(), bytes.size(), now);
 }
 
-void obey(DeviceEnd& device, int number, Time now, DriveMode mode = DriveMode::kForce) {
+void obey(FirmwareModel& device, int number, Time now, DriveMode mode = DriveMode::kForce) {
   receive(device, frameOf(commandOf(mode, kSteps), static_cast<std::uint8_t>(number)), now);
 }
 
 /// A device that has obeyed commands 1 to 20 once a millisecond, the last at `end`.
-DeviceEnd drivenUntil(Time end) {
-  DeviceEnd device(Identity{});
+FirmwareModel drivenUntil(Time end) {
+  FirmwareModel device(Identity{});
   receive(device, frameOf(Hello{}), end - milliseconds(20));
   for (int i = 1; i <= 20; ++i) obey(device, i, end - milliseconds(20 - i));
   return device;
 }
 
-DeviceState reported(DeviceEnd& device, Time now) {
+DeviceState reported(FirmwareModel& device, Time now) {
   const ByteVector bytes = copy(device.report({}, now));
   return decodeState(frameIn(bytes, LineEnd::kDriver)).value();
 }
 
-double shareAt(DeviceEnd& device, Time now) {
+double shareAt(FirmwareModel& device, Time now) {
   return device.command(now).torques[Finger::kIndex][0] / (kSteps * kTorqueStep);
 }
 
-TEST(DeviceEnd, AnswersEveryHelloOnceWithItsIdentity) {
+TEST(FirmwareModel, AnswersEveryHelloOnceWithItsIdentity) {
   const Identity identity{kProtocolVersion, 5, 6, 7};
-  DeviceEnd device(identity);
+  FirmwareModel device(identity);
   EXPECT_TRUE(device.answer().empty());
   receive(device, frameOf(Hello{}), milliseconds(0));
   EXPECT_EQ(copy(device.answer()), frameOf(identity));
@@ -48,8 +48,8 @@ TEST(DeviceEnd, AnswersEveryHelloOnceWithItsIdentity) {
   EXPECT_EQ(copy(device.answer()), frameOf(identity, 1)) << "carries the number of the last state";
 }
 
-TEST(DeviceEnd, ReportsNothingBeforeTheHandshakeAndNumbersItsStates) {
-  DeviceEnd device(Identity{});
+TEST(FirmwareModel, ReportsNothingBeforeTheHandshakeAndNumbersItsStates) {
+  FirmwareModel device(Identity{});
   EXPECT_TRUE(device.report({}, milliseconds(0)).empty());
   receive(device, frameOf(Hello{}), milliseconds(0));
   for (const std::uint8_t number : {1, 2, 3}) {
@@ -59,8 +59,8 @@ TEST(DeviceEnd, ReportsNothingBeforeTheHandshakeAndNumbersItsStates) {
   }
 }
 
-TEST(DeviceEnd, IgnoresCommandsBeforeTheHandshake) {
-  DeviceEnd device(Identity{});
+TEST(FirmwareModel, IgnoresCommandsBeforeTheHandshake) {
+  FirmwareModel device(Identity{});
   obey(device, 1, milliseconds(0));
   EXPECT_TRUE(equal(device.command(milliseconds(3)), DeviceCommand{}));
   receive(device, frameOf(Hello{}), milliseconds(4));
@@ -69,8 +69,8 @@ TEST(DeviceEnd, IgnoresCommandsBeforeTheHandshake) {
   EXPECT_EQ(device.command(milliseconds(9)).mode, DriveMode::kForce);
 }
 
-TEST(DeviceEnd, AnswersADriverOfAnotherVersionButDoesNotObeyIt) {
-  DeviceEnd device(Identity{});
+TEST(FirmwareModel, AnswersADriverOfAnotherVersionButDoesNotObeyIt) {
+  FirmwareModel device(Identity{});
   receive(device, frameOf(Hello{2}), milliseconds(0));
   EXPECT_EQ(copy(device.answer()), frameOf(Identity{}));
   EXPECT_TRUE(device.report({}, milliseconds(1)).empty());
@@ -78,8 +78,8 @@ TEST(DeviceEnd, AnswersADriverOfAnotherVersionButDoesNotObeyIt) {
   EXPECT_TRUE(equal(device.command(milliseconds(2)), DeviceCommand{}));
 }
 
-TEST(DeviceEnd, TellsWhatItDoes) {
-  DeviceEnd device = drivenUntil(milliseconds(100));
+TEST(FirmwareModel, TellsWhatItDoes) {
+  FirmwareModel device = drivenUntil(milliseconds(100));
   DeviceState state = reported(device, milliseconds(100));
   EXPECT_EQ(state.last_command, 20);
   EXPECT_EQ(state.mode, DriveMode::kForce);
@@ -90,9 +90,9 @@ TEST(DeviceEnd, TellsWhatItDoes) {
   EXPECT_EQ(state.mode, DriveMode::kHoming);
 }
 
-TEST(DeviceEnd, HoldsThenGoesStraightToZeroWithinTwentyMilliseconds) {
+TEST(FirmwareModel, HoldsThenGoesStraightToZeroWithinTwentyMilliseconds) {
   const Time last = milliseconds(100);
-  DeviceEnd device = drivenUntil(last);
+  FirmwareModel device = drivenUntil(last);
   for (int us = 0; us <= 30000; us += 125) {
     const double expected = std::min(1.0, std::max(0.0, (19000 - us) / 5000.0));
     EXPECT_NEAR(shareAt(device, last + microseconds(us)), expected, 1e-12) << us;
@@ -101,10 +101,10 @@ TEST(DeviceEnd, HoldsThenGoesStraightToZeroWithinTwentyMilliseconds) {
   }
 }
 
-TEST(DeviceEnd, GoesToZeroAtOnceWhenTheDriversEndIsClosed) {
+TEST(FirmwareModel, GoesToZeroAtOnceWhenTheDriversEndIsClosed) {
   const Time last = milliseconds(100);
   for (const int closed : {0, 1000, 13000, 16000, 18500}) {
-    DeviceEnd device = drivenUntil(last);
+    FirmwareModel device = drivenUntil(last);
     for (int us = closed; us <= 30000; us += 125) {
       device.hangUp(last + microseconds(us));  // as long as it is closed
       const double silent = std::min(1.0, std::max(0.0, (19000 - us) / 5000.0));
@@ -120,14 +120,14 @@ TEST(DeviceEnd, GoesToZeroAtOnceWhenTheDriversEndIsClosed) {
   }
 }
 
-TEST(DeviceEnd, IsNotSwitchedOnByAnEndThatIsClosed) {
-  DeviceEnd device{Identity{}};
+TEST(FirmwareModel, IsNotSwitchedOnByAnEndThatIsClosed) {
+  FirmwareModel device{Identity{}};
   device.hangUp(milliseconds(100));
   EXPECT_TRUE(equal(device.command(milliseconds(100)), DeviceCommand{}));
 }
 
-TEST(DeviceEnd, HasTrippedFromTheEndOfTheRampUntilTheNextCommand) {
-  DeviceEnd device = drivenUntil(milliseconds(100));
+TEST(FirmwareModel, HasTrippedFromTheEndOfTheRampUntilTheNextCommand) {
+  FirmwareModel device = drivenUntil(milliseconds(100));
   EXPECT_FALSE(reported(device, microseconds(118999)).watchdog_tripped);
   EXPECT_TRUE(reported(device, microseconds(119000)).watchdog_tripped);
   EXPECT_EQ(reported(device, microseconds(119000)).mode, DriveMode::kOff);
@@ -137,15 +137,15 @@ TEST(DeviceEnd, HasTrippedFromTheEndOfTheRampUntilTheNextCommand) {
   EXPECT_FALSE(reported(device, milliseconds(5001)).watchdog_tripped);
 }
 
-TEST(DeviceEnd, DoesNotTripWhileTheMotorsAreOff) {
-  DeviceEnd device = drivenUntil(milliseconds(100));
+TEST(FirmwareModel, DoesNotTripWhileTheMotorsAreOff) {
+  FirmwareModel device = drivenUntil(milliseconds(100));
   obey(device, 21, milliseconds(101), DriveMode::kOff);
   EXPECT_TRUE(equal(device.command(milliseconds(101)), DeviceCommand{})) << "off means no torque";
   EXPECT_FALSE(reported(device, milliseconds(500)).watchdog_tripped);
 }
 
-TEST(DeviceEnd, ComesBackWithinTwentyMillisecondsAndNoSooner) {
-  DeviceEnd device = drivenUntil(milliseconds(100));
+TEST(FirmwareModel, ComesBackWithinTwentyMillisecondsAndNoSooner) {
+  FirmwareModel device = drivenUntil(milliseconds(100));
   EXPECT_NEAR(shareAt(device, microseconds(117500)), 0.3, 1e-12);
   for (int i = 0; i < 30; ++i) {
     const Time now = microseconds(117500 + 1000 * i);
@@ -164,8 +164,8 @@ TEST(DeviceEnd, ComesBackWithinTwentyMillisecondsAndNoSooner) {
   }
 }
 
-TEST(DeviceEnd, GoesToACommandAfterLostOnesInTheTimeTheDriverTook) {
-  DeviceEnd device = drivenUntil(milliseconds(100));
+TEST(FirmwareModel, GoesToACommandAfterLostOnesInTheTimeTheDriverTook) {
+  FirmwareModel device = drivenUntil(milliseconds(100));
   const DeviceCommand twice = commandOf(DriveMode::kForce, 2 * kSteps);
   for (int ms = 4; ms <= 10; ++ms) {  // 21 to 23 are lost
     receive(device, frameOf(twice, static_cast<std::uint8_t>(20 + ms)), milliseconds(100 + ms));
@@ -173,10 +173,10 @@ TEST(DeviceEnd, GoesToACommandAfterLostOnesInTheTimeTheDriverTook) {
   }
 }
 
-TEST(DeviceEnd, ChangesNoFasterThanTheDriverDidWhenManyCommandsComeAtOnce) {
+TEST(FirmwareModel, ChangesNoFasterThanTheDriverDidWhenManyCommandsComeAtOnce) {
   constexpr int kCommands = 30, kChange = 100;  // per command, a tenth of what there was
   for (const int together : {1, 2, 4}) {
-    DeviceEnd device = drivenUntil(milliseconds(100));
+    FirmwareModel device = drivenUntil(milliseconds(100));
     const auto command = [&](int number) {
       return frameOf(commandOf(DriveMode::kForce, kSteps + kChange * std::min(number, kCommands)),
                      static_cast<std::uint8_t>(20 + number));
@@ -196,8 +196,8 @@ TEST(DeviceEnd, ChangesNoFasterThanTheDriverDidWhenManyCommandsComeAtOnce) {
   }
 }
 
-TEST(DeviceEnd, RepeatedAndOldCommandsDoNotFeedTheWatchdog) {
-  DeviceEnd device = drivenUntil(milliseconds(100));
+TEST(FirmwareModel, RepeatedAndOldCommandsDoNotFeedTheWatchdog) {
+  FirmwareModel device = drivenUntil(milliseconds(100));
   for (int ms = 101; ms <= 119; ++ms) obey(device, 20, milliseconds(ms));
   EXPECT_TRUE(equal(device.command(milliseconds(119)), DeviceCommand{}));
   device = drivenUntil(milliseconds(100));
@@ -205,9 +205,9 @@ TEST(DeviceEnd, RepeatedAndOldCommandsDoNotFeedTheWatchdog) {
   EXPECT_TRUE(equal(device.command(milliseconds(119)), DeviceCommand{}));
 }
 
-TEST(DeviceEnd, GarbageAndCorruptCommandsDoNotFeedTheWatchdog) {
+TEST(FirmwareModel, GarbageAndCorruptCommandsDoNotFeedTheWatchdog) {
   std::mt19937 generator(5);
-  DeviceEnd device = drivenUntil(milliseconds(100));
+  FirmwareModel device = drivenUntil(milliseconds(100));
   int number = 21;
   for (long us = 100000; us < 119000; us += 100) {
     ByteVector bytes(generator() % 30);
@@ -232,32 +232,32 @@ TEST(DeviceEnd, GarbageAndCorruptCommandsDoNotFeedTheWatchdog) {
   EXPECT_GE(device.received().corrupt_frames, 150u);
 }
 
-TEST(DeviceEnd, AHelloChangesNothingAboutTheRamp) {
-  DeviceEnd device = drivenUntil(milliseconds(100));
+TEST(FirmwareModel, AHelloChangesNothingAboutTheRamp) {
+  FirmwareModel device = drivenUntil(milliseconds(100));
   receive(device, frameOf(Hello{}), milliseconds(102));
   EXPECT_DOUBLE_EQ(shareAt(device, milliseconds(102)), 1.0);
   EXPECT_NEAR(shareAt(device, microseconds(116500)), 0.5, 1e-12);
   EXPECT_TRUE(equal(device.command(milliseconds(119)), DeviceCommand{}));
 }
 
-TEST(DeviceEnd, ObeysANewDriverThatCountsAnew) {
-  DeviceEnd device = drivenUntil(milliseconds(100));  // up to number 20
+TEST(FirmwareModel, ObeysANewDriverThatCountsAnew) {
+  FirmwareModel device = drivenUntil(milliseconds(100));  // up to number 20
   receive(device, frameOf(Hello{}, 0), milliseconds(300));
   obey(device, 1, milliseconds(301), DriveMode::kHoming);
   EXPECT_EQ(device.command(milliseconds(301)).mode, DriveMode::kHoming);
   EXPECT_EQ(reported(device, milliseconds(301)).last_command, 1);
 }
 
-TEST(DeviceEnd, TheLastCommandOfADeadDriverIsNotObeyedAgainAfterAHello) {
-  DeviceEnd device = drivenUntil(milliseconds(100));
+TEST(FirmwareModel, TheLastCommandOfADeadDriverIsNotObeyedAgainAfterAHello) {
+  FirmwareModel device = drivenUntil(milliseconds(100));
   receive(device, frameOf(Hello{}, 0), milliseconds(300));
   obey(device, 20, milliseconds(301));
   EXPECT_TRUE(equal(device.command(milliseconds(301)), DeviceCommand{}));
   EXPECT_TRUE(reported(device, milliseconds(301)).watchdog_tripped);
 }
 
-TEST(DeviceEnd, ACommandThatWasInterruptedForTenMillisecondsIsDropped) {
-  DeviceEnd device = drivenUntil(milliseconds(100));
+TEST(FirmwareModel, ACommandThatWasInterruptedForTenMillisecondsIsDropped) {
+  FirmwareModel device = drivenUntil(milliseconds(100));
   const ByteVector command = frameOf(commandOf(DriveMode::kForce, kSteps), 21);
   device.receive(command.data(), 19, milliseconds(101));
   device.receive(command.data() + 19, 1, milliseconds(111));
@@ -267,9 +267,9 @@ TEST(DeviceEnd, ACommandThatWasInterruptedForTenMillisecondsIsDropped) {
   EXPECT_EQ(reported(device, milliseconds(113)).last_command, 21);
 }
 
-TEST(DeviceEnd, ObeysAgainAfterALineThatWasSilentForAnyTime) {
+TEST(FirmwareModel, ObeysAgainAfterALineThatWasSilentForAnyTime) {
   for (int lost = 0; lost < 600; ++lost) {
-    DeviceEnd device = drivenUntil(milliseconds(100));
+    FirmwareModel device = drivenUntil(milliseconds(100));
     const Time again = milliseconds(100 + lost);
     int ms = 1;
     const auto obeyed = [&](int number) {

@@ -25,7 +25,7 @@ namespace haptex::exoskeleton {
 /// The driver limits how much the force changes from one command to the next. Where commands got
 /// lost, or several come at once, the torques go to the last one in a straight line that takes as
 /// long as the driver took, and after the watchdog kReturn for the share that it had taken.
-class DeviceEnd {
+class FirmwareModel {
  public:
   static constexpr Time kRampStart = std::chrono::microseconds(14000);
   static constexpr Time kMotorsOff = std::chrono::microseconds(19000);
@@ -37,7 +37,7 @@ class DeviceEnd {
   /// From one command to the next.
   static constexpr Time kCommandPeriod = std::chrono::milliseconds(1);
 
-  explicit DeviceEnd(const Identity& identity);
+  explicit FirmwareModel(const Identity& identity);
 
   /// Takes bytes that have arrived. Commands before the first Hello are ignored, and so are those
   /// that are not newer than the last one. A Hello does not touch the motors: after a driver has

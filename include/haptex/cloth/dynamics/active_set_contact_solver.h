@@ -25,9 +25,9 @@ namespace haptex::cloth {
 /// and again would leave it in the body.
 ///
 /// One contact per particle. Allocates nothing after construction.
-class ContactStep {
+class ActiveSetContactSolver {
  public:
-  explicit ContactStep(const linear::SymmetricBlockMatrix& pattern);
+  explicit ActiveSetContactSolver(const linear::SymmetricBlockMatrix& pattern);
 
   /// Takes over the contacts and the stage's linear system, (A, b) for the change from the guess's
   /// velocities, before anything is eliminated.

@@ -1,4 +1,4 @@
-#include "haptex/cloth/dynamics/contact_step.h"
+#include "haptex/cloth/dynamics/active_set_contact_solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr int kOpenings = 6;           // rounds in which contacts open
 
 }  // namespace
 
-ContactStep::ContactStep(const linear::SymmetricBlockMatrix& pattern)
+ActiveSetContactSolver::ActiveSetContactSolver(const linear::SymmetricBlockMatrix& pattern)
     : guess_(3, pattern.size()),
       free_matrix_(pattern),
       free_rhs_(3, pattern.size()),
@@ -31,10 +31,10 @@ ContactStep::ContactStep(const linear::SymmetricBlockMatrix& pattern)
   reactions_.reserve(pattern.size());
 }
 
-void ContactStep::begin(const Cloth& cloth, const Stage& stage, const Velocities& guess,
-                        const std::vector<char>& attached,
-                        const linear::SymmetricBlockMatrix& matrix,
-                        const linear::BlockVector& rhs) {
+void ActiveSetContactSolver::begin(const Cloth& cloth, const Stage& stage, const Velocities& guess,
+                                   const std::vector<char>& attached,
+                                   const linear::SymmetricBlockMatrix& matrix,
+                                   const linear::BlockVector& rhs) {
   a_ = stage.a;
   entries_.clear();
   reactions_.assign(cloth.contacts().size(), {});
@@ -62,7 +62,8 @@ void ContactStep::begin(const Cloth& cloth, const Stage& stage, const Velocities
 }
 
 /// With what is remembered of the particle.
-ContactStep::Entry ContactStep::entryOf(const Cloth& cloth, const Stage& stage, int index) const {
+ActiveSetContactSolver::Entry ActiveSetContactSolver::entryOf(const Cloth& cloth,
+                                                              const Stage& stage, int index) const {
   const ParticleContact& contact = cloth.contacts()[index];
   const Vector3d place =
       contact.place + (stage.end - contact.end) * contact.velocity - contact.gap * contact.normal;
@@ -78,8 +79,9 @@ ContactStep::Entry ContactStep::entryOf(const Cloth& cloth, const Stage& stage, 
   return entry;
 }
 
-bool ContactStep::prepareRound(linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs,
-                               std::vector<char>& fixed, linear::BlockVector& prescribed) {
+bool ActiveSetContactSolver::prepareRound(linear::SymmetricBlockMatrix& matrix,
+                                          linear::BlockVector& rhs, std::vector<char>& fixed,
+                                          linear::BlockVector& prescribed) {
   ++rounds_;
   matrix = free_matrix_;
   rhs = free_rhs_;
@@ -92,9 +94,10 @@ bool ContactStep::prepareRound(linear::SymmetricBlockMatrix& matrix, linear::Blo
 }
 
 /// @param velocity of the linearisation @returns whether it violates the constraint
-bool ContactStep::constrain(const Entry& entry, const Vector3d& velocity,
-                            linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs,
-                            std::vector<char>& fixed, linear::BlockVector& prescribed) {
+bool ActiveSetContactSolver::constrain(const Entry& entry, const Vector3d& velocity,
+                                       linear::SymmetricBlockMatrix& matrix,
+                                       linear::BlockVector& rhs, std::vector<char>& fixed,
+                                       linear::BlockVector& prescribed) {
   const int i = entry.particle;
   const Vector3d change = entry.target - velocity;
   if (entry.state == State::kSticks) {
@@ -113,7 +116,7 @@ bool ContactStep::constrain(const Entry& entry, const Vector3d& velocity,
 /// How much the friction of what slips resists a turn of the slip (N.s/m): the second derivative of
 /// mu N |s| across s. Slips that friction changes within the stage are no measure of it.
 /// What creeps is resisted so in every direction.
-double ContactStep::lateralResistance(const Entry& entry) const {
+double ActiveSetContactSolver::lateralResistance(const Entry& entry) const {
   const double limit = entry.friction * entry.load;
   if (!(limit > 0.0)) return 0.0;
   const double least = entry.creeps ? 0.01 * kRest : a_ * limit / entry.mass;
@@ -121,16 +124,16 @@ double ContactStep::lateralResistance(const Entry& entry) const {
 }
 
 /// Across the normal, and unless it creeps across the slip of the round before (m/s).
-Vector3d ContactStep::lateralSlip(const Entry& entry, const Vector3d& velocity) const {
+Vector3d ActiveSetContactSolver::lateralSlip(const Entry& entry, const Vector3d& velocity) const {
   const Vector3d slip = velocity - entry.target;
   const Vector3d tangential = slip - entry.normal * entry.normal.dot(slip);
   return entry.creeps ? tangential
                       : Vector3d(tangential - entry.direction * entry.direction.dot(slip));
 }
 
-void ContactStep::addFriction(const Entry& entry, const Vector3d& velocity,
-                              linear::SymmetricBlockMatrix& matrix,
-                              linear::BlockVector& rhs) const {
+void ActiveSetContactSolver::addFriction(const Entry& entry, const Vector3d& velocity,
+                                         linear::SymmetricBlockMatrix& matrix,
+                                         linear::BlockVector& rhs) const {
   if (entry.friction == 0.0) return;
   const double resistance = lateralResistance(entry);
   const Vector3d& n = entry.normal;
@@ -141,25 +144,26 @@ void ContactStep::addFriction(const Entry& entry, const Vector3d& velocity,
       a_ * resistance * (Matrix3d::Identity() - n * n.transpose() - d * d.transpose());
 }
 
-void ContactStep::confine(linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const {
+void ActiveSetContactSolver::confine(linear::SymmetricBlockMatrix& matrix,
+                                     linear::BlockVector& rhs) const {
   matrix.confine(confined_, normals_, values_, rhs);
 }
 
-void ContactStep::removeNormal(linear::BlockVector& solution) const {
+void ActiveSetContactSolver::removeNormal(linear::BlockVector& solution) const {
   for (const Entry& entry : entries_) {
     if (!confined_[entry.particle]) continue;
     solution.col(entry.particle) -= entry.normal * entry.normal.dot(solution.col(entry.particle));
   }
 }
 
-void ContactStep::putNormal(linear::BlockVector& solution) const {
+void ActiveSetContactSolver::putNormal(linear::BlockVector& solution) const {
   removeNormal(solution);
   for (const Entry& entry : entries_) {
     if (confined_[entry.particle]) solution.col(entry.particle) += values_.col(entry.particle);
   }
 }
 
-bool ContactStep::update(const linear::BlockVector& solution, bool last) {
+bool ActiveSetContactSolver::update(const linear::BlockVector& solution, bool last) {
   constexpr double kFrictionTolerance = 1e-3;  // of the friction of all contacts together
   free_matrix_.multiply(solution, residual_);
   residual_ -= free_rhs_;
@@ -182,7 +186,7 @@ bool ContactStep::update(const linear::BlockVector& solution, bool last) {
 }
 
 /// How far friction in this round was from what it is by the round's solution (N).
-double ContactStep::frictionChange(const Entry& entry, const Entry& before) const {
+double ActiveSetContactSolver::frictionChange(const Entry& entry, const Entry& before) const {
   const double limit = entry.friction * entry.load;
   if (!entry.creeps) {
     return entry.friction * (entry.load * entry.direction - before.load * before.direction).norm();
@@ -193,7 +197,7 @@ double ContactStep::frictionChange(const Entry& entry, const Entry& before) cons
 }
 
 /// For the next stage, and for who asks what the contact did.
-void ContactStep::keep(const Entry& entry, State state, const Vector3d& force) {
+void ActiveSetContactSolver::keep(const Entry& entry, State state, const Vector3d& force) {
   reactions_[entry.contact].state = state;
   reactions_[entry.contact].force = state == State::kOpen ? Vector3d(0.0, 0.0, 0.0) : force;
   memory_[entry.particle] = entry;
@@ -202,7 +206,8 @@ void ContactStep::keep(const Entry& entry, State state, const Vector3d& force) {
 
 /// What the contact does in the next round.
 /// @param force that the contact had to exert in this one, N
-void ContactStep::judge(const Vector3d& velocity, const Vector3d& force, Entry& entry) const {
+void ActiveSetContactSolver::judge(const Vector3d& velocity, const Vector3d& force,
+                                   Entry& entry) const {
   const Vector3d relative = velocity - entry.target;
   if (entry.state == State::kOpen) {
     if (a_ * entry.normal.dot(relative) >= -kPenetration) return;
@@ -235,9 +240,10 @@ void ContactStep::judge(const Vector3d& velocity, const Vector3d& force, Entry& 
   }
 }
 
-bool ContactStep::addNewton(const Velocities& velocities, linear::SymmetricBlockMatrix& matrix,
-                            linear::BlockVector& rhs, std::vector<char>& fixed,
-                            linear::BlockVector& prescribed) {
+bool ActiveSetContactSolver::addNewton(const Velocities& velocities,
+                                       linear::SymmetricBlockMatrix& matrix,
+                                       linear::BlockVector& rhs, std::vector<char>& fixed,
+                                       linear::BlockVector& prescribed) {
   fixed = attached_;
   std::fill(confined_.begin(), confined_.end(), 0);
   bool changed = false;
@@ -255,14 +261,14 @@ bool ContactStep::addNewton(const Velocities& velocities, linear::SymmetricBlock
   return changed;
 }
 
-bool ContactStep::enter(const Velocities& velocities) const {
+bool ActiveSetContactSolver::enter(const Velocities& velocities) const {
   return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
     const Vector3d relative = velocities[entry.particle] - entry.target;
     return !(a_ * entry.normal.dot(relative) >= -2.0 * kPenetration);
   });
 }
 
-double ContactStep::frictionPotential(const Velocities& velocities) const {
+double ActiveSetContactSolver::frictionPotential(const Velocities& velocities) const {
   double potential = 0.0;
   for (const Entry& entry : entries_) {
     if (entry.state != State::kSlips || entry.friction == 0.0) continue;
@@ -274,7 +280,7 @@ double ContactStep::frictionPotential(const Velocities& velocities) const {
   return potential;
 }
 
-void ContactStep::settle(Velocities& velocities) const {
+void ActiveSetContactSolver::settle(Velocities& velocities) const {
   for (const Entry& entry : entries_) {
     Vector3d& velocity = velocities[entry.particle];
     const State state = reactions_[entry.contact].state;
@@ -285,7 +291,7 @@ void ContactStep::settle(Velocities& velocities) const {
   }
 }
 
-bool ContactStep::holding() const {
+bool ActiveSetContactSolver::holding() const {
   return std::any_of(reactions_.begin(), reactions_.end(), [](const ContactReaction& reaction) {
     return reaction.state != State::kOpen;
   });

@@ -1,4 +1,4 @@
-#include "haptex/exoskeleton/protocol/device_end.h"
+#include "haptex/exoskeleton/protocol/firmware_model.h"
 
 #include <algorithm>
 
@@ -7,13 +7,13 @@ namespace {
 
 // s. A lag behind the driver is made up for by this much: its clock may be faster, and commands
 // that keep changing must not leave the torques behind for long.
-constexpr double kShortPeriod = 0.95 * seconds(DeviceEnd::kCommandPeriod);
+constexpr double kShortPeriod = 0.95 * seconds(FirmwareModel::kCommandPeriod);
 
 }  // namespace
 
-DeviceEnd::DeviceEnd(const Identity& identity) : identity_(identity) {}
+FirmwareModel::FirmwareModel(const Identity& identity) : identity_(identity) {}
 
-void DeviceEnd::receive(const std::uint8_t* bytes, std::size_t count, Time now) {
+void FirmwareModel::receive(const std::uint8_t* bytes, std::size_t count, Time now) {
   if (count == 0) return;
   // Else the first bytes of a dead driver's last command would wait for something to complete them.
   if (now - last_bytes_ >= kInterrupted) parser_.discard();
@@ -25,7 +25,7 @@ void DeviceEnd::receive(const std::uint8_t* bytes, std::size_t count, Time now) 
   }
 }
 
-void DeviceEnd::takeHello(const Frame& frame) {
+void FirmwareModel::takeHello(const Frame& frame) {
   const auto hello = decodeHello(frame);
   if (!hello) return;
   to_answer_ = true;
@@ -34,7 +34,7 @@ void DeviceEnd::takeHello(const Frame& frame) {
   command_number_ = frame.sequence;
 }
 
-void DeviceEnd::takeCommand(const Frame& frame, Time now) {
+void FirmwareModel::takeCommand(const Frame& frame, Time now) {
   const int ahead = numbersAhead(frame.sequence, command_number_);
   if (!greeted_ || ahead == 0) return;
   // After a Hello the command of a dead driver may still come twice, with a number that looks new.
@@ -51,7 +51,7 @@ void DeviceEnd::takeCommand(const Frame& frame, Time now) {
 // The driver took a period for each change of at most its slew limit. A line that is on its way
 // keeps its speed: a steady command is reached in time, and one that moves on no faster than it
 // does itself.
-void DeviceEnd::approach(const DeviceCommand& command, int ahead, Time now) {
+void FirmwareModel::approach(const DeviceCommand& command, int ahead, Time now) {
   const PerFinger<MotorVector> present = torques(now);
   const Time rise = last_command_ ? kReturn : kRamp;
   const double fallen = (1.0 - watchdogShare(now)) * seconds(rise);
@@ -72,24 +72,24 @@ void DeviceEnd::approach(const DeviceCommand& command, int ahead, Time now) {
   reached_ = now + std::chrono::round<Time>(std::chrono::duration<double>(duration));
 }
 
-void DeviceEnd::hangUp(Time now) { ramp_start_ = std::min(ramp_start_, now); }
+void FirmwareModel::hangUp(Time now) { ramp_start_ = std::min(ramp_start_, now); }
 
-Bytes DeviceEnd::answer() {
+Bytes FirmwareModel::answer() {
   if (!to_answer_) return {};
   to_answer_ = false;
   return encode(identity_, state_number_, outgoing_);
 }
 
-double DeviceEnd::watchdogShare(Time now) const {
+double FirmwareModel::watchdogShare(Time now) const {
   if (!last_command_) return 0.0;
   return std::clamp(seconds(ramp_start_ + kRamp - now) / seconds(kRamp), 0.0, 1.0);
 }
 
-bool DeviceEnd::isOff(Time now) const { return !last_command_ || now >= ramp_start_ + kRamp; }
+bool FirmwareModel::isOff(Time now) const { return !last_command_ || now >= ramp_start_ + kRamp; }
 
-Time DeviceEnd::lineEnd(Time now) const { return std::min(now, ramp_start_); }
+Time FirmwareModel::lineEnd(Time now) const { return std::min(now, ramp_start_); }
 
-PerFinger<MotorVector> DeviceEnd::torques(Time now) const {
+PerFinger<MotorVector> FirmwareModel::torques(Time now) const {
   double way = 1.0;
   if (last_command_) {
     const Time until = lineEnd(now);
@@ -105,7 +105,7 @@ PerFinger<MotorVector> DeviceEnd::torques(Time now) const {
   return torques;
 }
 
-DeviceCommand DeviceEnd::command(Time now) {
+DeviceCommand FirmwareModel::command(Time now) {
   if (isOff(now) || command_.mode == DriveMode::kOff) return {};
   DeviceCommand command;
   command.mode = command_.mode;
@@ -113,7 +113,7 @@ DeviceCommand DeviceEnd::command(Time now) {
   return command;
 }
 
-Bytes DeviceEnd::report(DeviceState state, Time now) {
+Bytes FirmwareModel::report(DeviceState state, Time now) {
   if (!greeted_) return {};
   state.last_command = command_number_;
   state.mode = command(now).mode;

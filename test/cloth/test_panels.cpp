@@ -1,0 +1,166 @@
+// Panels that are sewn together, against sheets in one piece.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "derivatives.h"
+#include "fixtures.h"
+#include "haptex/cloth/dynamics/integrator.h"
+
+namespace haptex::cloth {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// The square cut along its middle line: the right half lies elsewhere on its fabric, turned, which
+/// its grain takes back.
+mesh::ClothMesh sewnSquare(int cells, int right_fabric = 0, double turn = 0.7) {
+  mesh::ClothMesh mesh = square(cells);
+  mesh.panels = {{0, 0.0}, {right_fabric, turn}};
+  const double middle = 0.5 * mesh.rest_coordinates.back().x();
+  const Eigen::Rotation2Dd turned(turn);
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    std::array<Vector2d, 3> corners;
+    double u = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      corners[i] = mesh.rest_coordinates[triangle[i]];
+      u += corners[i].x() / 3.0;
+    }
+    const bool right = u > middle;
+    for (Vector2d& corner : corners) {
+      if (right) corner = turned * (corner + Vector2d(0.3, -0.1));
+    }
+    mesh.triangle_panels.push_back(right ? 1 : 0);
+    mesh.corner_coordinates.push_back(corners);
+  }
+  return mesh;
+}
+
+class SewnCloth : public testing::TestWithParam<Elasticity> {};
+INSTANTIATE_TEST_SUITE_P(Elasticity, SewnCloth,
+                         testing::Values(Elasticity::kGreenLagrange, Elasticity::kCorotational));
+
+TEST_P(SewnCloth, OfOneFabricIsTheSheetInOnePiece) {
+  ModelledEffects effects;
+  effects.viscosity = true;
+  effects.gravity = {0.0, 0.0, -9.8};
+  effects.elasticity = GetParam();
+  effects.air = Air{};
+  const Cloth sheet(square(4), stiffeningFabric(), effects);
+  const Cloth sewn(sewnSquare(4), stiffeningFabric(), effects);
+  const ClothState state = randomState(sheet, 0.003, 1.0, 3);
+  std::vector<Vector3d> whole, parts;
+  sheet.computeForces(state, whole);
+  sewn.computeForces(state, parts);
+  double scale = 0.0;
+  for (const Vector3d& force : whole) scale = std::max(scale, force.norm());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_LT((whole[i] - parts[i]).norm(), 1e-12 * scale);
+    // The coordinates on the right are 20 times a cell away from the origin.
+    EXPECT_NEAR(sheet.masses()[i], sewn.masses()[i], 1e-13 * sheet.masses()[i]);
+  }
+  EXPECT_NEAR(sheet.potentialEnergy(state), sewn.potentialEnergy(state),
+              1e-12 * std::abs(sheet.potentialEnergy(state)));
+}
+
+TEST_P(SewnCloth, StepsAsTheSheetInOnePiece) {
+  ModelledEffects effects;
+  effects.gravity = {0.0, 0.0, -9.8};
+  effects.elasticity = GetParam();
+  StepSettings settings;
+  settings.newton_iterations = 3;
+  settings.tolerance = 1e-12;
+  std::vector<ClothState> ends;
+  for (const mesh::ClothMesh& mesh : {square(4), sewnSquare(4)}) {
+    Cloth cloth(mesh, stiffeningFabric(), effects);
+    ClothState state = cloth.initialState();
+    for (const int particle : mesh::sideParticles(mesh, mesh::Side::kTop)) {
+      cloth.attach(particle, {state.positions[particle]});
+    }
+    Integrator integrator(cloth, settings);
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(integrator.step(cloth, state, 0.01).accepted);
+    ends.push_back(state);
+  }
+  for (std::size_t i = 0; i < ends[0].positions.size(); ++i) {
+    EXPECT_LT((ends[0].positions[i] - ends[1].positions[i]).norm(), 1e-9);
+  }
+}
+
+TEST(Panels, OfTwoFabricsInSeriesCarryTheSameForce) {
+  // Linear in Green strain and stretched along weft: P(l) = k l (l^2 - 1) / 2.
+  material::Fabric soft = linearFabric(), stiff = linearFabric();
+  soft.weft.elastic = material::StrainStressCurve::linear(100.0);
+  stiff.weft.elastic = material::StrainStressCurve::linear(400.0);
+  const Cloth cloth(sewnSquare(4, 1), {soft, stiff}, {});
+  const double stretch = 1.05;
+  const double force = 100.0 * stretch * (stretch * stretch - 1.0) / 2.0;
+  double other = 1.0;
+  for (int i = 0; i < 20; ++i) {
+    other -=
+        (200.0 * other * (other * other - 1.0) - force) / (200.0 * (3.0 * other * other - 1.0));
+  }
+  ClothState state = cloth.initialState();
+  const double side = cloth.mesh().rest_coordinates.back().x();
+  double seam_length = 0.0;
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    const Vector2d& rest = cloth.mesh().rest_coordinates[i];
+    const double left = std::min(rest.x(), 0.5 * side), right = rest.x() - left;
+    state.positions[i] = {0.0, stretch * left + other * right, rest.y()};
+    seam_length = std::max(seam_length, rest.y());
+  }
+  std::vector<Vector3d> forces;
+  cloth.computeForces(state, forces);
+  double pull = 0.0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const double u = cloth.mesh().rest_coordinates[i].x();
+    if (u == 0.0) pull += forces[i].y();
+    if (u == 0.0 || u > 0.999 * side) continue;
+    EXPECT_NEAR(forces[i].y(), 0.0, 1e-12);
+  }
+  EXPECT_NEAR(pull, force * seam_length, 1e-12);
+}
+
+TEST(Panels, WeighWhatTheirFabricsWeigh) {
+  material::Fabric light = linearFabric(), heavy = linearFabric();
+  heavy.areal_density = 3.0 * light.areal_density;
+  const Cloth cloth(sewnSquare(4, 1), {light, heavy}, {});
+  double mass = 0.0;
+  for (const double particle : cloth.masses()) mass += particle;
+  const double area = std::pow(cloth.mesh().rest_coordinates.back().x(), 2);
+  EXPECT_NEAR(mass, 2.0 * light.areal_density * area, 1e-12);
+}
+
+TEST(Panels, BendEachByItself) {
+  material::Fabric fabric = linearFabric();
+  fabric.bending = {1e-5, 2e-5};
+  fabric.bending_hysteresis = {1e-3, 1e-3};
+  ModelledEffects effects;
+  effects.bending = effects.bending_hysteresis = true;
+  const Cloth cloth(sewnSquare(6), fabric, effects);
+  ClothState state = cloth.initialState();
+  const double flat = cloth.potentialEnergy(state);
+  // Folded along the seam: nothing is bent inside of the panels.
+  const double middle = state.positions[3].y();
+  for (Vector3d& position : state.positions) {
+    if (position.y() > middle) position = {position.y() - middle, middle, position.z()};
+  }
+  EXPECT_NEAR(cloth.potentialEnergy(state), flat, 1e-15);
+  // Rolled, with friction on the way: forces are the gradient of the energy.
+  state = randomState(cloth, 0.002, 0.0, 5);
+  cloth.forget(state);
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    state.positions[i].x() += 1e-4 * std::sin(3.0 * static_cast<double>(i));
+  }
+  expectExactDerivatives(cloth, state, {0, 3, 24, 30});
+}
+
+TEST(Panels, ThatCannotBeModelledAreRefused) {
+  ModelledEffects effects;
+  EXPECT_THROW(Cloth(sewnSquare(2, 1), linearFabric(), effects), std::invalid_argument);
+  effects.elasticity = Elasticity::kMassSpring;
+  EXPECT_THROW(Cloth(sewnSquare(2), linearFabric(), effects), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace haptex::cloth
