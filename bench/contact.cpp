@@ -15,6 +15,7 @@ namespace {
 
 using namespace haptex::oracles;
 using Eigen::Vector3d;
+using haptex::base::Finger;
 using haptex::bench::printLine;
 using haptex::material::Fabric;
 
@@ -39,9 +40,9 @@ void writeFriction(const Fabric& fabric, std::ostream& csv) {
     move(hand, {0.0, 0.0, way}, 0.0, std::abs(way) / 0.005, kTick,
          [&](const Fingertips& fingertips) {
            loop.step(fingertips);
-           const double place = fingertips[0]->position.z() - kMiddle.z();
+           const double place = fingertips[Finger::kIndex]->position.z() - kMiddle.z();
            double normal = 0.0;
-           for (const auto& contact : loop.layer().contacts()) {
+           for (const auto& contact : loop.layer().contacts().values) {
              normal += std::abs(contact.force.x());
            }
            csv << "friction," << place << ',' << -forceOnFingertips(loop.layer()).z() << '\n';
@@ -63,7 +64,7 @@ void writePress(const Fabric& fabric, int refinement, std::ostream& csv) {
         kMiddle + Vector3d(kIndexRadius + loop.layer().law().halfThickness() - depth, 0.0, 0.0);
     loop.rest({fingertip, std::nullopt}, 0.05);
     csv << "press_level_" << refinement << ',' << depth << ','
-        << loop.layer().contacts()[0].force.x() << '\n';
+        << loop.layer().contacts()[Finger::kIndex].force.x() << '\n';
   }
 }
 
@@ -94,7 +95,7 @@ void compareWithReference(const Fabric& fabric, int refinement) {
   sample.haptics.refinement = refinement;
   RefinedCloth reference(sample);
   stretch(0.05, [&](const Fingertips& fingertips) { reference.step(fingertips, 0.05); });
-  const double exact = (reference.force(0) + reference.force(1)).z();
+  const double exact = (reference.force(Finger::kIndex) + reference.force(Finger::kThumb)).z();
   for (double margin : {4e-3, 8e-3, 12e-3}) {
     sample.haptics.margin = margin;
     sample.haptics.most_elements = 200;  // the margin alone decides

@@ -53,7 +53,7 @@ class Computation {
     const std::vector<char> attached(settings_.mesh.initial_positions.size(), 0);
     for (std::size_t elements = 1; layer_.particleCount() < 2u * particles_per_patch; ++elements) {
       std::vector<int> chosen;
-      for (const Vector3d& place : kPlaces) {
+      for (const Vector3d& place : kPlaces.values) {
         hierarchy.query(proximity::Cursor::point(place), {1.0, elements}, near_);
         for (const proximity::NearElement& element : near_) chosen.push_back(element.triangle);
       }
@@ -65,13 +65,13 @@ class Computation {
   std::vector<double> times(int milliseconds) {
     std::vector<double> result;
     for (int i = 0; i < milliseconds; ++i) {
-      contact::PerFingertip<std::optional<contact::Fingertip>> fingertips;
-      for (int f = 0; f < contact::kFingertips; ++f) {
-        contact::Fingertip& fingertip = fingertips[f].emplace();
+      contact::Fingertips fingertips;
+      for (const Finger finger : kFingers) {
+        contact::Fingertip& fingertip = fingertips[finger].emplace();
         fingertip.radius = 0.008;
         const double depth = 1e-3 + 1e-3 * std::sin(0.01 * i);
         fingertip.position =
-            kPlaces[f] + Vector3d(fingertip.radius - depth, 0.0, 2e-3 * std::sin(0.02 * i));
+            kPlaces[finger] + Vector3d(fingertip.radius - depth, 0.0, 2e-3 * std::sin(0.02 * i));
       }
       const auto start = std::chrono::steady_clock::now();
       layer_.step(fingertips);
@@ -86,8 +86,8 @@ class Computation {
   std::size_t particles() const { return layer_.particleCount(); }
 
  private:
-  const contact::PerFingertip<Vector3d> kPlaces = {Vector3d(0.0, -0.045, -0.1),
-                                                   Vector3d(0.0, 0.045, -0.1)};
+  const base::PerFinger<Vector3d> kPlaces{
+      {Vector3d(0.0, -0.045, -0.1), Vector3d(0.0, 0.045, -0.1)}};
   oracles::HapticLoopSettings settings_;
   contact::HapticLayer layer_;
   std::vector<proximity::NearElement> near_;

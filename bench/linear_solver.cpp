@@ -5,11 +5,13 @@
 // merged (elimination.cpp) was chosen by the factorisation times printed here. The systems are
 // those of a swinging sheet of the linear reference at 12.5 ms. The patch cases are the parts of a
 // 1 ms step of a sheet as small as the one that follows a fingertip, of wool with viscosity, with
-// and without the matrix blocks that bending needs.
+// and without the matrix blocks that bending needs. cholmod is CHOLMOD's supernodal factorisation
+// of the same systems, by scalars and with OpenBLAS on one thread.
 #include "haptex/linear/linear_solver.h"
 
 #include <Eigen/LU>
 
+#include "cholmod.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/material/fabric_file.h"
 #include "tab_lines.h"
@@ -60,6 +62,30 @@ void factorisation(benchmark::State& run, int cells) {
     x = system.rhs;
     cholesky.solve(x);
   }
+}
+
+/// With the system as scalars already: what a program that assembles that way pays.
+void cholmod(benchmark::State& run, int cells) {
+  const System system = makeSystem(cells);
+  bench::Cholmod solver(system.matrix);
+  const Eigen::SparseMatrix<double> scalars = bench::Cholmod::scalars(system.matrix);
+  Eigen::VectorXd x;
+  for (auto _ : run) {
+    if (!solver.factorise(scalars)) run.SkipWithError("not positive definite");
+    x = solver.solve(system.rhs);
+  }
+}
+
+/// |x - y| / |y| of the block factorisation's x and CHOLMOD's y.
+double differenceToCholmod(const System& system) {
+  linear::BlockCholesky cholesky(system.matrix);
+  bench::Cholmod solver(system.matrix);
+  cholesky.factorise(system.matrix);
+  solver.factorise(bench::Cholmod::scalars(system.matrix));
+  linear::BlockVector x = system.rhs;
+  cholesky.solve(x);
+  const Eigen::VectorXd y = solver.solve(system.rhs);
+  return (Eigen::Map<const Eigen::VectorXd>(x.data(), x.size()) - y).norm() / y.norm();
 }
 
 void keptFactorisation(benchmark::State& run, int cells) {
@@ -174,6 +200,8 @@ int main(int argc, char** argv) {
     benchmark::RegisterBenchmark(("linear_solver/factorise_and_solve/" + triangles).c_str(),
                                  factorisation, count)
         ->Iterations(kRuns);
+    benchmark::RegisterBenchmark(("linear_solver/cholmod/" + triangles).c_str(), cholmod, count)
+        ->Iterations(kRuns);
     benchmark::RegisterBenchmark(("linear_solver/kept_factorise/" + triangles).c_str(),
                                  keptFactorisation, count)
         ->Iterations(kRuns);
@@ -206,6 +234,11 @@ int main(int argc, char** argv) {
     const double per_block = iteration_time / blocks;
     bench::printLine("linear_solver/iterations_per_factorisation/" + triangles,
                      factorisation_time / iteration_time, "iterations");
+    bench::printLine("linear_solver/factorise_and_solve_over_cholmod/" + triangles,
+                     factorisation_time / reporter.time("linear_solver/cholmod/" + triangles),
+                     "ratio");
+    bench::printLine("linear_solver/difference_to_cholmod/" + triangles,
+                     differenceToCholmod(system), "ratio");
     bench::printLine("linear_solver/operation_over_block/" + triangles, per_operation / per_block,
                      "ratio");
     bench::printLine(

@@ -84,12 +84,34 @@ haptex_environment() {
   set -u
 }
 
-# Installs and builds what all scripts but scripts/test need, and enters the devel space.
+# Shows the per cent of a build that its output on standard input tells: in one line of a terminal,
+# or a line for every ten.
+haptex_progress() {
+  local line percent shown=0
+  while read -r line; do
+    [[ "$line" =~ ^\[\ *([0-9]+)%\] ]] || continue
+    percent="${BASH_REMATCH[1]}"
+    if [ -t 2 ]; then
+      printf '\rBuilding: %3d %%' "$percent" >&2
+    elif [ "$percent" -ge "$((shown + 10))" ]; then
+      shown="$percent"
+      echo "Building: $percent %" >&2
+    fi
+  done
+  if [ -t 2 ]; then echo >&2; fi
+}
+
+# haptex_setup [TARGET...]: installs what is missing, builds everything or some targets, and enters
+# the devel space.
 haptex_setup() {
   haptex_install_packages
   echo "Building in $haptex_root/build" >&2
   haptex_configure build || haptex_die "configuring failed"
-  haptex_compile build || haptex_die "building failed"
+  cmake --build "$haptex_root/build" -j "$(nproc)" --target "${@:-all}" 2>&1 |
+    tee -a "$haptex_root/build/build.log" | haptex_progress || {
+    tail -n 40 "$haptex_root/build/build.log" >&2
+    haptex_die "building failed; the whole log: $haptex_root/build/build.log"
+  }
   haptex_environment "$haptex_root/build/devel/setup.bash"
 }
 

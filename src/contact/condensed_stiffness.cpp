@@ -6,8 +6,12 @@
 namespace haptex::contact {
 namespace {
 
+using base::Finger;
+using base::kFingers;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+
+constexpr int kColumns = 3 * static_cast<int>(kFingers.size());
 
 /// The nearest symmetric positive semidefinite matrix (Frobenius norm).
 Matrix3d positivePart(const Matrix3d& matrix) {
@@ -20,25 +24,26 @@ Matrix3d positivePart(const Matrix3d& matrix) {
 }  // namespace
 
 void CondensedStiffness::clear() {
-  for (int f = 0; f < kFingertips; ++f) {
-    condensed_[f].setZero();
-    known_direct_[f].setZero();
-    direct_[f].setZero();
+  for (const Finger finger : kFingers) {
+    condensed_[finger].setZero();
+    known_direct_[finger].setZero();
+    direct_[finger].setZero();
   }
 }
 
 void CondensedStiffness::update(Patch& patch, double h) {
-  for (int f = 0; f < kFingertips; ++f) {
-    direct_[f].setZero();
-    for (const TouchedParticle& touched : patch.linearised(f)) direct_[f] += touched.tangent;
-    if (!patch.linearised(f).empty()) continue;
-    condensed_[f].setZero();
-    known_direct_[f].setZero();
+  for (const Finger finger : kFingers) {
+    direct_[finger].setZero();
+    for (const TouchedParticle& touched : patch.linearised(finger))
+      direct_[finger] += touched.tangent;
+    if (!patch.linearised(finger).empty()) continue;
+    condensed_[finger].setZero();
+    known_direct_[finger].setZero();
   }
   // The next direction of a fingertip that touches.
-  for (int tried = 0; tried < 3 * kFingertips; ++tried) {
-    next_ = (next_ + 1) % (3 * kFingertips);
-    if (!patch.linearised(next_ / 3).empty()) {
+  for (int tried = 0; tried < kColumns; ++tried) {
+    next_ = (next_ + 1) % kColumns;
+    if (!patch.linearised(kFingers[next_ / 3]).empty()) {
       computeColumn(patch, h);
       return;
     }
@@ -46,26 +51,26 @@ void CondensedStiffness::update(Patch& patch, double h) {
 }
 
 void CondensedStiffness::computeColumn(Patch& patch, double h) {
-  const int f = next_ / 3;
+  const Finger finger = kFingers[next_ / 3];
   const int direction = next_ % 3;
-  const linear::BlockVector& solution = patch.respond(f, direction);
-  Vector3d change = direct_[f].col(direction);
-  for (const TouchedParticle& touched : patch.linearised(f)) {
+  const linear::BlockVector& solution = patch.respond(finger, direction);
+  Vector3d change = direct_[finger].col(direction);
+  for (const TouchedParticle& touched : patch.linearised(finger)) {
     change -= h * h * touched.tangent * solution.col(touched.particle);
   }
-  condensed_[f].col(direction) = change;
-  known_direct_[f][direction] = direct_[f].col(direction).norm();
+  condensed_[finger].col(direction) = change;
+  known_direct_[finger][direction] = direct_[finger].col(direction).norm();
 }
 
-Matrix3d CondensedStiffness::of(int f) const {
+Matrix3d CondensedStiffness::of(Finger finger) const {
   double scale = 1.0;
   for (int direction = 0; direction < 3; ++direction) {
-    const double now = direct_[f].col(direction).norm();
-    if (now < known_direct_[f][direction]) {
-      scale = std::min(scale, now / known_direct_[f][direction]);
+    const double now = direct_[finger].col(direction).norm();
+    if (now < known_direct_[finger][direction]) {
+      scale = std::min(scale, now / known_direct_[finger][direction]);
     }
   }
-  return scale * positivePart(condensed_[f]);
+  return scale * positivePart(condensed_[finger]);
 }
 
 }  // namespace haptex::contact

@@ -8,6 +8,8 @@
 namespace haptex::contact {
 namespace {
 
+using base::Finger;
+using base::kFingers;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -82,7 +84,7 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric,
     whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabric_, law_);
   }
   loads_.reserve(cloth::Cloth::kMaxPointLoads);
-  for (FingertipContact& contact : contacts_) contact.points.reserve(kMaxContactPoints);
+  for (FingertipContact& contact : contacts_.values) contact.points.reserve(kMaxContactPoints);
 }
 
 std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangles,
@@ -146,7 +148,7 @@ void HapticLayer::startAgain() {
   if (patch_) patch_->start(motion_);
   stiffness_.clear();
   loads_.clear();
-  for (FingertipContact& contact : contacts_) {
+  for (FingertipContact& contact : contacts_.values) {
     std::vector<ContactPoint> points = std::move(contact.points);
     points.clear();
     contact = FingertipContact();
@@ -154,10 +156,11 @@ void HapticLayer::startAgain() {
   }
 }
 
-void HapticLayer::step(const PerFingertip<std::optional<Fingertip>>& fingertips) {
+void HapticLayer::step(const Fingertips& fingertips) {
   fingertips_ = fingertips;
-  for (int f = 0; f < kFingertips; ++f) {
-    present_[f] = fingertips_[f] && isSound(*fingertips_[f]) ? &*fingertips_[f] : nullptr;
+  for (const Finger finger : kFingers) {
+    present_[finger] =
+        fingertips_[finger] && isSound(*fingertips_[finger]) ? &*fingertips_[finger] : nullptr;
   }
   loads_.clear();
   last_step_accepted_ = true;
@@ -179,12 +182,12 @@ void HapticLayer::stepPatch() {
   stiffness_.update(*patch_, settings_.time_step);
   const Particles particles{patch_->positions(), patch_->velocities(), patch_->areas(),
                             patch_->freeCount()};
-  for (int f = 0; f < kFingertips; ++f) {
-    const std::vector<TouchedParticle>& touched = patch_->contact(f).touched();
-    fillContact(f, touched, particles);
-    FingertipContact& contact = contacts_[f];
+  for (const Finger finger : kFingers) {
+    const std::vector<TouchedParticle>& touched = patch_->contact(finger).touched();
+    fillContact(finger, touched, particles);
+    FingertipContact& contact = contacts_[finger];
     if (!contact.touching) continue;
-    contact.stiffness = stiffness_.of(f);
+    contact.stiffness = stiffness_.of(finger);
     // Every point goes back with its own spring, although the patch behind it makes that softer: a
     // part of the cloth that hangs around the fingertip flutters from one large-scale step to the
     // next if less holds it. Equilibrium takes some more steps for it.
@@ -215,12 +218,12 @@ Vector3d HapticLayer::aheadOf(const FingertipContact& contact, const Matrix3d& s
 
 void HapticLayer::stepWholeCloth() {
   whole_cloth_->step(present_);
-  for (int f = 0; f < kFingertips; ++f) {
-    const std::vector<TouchedParticle>& touched = whole_cloth_->contact(f).touched();
-    fillContact(f, touched, whole_cloth_->particles());
-    FingertipContact& contact = contacts_[f];
+  for (const Finger finger : kFingers) {
+    const std::vector<TouchedParticle>& touched = whole_cloth_->contact(finger).touched();
+    fillContact(finger, touched, whole_cloth_->particles());
+    FingertipContact& contact = contacts_[finger];
     if (!contact.touching) continue;
-    contact.stiffness = whole_cloth_->stiffness(f, settings_.time_step);
+    contact.stiffness = whole_cloth_->stiffness(finger, settings_.time_step);
     sendBack(
         contact, touched, [this](int particle) { return whole_cloth_->restCoordinates(particle); },
         [this](const TouchedParticle& point) {
@@ -252,16 +255,16 @@ void HapticLayer::sendBack(FingertipContact& contact, const std::vector<TouchedP
   contact.fabric_velocity = contact.to_fabric * contact.sliding_velocity;
 }
 
-void HapticLayer::fillContact(int f, const std::vector<TouchedParticle>& touched,
+void HapticLayer::fillContact(Finger finger, const std::vector<TouchedParticle>& touched,
                               const Particles& particles) {
-  FingertipContact& contact = contacts_[f];
+  FingertipContact& contact = contacts_[finger];
   std::vector<ContactPoint> points = std::move(contact.points);
   points.clear();
   contact = FingertipContact();
   contact.points = std::move(points);
   contact.touching = !touched.empty();
   if (!contact.touching) return;
-  const Fingertip& fingertip = *present_[f];
+  const Fingertip& fingertip = *present_[finger];
   contact.position = fingertip.position;
   contact.velocity = fingertip.velocity;
   double slipping = 0.0;

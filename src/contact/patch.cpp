@@ -9,6 +9,8 @@
 namespace haptex::contact {
 namespace {
 
+using base::Finger;
+using base::kFingers;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -59,7 +61,7 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabr
       forces_(forcesOn(cut_.mesh, fabric, effects)),
       matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, forces_.pairs()),
       solver_(leadingPattern(matrix_, cut_.free_count)),
-      contacts_{SphereContact(law, cut_.free_count), SphereContact(law, cut_.free_count)},
+      contacts_{{SphereContact(law, cut_.free_count), SphereContact(law, cut_.free_count)}},
       rhs_(3, cut_.supports.size()),
       solution_(3, cut_.free_count) {
   forces_.bind(matrix_);
@@ -71,8 +73,8 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabr
   detours_ = state_.positions;
   tethers_.assign(count, 0.0);
   contact_forces_.assign(count, 0.0);
-  for (auto& touched : linearised_) touched.reserve(cut_.free_count);
-  for (auto& responses : responses_) {
+  for (auto& touched : linearised_.values) touched.reserve(cut_.free_count);
+  for (auto& responses : responses_.values) {
     for (linear::BlockVector& response : responses) response.setZero(3, cut_.free_count);
   }
 }
@@ -92,17 +94,17 @@ void Patch::start(const LargeScaleMotion& motion) {
     tethers_[i] = 0.0;
     contact_forces_[i] = 0.0;
   }
-  for (int f = 0; f < kFingertips; ++f) {
-    contacts_[f].clear();
-    linearised_[f].clear();
-    for (linear::BlockVector& response : responses_[f]) response.setZero();
+  for (const Finger finger : kFingers) {
+    contacts_[finger].clear();
+    linearised_[finger].clear();
+    for (linear::BlockVector& response : responses_[finger]) response.setZero();
   }
 }
 
 void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
   start(motion);
-  const bool touches =
-      !other.contacts_[0].touched().empty() || !other.contacts_[1].touched().empty();
+  const bool touches = !other.contacts_[Finger::kIndex].touched().empty() ||
+                       !other.contacts_[Finger::kThumb].touched().empty();
   auto theirs = other.cut_.order.begin();
   for (int i : cut_.order) {
     const Support& support = cut_.supports[i];
@@ -122,7 +124,8 @@ void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
       detours_[i] = state_.positions[i] - placeOnCloth(i, motion);
     } else if (was_free) {
       tethers_[i] = other.tethers_[k];
-      for (int f = 0; f < kFingertips; ++f) contacts_[f].adoptAnchor(i, other.contacts_[f], k);
+      for (const Finger finger : kFingers)
+        contacts_[finger].adoptAnchor(i, other.contacts_[finger], k);
     } else if (touches) {
       tethers_[i] = kFirstTether;
     }
@@ -152,16 +155,17 @@ void Patch::assemble(const LargeScaleMotion& motion, double h) {
   forces_.assembleLinearised(state_.ofForces(), {h, h}, matrix_, rhs_);
 }
 
-void Patch::addContact(const PerFingertip<const Fingertip*>& fingertips, double h) {
+void Patch::addContact(const base::PerFinger<const Fingertip*>& fingertips, double h) {
   for (int i = 0; i < cut_.free_count; ++i) {
     predicted_[i] = state_.positions[i] + h * state_.velocities[i];
   }
   const Particles particles{predicted_, state_.velocities, areas_, cut_.free_count};
-  for (int f = 0; f < kFingertips; ++f) {
-    linearised_[f].clear();
-    if (!fingertips[f]) continue;
-    for (const TouchedParticle& touched : contacts_[f].evaluate(particles, *fingertips[f])) {
-      linearised_[f].push_back(touched);
+  for (const Finger finger : kFingers) {
+    linearised_[finger].clear();
+    if (!fingertips[finger]) continue;
+    for (const TouchedParticle& touched :
+         contacts_[finger].evaluate(particles, *fingertips[finger])) {
+      linearised_[finger].push_back(touched);
       rhs_.col(touched.particle) += h * touched.force();
       matrix_.diagonal(touched.particle) += h * h * touched.stiffness + h * touched.damping;
     }
@@ -176,7 +180,7 @@ bool Patch::solve(double h) {
 }
 
 bool Patch::advance(const LargeScaleMotion& motion,
-                    const PerFingertip<const Fingertip*>& fingertips, double h) {
+                    const base::PerFinger<const Fingertip*>& fingertips, double h) {
   assemble(motion, h);
   addContact(fingertips, h);
   if (!solve(h)) return false;
@@ -187,24 +191,25 @@ bool Patch::advance(const LargeScaleMotion& motion,
   }
   state_.time += h;
   const Particles particles{state_.positions, state_.velocities, areas_, cut_.free_count};
-  for (int f = 0; f < kFingertips; ++f) {
-    if (!fingertips[f]) {
-      contacts_[f].clear();
+  for (const Finger finger : kFingers) {
+    if (!fingertips[finger]) {
+      contacts_[finger].clear();
       continue;
     }
-    for (const TouchedParticle& touched : contacts_[f].commit(particles, *fingertips[f])) {
+    for (const TouchedParticle& touched :
+         contacts_[finger].commit(particles, *fingertips[finger])) {
       contact_forces_[touched.particle] += touched.force().norm();
     }
   }
   return true;
 }
 
-const linear::BlockVector& Patch::respond(int fingertip, int direction) {
+const linear::BlockVector& Patch::respond(Finger finger, int direction) {
   rhs_.leftCols(cut_.free_count).setZero();
-  for (const TouchedParticle& touched : linearised_[fingertip]) {
+  for (const TouchedParticle& touched : linearised_[finger]) {
     rhs_.col(touched.particle) = touched.tangent.col(direction);
   }
-  linear::BlockVector& response = responses_[fingertip][direction];
+  linear::BlockVector& response = responses_[finger][direction];
   solver_.improve(matrix_, rhs_, response);
   return response;
 }

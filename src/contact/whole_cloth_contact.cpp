@@ -4,6 +4,8 @@
 
 namespace haptex::contact {
 
+using base::Finger;
+using base::kFingers;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -16,8 +18,8 @@ WholeClothContact::WholeClothContact(const mesh::ClothMesh& mesh, const material
       corner_of_(mesh.rest_coordinates.size(), 0),
       positions_(mesh.rest_coordinates.size(), Vector3d::Zero()),
       velocities_(positions_),
-      contacts_{SphereContact(law, mesh.rest_coordinates.size()),
-                SphereContact(law, mesh.rest_coordinates.size())} {
+      contacts_{{SphereContact(law, mesh.rest_coordinates.size()),
+                 SphereContact(law, mesh.rest_coordinates.size())}} {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::array<int, 3>& triangle = mesh.triangles[t];
     const Eigen::Vector2d a = rest_coordinates_[triangle[1]] - rest_coordinates_[triangle[0]];
@@ -42,19 +44,19 @@ Particles WholeClothContact::particles() const {
   return {positions_, velocities_, areas_, static_cast<int>(positions_.size())};
 }
 
-void WholeClothContact::step(const PerFingertip<const Fingertip*>& fingertips) {
-  for (int f = 0; f < kFingertips; ++f) {
-    if (fingertips[f]) {
-      contacts_[f].commit(particles(), *fingertips[f]);
+void WholeClothContact::step(const base::PerFinger<const Fingertip*>& fingertips) {
+  for (const Finger finger : kFingers) {
+    if (fingertips[finger]) {
+      contacts_[finger].commit(particles(), *fingertips[finger]);
     } else {
-      contacts_[f].clear();
+      contacts_[finger].clear();
     }
   }
 }
 
-Matrix3d WholeClothContact::stiffness(int fingertip, double h) const {
+Matrix3d WholeClothContact::stiffness(Finger finger, double h) const {
   Matrix3d sum = Matrix3d::Zero();
-  for (const TouchedParticle& touched : contacts_[fingertip].touched()) {
+  for (const TouchedParticle& touched : contacts_[finger].touched()) {
     const double inertia = areal_density_ * areas_[touched.particle] / (h * h);
     // k - k (k + m/h^2)^-1 k = m/h^2 (k + m/h^2)^-1 k
     Matrix3d both = touched.tangent;

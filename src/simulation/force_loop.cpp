@@ -19,8 +19,6 @@ std::optional<Time> timeOf(std::int64_t nanoseconds) {
   return nanoseconds < 0 ? std::nullopt : std::optional<Time>(Time(nanoseconds));
 }
 
-std::size_t index(Finger finger) { return static_cast<std::size_t>(finger); }
-
 }  // namespace
 
 ContactPicture::ContactPicture() {
@@ -203,9 +201,9 @@ contact::Fingertip ForceLoop::fingertip(Finger finger) const {
 void ForceLoop::step() {
   for (const Finger finger : kFingers) {
     if (isPresent(finger)) {
-      fingertips_[index(finger)] = view_.fingertips[finger] = fingertip(finger);
+      fingertips_[finger] = view_.fingertips[finger] = fingertip(finger);
     } else {
-      fingertips_[index(finger)].reset();
+      fingertips_[finger].reset();
     }
   }
   if (layer_) {
@@ -218,8 +216,8 @@ void ForceLoop::step() {
   static const contact::FingertipContact kNoContact;
   for (const Finger finger : kFingers) {
     Rendered& rendered = rendered_[finger];
-    const std::optional<contact::Fingertip>& fingertip = fingertips_[index(finger)];
-    rendered.contact = layer_ && fingertip ? layer_->contacts()[index(finger)] : kNoContact;
+    const std::optional<contact::Fingertip>& fingertip = fingertips_[finger];
+    rendered.contact = layer_ && fingertip ? layer_->contacts()[finger] : kNoContact;
     rendered.gain = liveness_.gain(finger);
     rendered.measured = inputs_[finger].pose.value().measured;
     rendered.contactor_forces.fill(0.0);

@@ -12,9 +12,11 @@
 namespace haptex::simulation {
 namespace {
 
+using base::Finger;
+using base::kFingers;
 using contact::Fingertip;
+using contact::Fingertips;
 using Eigen::Vector3d;
-using Fingertips = contact::PerFingertip<std::optional<Fingertip>>;
 
 constexpr double kRadius = 0.008;        // m, of the fingertips
 constexpr double kDepth = 1e-3;          // m
@@ -81,13 +83,14 @@ TouchCost measureTouch(const mesh::ClothMesh& mesh, const material::Fabric& fabr
   layer.receive(mesh.initial_positions, still, kStatePeriod);
   Fingertips near;
   std::vector<int> elements;
-  for (int f = 0; f < contact::kFingertips; ++f) {
-    near[f] = pressInto(mesh, (f + 1) * mesh.triangles.size() / (contact::kFingertips + 1));
-    const std::vector<int> found = elementsNear(mesh, *near[f], settings);
+  for (const Finger finger : kFingers) {
+    const std::size_t share = static_cast<std::size_t>(finger) + 1;
+    near[finger] = pressInto(mesh, share * mesh.triangles.size() / (kFingers.size() + 1));
+    const std::vector<int> found = elementsNear(mesh, *near[finger], settings);
     elements.insert(elements.end(), found.begin(), found.end());
   }
   Fingertips far = near;
-  for (auto& fingertip : far) fingertip->position.x() += 10.0;
+  for (auto& fingertip : far.values) fingertip->position.x() += 10.0;
   const std::vector<char> attached(mesh.initial_positions.size(), 0);
   TouchCost cost;
   cost.far_seconds = medianSeconds(milliseconds, [&](int) { layer.step(far); });
@@ -107,8 +110,8 @@ double measureTactile(const material::Fabric& fabric, int steps) {
   touched.forces.fill(kForce / touched.forces.size());
   double felt = 0.0;  // so that it has to be computed
   const double seconds = medianSeconds(steps, [&](int i) {
-    for (int finger = 0; finger < contact::kFingertips; ++finger) {
-      touched.placement.origin = {1e-4 * i, 0.01 * finger};
+    for (const Finger finger : kFingers) {
+      touched.placement.origin = {1e-4 * i, 0.01 * static_cast<int>(finger)};
       felt += tactile::arrayAmplitudes(surface, touched, {})[0][tactile::k40];
     }
   });

@@ -68,7 +68,7 @@ class TouchedRun {
     if (what == 0) hand.middle += extreme_.magnitude * random_.direction();
     if (what == 1) hand.velocity = random_.logarithmic(0.01, 10.0) * random_.direction();
     oracles::Fingertips fingertips = hand.fingertips();
-    if (random_.chance(0.3)) fingertips[random_.below(2)].reset();
+    if (random_.chance(0.3)) fingertips.values[random_.below(2)].reset();
     return fingertips;
   }
 
@@ -96,7 +96,7 @@ class TouchedRun {
   }
 
   void requireSoundContacts() {
-    for (const contact::FingertipContact& contact : loop_.layer().contacts()) {
+    for (const contact::FingertipContact& contact : loop_.layer().contacts().values) {
       const bool sound = contact.force.norm() <= mostForce() && contact.stiffness.allFinite() &&
                          contact.damping.allFinite();
       if (!sound) outcome_.failure = ExtremeFailure::kNotFinite;

@@ -11,13 +11,14 @@
 namespace haptex::studies {
 namespace {
 
-using contact::kFingertips;
+using base::Finger;
+using base::kFingers;
 using Eigen::Vector3d;
 // From a cell of the reference's mesh to the next, away from the fingertip: what is smooth there
 // needs cells in proportion to the distance.
 constexpr double kGrowth = 1.25;
 
-using Forces = contact::PerFingertip<Vector3d>;
+using Forces = base::PerFinger<Vector3d>;
 
 /// s, processor time of the calling thread: other programs do not count.
 double threadSeconds() {
@@ -40,7 +41,7 @@ int wholeMultiple(const char* name, double whole, double part) {
 
 int fingertipsOf(const oracles::PrescribedTouch& touch) {
   const oracles::Fingertips fingertips = touch.fingertips(0.0);
-  return static_cast<int>(std::count_if(fingertips.begin(), fingertips.end(),
+  return static_cast<int>(std::count_if(fingertips.values.begin(), fingertips.values.end(),
                                         [](const auto& tip) { return tip.has_value(); }));
 }
 
@@ -50,8 +51,8 @@ class Differences {
   explicit Differences(int fingertips) : fingertips_(fingertips) {}
 
   void add(const Forces& forces, const Forces& others) {
-    for (int f = 0; f < kFingertips; ++f) {
-      const double difference = (forces[f] - others[f]).norm();
+    for (const Finger finger : kFingers) {
+      const double difference = (forces[finger] - others[finger]).norm();
       squares_ += difference * difference;
       worst_ = base::largerOrNaN(worst_, difference);
     }
@@ -69,12 +70,13 @@ class Differences {
 
 /// What the driver makes of the last tick for a fingertip that has moved on.
 Forces rendered(const contact::HapticLayer& layer, const oracles::Fingertips& now) {
-  Forces forces{Vector3d::Zero(), Vector3d::Zero()};
-  for (int f = 0; f < kFingertips; ++f) {
-    const contact::FingertipContact& contact = layer.contacts()[f];
-    if (!contact.touching || !now[f]) continue;
-    forces[f] = contact.force - contact.stiffness * (now[f]->position - contact.position) -
-                contact.damping * (now[f]->velocity - contact.velocity);
+  Forces forces{{Vector3d::Zero(), Vector3d::Zero()}};
+  for (const Finger finger : kFingers) {
+    const contact::FingertipContact& contact = layer.contacts()[finger];
+    if (!contact.touching || !now[finger]) continue;
+    forces[finger] = contact.force -
+                     contact.stiffness * (now[finger]->position - contact.position) -
+                     contact.damping * (now[finger]->velocity - contact.velocity);
   }
   return forces;
 }
@@ -101,7 +103,7 @@ TouchReference computeReference(const oracles::PrescribedTouch& touch, double ce
   Differences from_half(fingertipsOf(touch)), from_zero(fingertipsOf(touch));
   for (std::size_t i = 0; i < half.forces.size(); ++i) {
     from_half.add(reference.record.forces[i], half.forces[i]);
-    from_zero.add(reference.record.forces[i], {Vector3d::Zero(), Vector3d::Zero()});
+    from_zero.add(reference.record.forces[i], {{Vector3d::Zero(), Vector3d::Zero()}});
   }
   reference.force = from_zero.rootMeanSquare();
   reference.error = from_half.rootMeanSquare();

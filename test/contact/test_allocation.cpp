@@ -36,7 +36,8 @@ TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
     layer.receive(mesh.initial_positions, rest, 0.02);
     layer.exchange(std::move(first));
     for (int i = 0; i < 50; ++i) layer.step({index, thumb});
-    touched = layer.contacts()[0].touching && layer.contacts()[1].touching;
+    touched = layer.contacts()[base::Finger::kIndex].touching &&
+              layer.contacts()[base::Finger::kThumb].touching;
     layer.receive(mesh.initial_positions, rest, 0.02);
     std::unique_ptr<Patch> old = layer.exchange(std::move(second));
     for (int i = 0; i < 50; ++i) layer.step({index, i % 2 == 0 ? thumb : unsound});

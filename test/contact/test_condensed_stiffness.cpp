@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <memory>
 
 #include "fixtures.h"
 
 namespace haptex::contact {
 namespace {
 
+using base::Finger;
+using base::kFingers;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -15,47 +18,54 @@ constexpr double kStep = 1e-3;  // s
 /// Two fingertips that pinch the middle of the small sample, settled, their stiffness known.
 class CondensedStiffnessTest : public testing::Test {
  protected:
-  CondensedStiffnessTest()
-      : motion_(mesh_.rest_coordinates.size()),
-        patch_(mesh_,
-               cutAndRefine(mesh_, topology_, trianglesAround(mesh_, {0.02, 0.02}, 0.01),
-                            nothingAttached(mesh_), 2),
-               fabric_, {true, Vector3d::Zero()}, law_) {
+  CondensedStiffnessTest() : motion_(mesh_.rest_coordinates.size()) {
     motion_.receive(mesh_.initial_positions, 0.02);
-    patch_.start(motion_);
-    tips_[0] = pressing(law_, kSmallSampleMiddle, 3e-4);
-    tips_[1] = tips_[0];
-    tips_[1].position.x() *= -1.0;
+    tips_[Finger::kIndex] = pressing(law_, kSmallSampleMiddle, 3e-4);
+    tips_[Finger::kThumb] = tips_[Finger::kIndex];
+    tips_[Finger::kThumb].position.x() *= -1.0;
+    patch_ = settled(stiffness_);
+  }
+
+  /// The same in every run.
+  std::unique_ptr<Patch> settled(CondensedStiffness& stiffness) const {
+    auto patch = std::make_unique<Patch>(
+        mesh_,
+        cutAndRefine(mesh_, topology_, trianglesAround(mesh_, {0.02, 0.02}, 0.01),
+                     nothingAttached(mesh_), 2),
+        fabric_, cloth::ModelledEffects{true, Vector3d::Zero()}, law_);
+    patch->start(motion_);
     for (int i = 0; i < 300; ++i) {
-      patch_.advance(motion_, {&tips_[0], &tips_[1]}, kStep);
-      stiffness_.update(patch_, kStep);
+      patch->advance(motion_, {&tips_[Finger::kIndex], &tips_[Finger::kThumb]}, kStep);
+      stiffness.update(*patch, kStep);
     }
+    return patch;
   }
 
   /// The cloth's force on a fingertip one step later, if the fingertips have moved then.
-  Vector3d forceAfter(int fingertip, const Vector3d& displacement_0,
-                      const Vector3d& displacement_1) const {
-    Patch patch = patch_;
-    PerFingertip<Fingertip> moved = tips_;
-    moved[0].position += displacement_0;
-    moved[1].position += displacement_1;
-    EXPECT_TRUE(patch.advance(motion_, {&moved[0], &moved[1]}, kStep));
+  Vector3d forceAfter(Finger finger, const Vector3d& of_index, const Vector3d& of_thumb) const {
+    CondensedStiffness unused;
+    const std::unique_ptr<Patch> patch = settled(unused);
+    base::PerFinger<Fingertip> moved = tips_;
+    moved[Finger::kIndex].position += of_index;
+    moved[Finger::kThumb].position += of_thumb;
+    EXPECT_TRUE(patch->advance(motion_, {&moved[Finger::kIndex], &moved[Finger::kThumb]}, kStep));
     Vector3d force = Vector3d::Zero();
-    for (const TouchedParticle& touched : patch.contact(fingertip).touched()) {
+    for (const TouchedParticle& touched : patch->contact(finger).touched()) {
       force -= touched.force();
     }
     return force;
   }
 
   /// -d force / d position, of one fingertip alone, by central differences.
-  Matrix3d differences(int fingertip) const {
+  Matrix3d differences(Finger finger) const {
     constexpr double kDisplacement = 1e-7;
     Matrix3d result;
     for (int axis = 0; axis < 3; ++axis) {
       const Vector3d step = kDisplacement * Vector3d::Unit(axis);
       const auto at = [&](double sign) {
-        return forceAfter(fingertip, fingertip == 0 ? Vector3d(sign * step) : Vector3d(0, 0, 0),
-                          fingertip == 1 ? Vector3d(sign * step) : Vector3d(0, 0, 0));
+        return forceAfter(finger,
+                          finger == Finger::kIndex ? Vector3d(sign * step) : Vector3d(0, 0, 0),
+                          finger == Finger::kThumb ? Vector3d(sign * step) : Vector3d(0, 0, 0));
       };
       result.col(axis) = (at(-1.0) - at(1.0)) / (2.0 * kDisplacement);
     }
@@ -67,8 +77,8 @@ class CondensedStiffnessTest : public testing::Test {
   const material::Fabric fabric_ = wool();
   const ContactLaw law_{fabric_, {PulpSettings().stiffness, 1e-6}};  // no damping
   LargeScaleMotion motion_;
-  Patch patch_;
-  PerFingertip<Fingertip> tips_;
+  std::unique_ptr<Patch> patch_;
+  base::PerFinger<Fingertip> tips_;
   CondensedStiffness stiffness_;
 };
 
@@ -77,16 +87,16 @@ class CondensedStiffnessTest : public testing::Test {
 constexpr double kLeftOut = 0.05;
 
 TEST_F(CondensedStiffnessTest, IsTheForceThatAMovementOfOneFingertipCausesWithinAStep) {
-  for (int f = 0; f < kFingertips; ++f) {
-    const Matrix3d exact = differences(f);
+  for (const Finger finger : kFingers) {
+    const Matrix3d exact = differences(finger);
     ASSERT_GT(exact.norm(), 10.0);
-    EXPECT_LT((stiffness_.of(f) - exact).norm(), kLeftOut * exact.norm()) << exact;
+    EXPECT_LT((stiffness_.of(finger) - exact).norm(), kLeftOut * exact.norm()) << exact;
   }
 }
 
 TEST_F(CondensedStiffnessTest, IsSymmetricAndPositiveSemidefinite) {
-  for (int f = 0; f < kFingertips; ++f) {
-    const Matrix3d matrix = stiffness_.of(f);
+  for (const Finger finger : kFingers) {
+    const Matrix3d matrix = stiffness_.of(finger);
     EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm());
     const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(matrix);
     EXPECT_GT(solver.eigenvalues().minCoeff(), -1e-12 * matrix.norm());
@@ -94,12 +104,12 @@ TEST_F(CondensedStiffnessTest, IsSymmetricAndPositiveSemidefinite) {
 }
 
 TEST_F(CondensedStiffnessTest, IsZeroAsSoonAsAFingertipTouchesNoMore) {
-  patch_.advance(motion_, {&tips_[0], nullptr}, kStep);
-  stiffness_.update(patch_, kStep);
-  EXPECT_EQ(stiffness_.of(1), Matrix3d::Zero());
-  EXPECT_GT(stiffness_.of(0).norm(), 1.0);
+  patch_->advance(motion_, {&tips_[Finger::kIndex], nullptr}, kStep);
+  stiffness_.update(*patch_, kStep);
+  EXPECT_EQ(stiffness_.of(Finger::kThumb), Matrix3d::Zero());
+  EXPECT_GT(stiffness_.of(Finger::kIndex).norm(), 1.0);
   stiffness_.clear();
-  EXPECT_EQ(stiffness_.of(0), Matrix3d::Zero());
+  EXPECT_EQ(stiffness_.of(Finger::kIndex), Matrix3d::Zero());
 }
 
 }  // namespace

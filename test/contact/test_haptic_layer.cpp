@@ -9,8 +9,8 @@
 namespace haptex::contact {
 namespace {
 
+using base::Finger;
 using Eigen::Vector3d;
-using Fingertips = PerFingertip<std::optional<Fingertip>>;
 
 class HapticLayerTest : public testing::Test {
  protected:
@@ -40,17 +40,17 @@ class HapticLayerTest : public testing::Test {
 
 TEST_F(HapticLayerTest, HasNoContactBeforeTheFirstState) {
   step({pressingMiddle(), std::nullopt}, 5);
-  EXPECT_FALSE(layer_.contacts()[0].touching);
+  EXPECT_FALSE(layer_.contacts()[Finger::kIndex].touching);
   EXPECT_TRUE(layer_.loads().empty());
   receiveRest();
   step({pressingMiddle(), std::nullopt}, 2);
-  EXPECT_TRUE(layer_.contacts()[0].touching);
+  EXPECT_TRUE(layer_.contacts()[Finger::kIndex].touching);
 }
 
 TEST_F(HapticLayerTest, WhatTheFingertipFeelsIsWhatItsPointsCarry) {
   receiveRest();
   step({pressingMiddle(), std::nullopt}, 300);
-  const FingertipContact& felt = layer_.contacts()[0];
+  const FingertipContact& felt = layer_.contacts()[Finger::kIndex];
   ASSERT_TRUE(felt.touching);
   Vector3d force = Vector3d::Zero(), loads = Vector3d::Zero();
   double normal = 0.0;
@@ -65,7 +65,7 @@ TEST_F(HapticLayerTest, WhatTheFingertipFeelsIsWhatItsPointsCarry) {
   EXPECT_GT(felt.force.x(), 0.01);
   EXPECT_NEAR(felt.normal.x(), -1.0, 1e-3);
   EXPECT_NEAR((felt.fabric_position - Eigen::Vector2d(0.02, 0.02)).norm(), 0.0, 1e-4);
-  EXPECT_FALSE(layer_.contacts()[1].touching);
+  EXPECT_FALSE(layer_.contacts()[Finger::kThumb].touching);
 }
 
 TEST_F(HapticLayerTest, TellsHowTheFingertipSlidesOverTheFabricInItsOwnDirections) {
@@ -74,7 +74,7 @@ TEST_F(HapticLayerTest, TellsHowTheFingertipSlidesOverTheFabricInItsOwnDirection
   step({fingertip, std::nullopt}, 300);
   fingertip.velocity = {0.0, 0.03, -0.04};  // weft along +y, warp along +z
   step({fingertip, std::nullopt});
-  const FingertipContact& felt = layer_.contacts()[0];
+  const FingertipContact& felt = layer_.contacts()[Finger::kIndex];
   // The cloth moves a little too within the step.
   EXPECT_NEAR((felt.fabric_velocity - Eigen::Vector2d(0.03, -0.04)).norm(), 0.0, 0.005);
   EXPECT_NEAR((felt.to_fabric * Vector3d(1.0, 2.0, 3.0) - Eigen::Vector2d(2.0, 3.0)).norm(), 0.0,
@@ -103,7 +103,7 @@ TEST_F(HapticLayerTest, WithoutAFingertipNearThereIsNoPatchAndNothingToStep) {
   EXPECT_EQ(layer_.patch(), nullptr);
   EXPECT_EQ(layer_.particleCount(), 0u);
   step({pressingMiddle(), pressingMiddle()}, 50);  // the next patch has not come yet
-  for (const FingertipContact& contact : layer_.contacts()) {
+  for (const FingertipContact& contact : layer_.contacts().values) {
     EXPECT_FALSE(contact.touching);
     EXPECT_EQ(contact.force, Vector3d::Zero());
   }
@@ -123,11 +123,11 @@ TEST_F(HapticLayerTest, AFingertipWithANumberThatIsNoneIsTreatedAsAbsent) {
   unsound[4].radius = nan;
   for (const Fingertip& fingertip : unsound) {
     step({sound, std::nullopt}, 20);
-    ASSERT_TRUE(layer_.contacts()[0].touching);
+    ASSERT_TRUE(layer_.contacts()[Finger::kIndex].touching);
     step({fingertip, std::nullopt});
     EXPECT_TRUE(layer_.lastStepAccepted());
-    EXPECT_FALSE(layer_.contacts()[0].touching);
-    EXPECT_EQ(layer_.contacts()[0].force, Vector3d::Zero());
+    EXPECT_FALSE(layer_.contacts()[Finger::kIndex].touching);
+    EXPECT_EQ(layer_.contacts()[Finger::kIndex].force, Vector3d::Zero());
   }
 }
 
@@ -136,7 +136,7 @@ TEST_F(HapticLayerTest, AnUnsoundFingertipDoesNotTakeTheOtherOnesForce) {
   Fingertip thumb = pressingMiddle();
   thumb.position.x() = std::nan("");
   step({pressingMiddle(), thumb}, 20);
-  EXPECT_GT(layer_.contacts()[0].force.norm(), 0.0);
+  EXPECT_GT(layer_.contacts()[Finger::kIndex].force.norm(), 0.0);
 }
 
 TEST_F(HapticLayerTest, GoesOnAfterAFingertipThatIsFarTooDeep) {
@@ -144,12 +144,12 @@ TEST_F(HapticLayerTest, GoesOnAfterAFingertipThatIsFarTooDeep) {
   Fingertip fingertip = pressingMiddle();
   fingertip.velocity.x() = -1e200;
   step({fingertip, std::nullopt}, 3);
-  EXPECT_TRUE(layer_.contacts()[0].force.allFinite());
+  EXPECT_TRUE(layer_.contacts()[Finger::kIndex].force.allFinite());
   receiveRest();
   step({std::nullopt, std::nullopt}, 5);
   step({pressingMiddle(), std::nullopt}, 50);
   EXPECT_TRUE(layer_.lastStepAccepted());
-  EXPECT_TRUE(layer_.contacts()[0].touching);
+  EXPECT_TRUE(layer_.contacts()[Finger::kIndex].touching);
 }
 
 TEST_F(HapticLayerTest, AnExchangeWithoutContactChangesNoForceAndGivesTheOldPatchBack) {
@@ -159,7 +159,7 @@ TEST_F(HapticLayerTest, AnExchangeWithoutContactChangesNoForceAndGivesTheOldPatc
       layer_.exchange(layer_.preparePatch({0, 1, 2}, nothingAttached(mesh_)));
   EXPECT_EQ(old.get(), before);
   step({std::nullopt, std::nullopt});
-  EXPECT_EQ(layer_.contacts()[0].force, Vector3d::Zero());
+  EXPECT_EQ(layer_.contacts()[Finger::kIndex].force, Vector3d::Zero());
   EXPECT_TRUE(layer_.loads().empty());
 }
 
@@ -169,9 +169,9 @@ TEST_F(HapticLayerTest, WithoutAPatchThereIsNoForce) {
   EXPECT_NE(layer_.exchange(nullptr), nullptr);
   EXPECT_EQ(layer_.patch(), nullptr);
   EXPECT_EQ(layer_.particleCount(), 0u);
-  EXPECT_EQ(layer_.contacts()[0].force, Vector3d::Zero());
+  EXPECT_EQ(layer_.contacts()[Finger::kIndex].force, Vector3d::Zero());
   step({pressingMiddle(), std::nullopt});
-  EXPECT_FALSE(layer_.contacts()[0].touching);
+  EXPECT_FALSE(layer_.contacts()[Finger::kIndex].touching);
 }
 
 TEST_F(HapticLayerTest, NoTrianglesOrNothingFreeIsNoPatch) {
@@ -219,7 +219,7 @@ TEST_F(HapticLayerTest, RefusesStatesThatAreNoneAndKeepsTheOneItHas) {
             "the state has 80 positions and 81 velocities; the cloth has 81 particles");
   step({pressingMiddle(), std::nullopt}, 20);
   EXPECT_TRUE(layer_.lastStepAccepted());
-  EXPECT_TRUE(layer_.contacts()[0].touching);
+  EXPECT_TRUE(layer_.contacts()[Finger::kIndex].touching);
 }
 
 TEST_F(HapticLayerTest, RefusesAFabricWithoutWhatContactNeeds) {
@@ -235,15 +235,23 @@ TEST_F(HapticLayerTest, RefusesAFabricWithoutWhatContactNeeds) {
             std::string::npos);
 }
 
+TEST_F(HapticLayerTest, RefusesSewnPanels) {
+  mesh::ClothMesh sewn = mesh_;
+  sewn.panels.resize(2);
+  sewn.triangle_panels.assign(sewn.triangles.size(), 0);
+  EXPECT_EQ(refusalOf([&] { HapticLayer(sewn, wool(), {}, {}); }),
+            "fingertips touch one panel, and the mesh has 2");
+}
+
 TEST_F(HapticLayerTest, InAWholeClothSceneTheLargeScaleParticlesAreTouched) {
   HapticSettings settings;
   settings.layer = HapticSettings::Layer::kWholeCloth;
   HapticLayer layer(mesh_, wool(), {}, settings);
   layer.receive(mesh_.initial_positions, atRest(mesh_), 1e-3);
   layer.step({pressing(layer.law(), kSmallSampleMiddle, 2e-4), std::nullopt});
-  EXPECT_TRUE(layer.contacts()[0].touching);
+  EXPECT_TRUE(layer.contacts()[Finger::kIndex].touching);
   ASSERT_EQ(layer.loads().size(), 1u);
-  EXPECT_NEAR((layer.loads()[0].force + layer.contacts()[0].force).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((layer.loads()[0].force + layer.contacts()[Finger::kIndex].force).norm(), 0.0, 1e-15);
   EXPECT_EQ(layer.loads()[0].weights.maxCoeff(), 1.0);
 }
 

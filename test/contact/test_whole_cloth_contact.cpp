@@ -5,6 +5,7 @@
 namespace haptex::contact {
 namespace {
 
+using base::Finger;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -21,12 +22,12 @@ TEST_F(WholeClothContactTest, TouchesTheParticlesOfTheStateWithTheForcesOfTheLaw
   contact_.receive(mesh_.initial_positions, atRest(mesh_), 1e-3);
   contact_.step({&fingertip_, nullptr});
   // 2e-4 m deep reaches 1.7 mm along the plane: the particle in the middle alone.
-  ASSERT_EQ(contact_.contact(0).touched().size(), 1u);
-  const TouchedParticle& touched = contact_.contact(0).touched().front();
+  ASSERT_EQ(contact_.contact(Finger::kIndex).touched().size(), 1u);
+  const TouchedParticle& touched = contact_.contact(Finger::kIndex).touched().front();
   const double area = contact_.particles().areas[touched.particle];
   EXPECT_EQ(mesh_.rest_coordinates[touched.particle], Eigen::Vector2d(0.02, 0.02));
   EXPECT_NEAR(touched.normal_force, area * law_.pressure(2e-4).stress, 1e-9);
-  EXPECT_TRUE(contact_.contact(1).touched().empty());
+  EXPECT_TRUE(contact_.contact(Finger::kThumb).touched().empty());
 }
 
 TEST_F(WholeClothContactTest, MovesParticlesOnByTheirVelocities) {
@@ -34,8 +35,8 @@ TEST_F(WholeClothContactTest, MovesParticlesOnByTheirVelocities) {
   for (Vector3d& velocity : velocities) velocity = {-0.1, 0.0, 0.0};
   contact_.receive(mesh_.initial_positions, velocities, 1e-3);
   contact_.step({&fingertip_, nullptr});
-  ASSERT_EQ(contact_.contact(0).touched().size(), 1u);
-  EXPECT_NEAR(contact_.contact(0).touched().front().depth, 1e-4, 1e-15);
+  ASSERT_EQ(contact_.contact(Finger::kIndex).touched().size(), 1u);
+  EXPECT_NEAR(contact_.contact(Finger::kIndex).touched().front().depth, 1e-4, 1e-15);
 }
 
 TEST_F(WholeClothContactTest, ItsAreasSumToThatOfTheSample) {
@@ -54,20 +55,22 @@ TEST_F(WholeClothContactTest, EveryParticleIsTheNamedCornerOfItsTriangle) {
 TEST_F(WholeClothContactTest, StiffnessIsThatOfTheSpringsInSeriesWithTheInertia) {
   contact_.receive(mesh_.initial_positions, atRest(mesh_), 1e-3);
   contact_.step({&fingertip_, nullptr});
-  const double area = contact_.particles().areas[contact_.contact(0).touched().front().particle];
+  const double area =
+      contact_.particles().areas[contact_.contact(Finger::kIndex).touched().front().particle];
   const double mass = area * fabric_.areal_density;
   const double k = area * law_.pressure(2e-4).slope;
   for (double h : {1e-3, 1e-2}) {
-    EXPECT_NEAR(contact_.stiffness(0, h)(0, 0), k * mass / (h * h * k + mass), 1e-9 * k);
+    EXPECT_NEAR(contact_.stiffness(Finger::kIndex, h)(0, 0), k * mass / (h * h * k + mass),
+                1e-9 * k);
   }
-  EXPECT_EQ(contact_.stiffness(1, 1e-3), Matrix3d::Zero());
+  EXPECT_EQ(contact_.stiffness(Finger::kThumb, 1e-3), Matrix3d::Zero());
 }
 
 TEST_F(WholeClothContactTest, ForgetsTheContactOfAnAbsentFingertip) {
   contact_.receive(mesh_.initial_positions, atRest(mesh_), 1e-3);
   contact_.step({&fingertip_, nullptr});
   contact_.step({nullptr, nullptr});
-  EXPECT_TRUE(contact_.contact(0).touched().empty());
+  EXPECT_TRUE(contact_.contact(Finger::kIndex).touched().empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 namespace haptex::oracles {
 namespace {
 
+using base::Finger;
 using Eigen::Vector3d;
 
 material::Fabric wool() {
@@ -76,27 +77,28 @@ TEST(Hand, ItsFingertipsMeetFaceToFaceWithTheGapBetweenThem) {
   hand.velocity = {0.0, 0.1, 0.0};
   hand.opening = 0.2;
   const Fingertips fingertips = hand.fingertips();
-  const Vector3d apart = fingertips[0]->position - fingertips[1]->position;
+  const Vector3d apart =
+      fingertips[Finger::kIndex]->position - fingertips[Finger::kThumb]->position;
   EXPECT_NEAR(apart.x(), kIndexRadius + kThumbRadius + 1e-3, 1e-15);
   EXPECT_EQ(apart.tail<2>().norm(), 0.0);
-  EXPECT_EQ(fingertips[0]->velocity, Vector3d(0.1, 0.1, 0.0));
-  EXPECT_EQ(fingertips[1]->velocity, Vector3d(-0.1, 0.1, 0.0));
+  EXPECT_EQ(fingertips[Finger::kIndex]->velocity, Vector3d(0.1, 0.1, 0.0));
+  EXPECT_EQ(fingertips[Finger::kThumb]->velocity, Vector3d(-0.1, 0.1, 0.0));
 }
 
 TEST(Hand, MovesInWholeStepsWhoseVelocitiesAreThoseOfTheWayAndStops) {
   Hand hand;
-  Vector3d before = hand.fingertips()[0]->position;
+  Vector3d before = hand.fingertips()[Finger::kIndex]->position;
   int steps = 0;
   move(hand, {0.0, 0.0, 0.01}, -1e-3, 0.1, 0.01, [&](const Fingertips& fingertips) {
     ++steps;
-    const Vector3d way = fingertips[0]->position - before;
-    EXPECT_NEAR((way / 0.01 - fingertips[0]->velocity).norm(), 0.0, 1e-12);
-    before = fingertips[0]->position;
+    const Vector3d way = fingertips[Finger::kIndex]->position - before;
+    EXPECT_NEAR((way / 0.01 - fingertips[Finger::kIndex]->velocity).norm(), 0.0, 1e-12);
+    before = fingertips[Finger::kIndex]->position;
   });
   EXPECT_EQ(steps, 10);
   EXPECT_NEAR(hand.middle.z(), 0.01, 1e-15);
   EXPECT_NEAR(hand.gap, -1e-3, 1e-15);
-  EXPECT_EQ(hand.fingertips()[0]->velocity, Vector3d(0.0, 0.0, 0.0));
+  EXPECT_EQ(hand.fingertips()[Finger::kIndex]->velocity, Vector3d(0.0, 0.0, 0.0));
 }
 
 TEST(RefinedCloth, FeelsWhatTheTwoLayersFeelOfAPinch) {
@@ -109,11 +111,11 @@ TEST(RefinedCloth, FeelsWhatTheTwoLayersFeelOfAPinch) {
   RefinedCloth cloth(sample);
   move(hand, Vector3d::Zero(), -2e-3, 0.1, 0.01, [&](const Fingertips& f) { cloth.step(f, 0.01); });
   for (int i = 0; i < 10; ++i) cloth.step(hand.fingertips(), 0.05);
-  const double force = loop.layer().contacts()[0].force.x();
+  const double force = loop.layer().contacts()[Finger::kIndex].force.x();
   ASSERT_GT(force, 0.02);
   // The sheet stays plane: rim and large-scale cloth have little part in the force.
-  EXPECT_NEAR(cloth.force(0).x(), force, 0.01 * force);
-  EXPECT_NEAR(cloth.force(0).x(), -cloth.force(1).x(), 0.05 * force);
+  EXPECT_NEAR(cloth.force(Finger::kIndex).x(), force, 0.01 * force);
+  EXPECT_NEAR(cloth.force(Finger::kIndex).x(), -cloth.force(Finger::kThumb).x(), 0.05 * force);
 }
 
 }  // namespace

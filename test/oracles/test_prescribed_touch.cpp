@@ -8,6 +8,8 @@
 namespace haptex::oracles {
 namespace {
 
+using base::Finger;
+using base::kFingers;
 using Eigen::Vector3d;
 
 const std::vector<PrescribedTouch>& woolTouches() {
@@ -23,10 +25,11 @@ TEST(PrescribedTouch, FingertipsMoveWithTheVelocitiesThatTheyState) {
       const Fingertips before = touch.fingertips(time - kStep);
       const Fingertips now = touch.fingertips(time);
       const Fingertips after = touch.fingertips(time + kStep);
-      for (int f = 0; f < contact::kFingertips; ++f) {
-        if (!now[f]) continue;
-        const Vector3d expected = (after[f]->position - before[f]->position) / (2.0 * kStep);
-        EXPECT_LT((now[f]->velocity - expected).norm(), 1e-6) << touch.name << ' ' << time;
+      for (const Finger finger : kFingers) {
+        if (!now[finger]) continue;
+        const Vector3d expected =
+            (after[finger]->position - before[finger]->position) / (2.0 * kStep);
+        EXPECT_LT((now[finger]->velocity - expected).norm(), 1e-6) << touch.name << ' ' << time;
       }
     }
   }
@@ -39,14 +42,15 @@ TEST(PrescribedTouch, FingertipsStartOutsideAndRestAtTheEnd) {
     const Fingertips rest = touch.fingertips(touch.rest_from);
     const Fingertips end = touch.fingertips(touch.duration);
     EXPECT_LT(touch.rest_from, touch.duration);
-    for (int f = 0; f < contact::kFingertips; ++f) {
-      ASSERT_EQ(start[f].has_value(), end[f].has_value());
-      if (!start[f]) continue;
+    for (const Finger finger : kFingers) {
+      ASSERT_EQ(start[finger].has_value(), end[finger].has_value());
+      if (!start[finger]) continue;
       for (const Vector3d& particle : touch.sample.mesh.initial_positions) {
-        ASSERT_GT((particle - start[f]->position).norm(), start[f]->radius + outside - 1e-12);
+        ASSERT_GT((particle - start[finger]->position).norm(),
+                  start[finger]->radius + outside - 1e-12);
       }
-      EXPECT_EQ(rest[f]->position, end[f]->position);
-      EXPECT_EQ(end[f]->velocity.norm(), 0.0);
+      EXPECT_EQ(rest[finger]->position, end[finger]->position);
+      EXPECT_EQ(end[finger]->velocity.norm(), 0.0);
     }
   }
 }

@@ -16,7 +16,15 @@ using Eigen::Vector3d;
 class Sleepless {
  public:
   explicit Sleepless(const SimulatedCloth& simulation, const scene::Scene& scene)
-      : cloth_(simulation.cloth()), state_(simulation.state()), integrator_(cloth_, scene.step) {}
+      : cloth_(simulation.cloth().mesh(), simulation.cloth().fabric(),
+               simulation.cloth().effects()),
+        state_(simulation.state()),
+        integrator_(cloth_, scene.step) {
+    const auto& attachments = simulation.cloth().attachments();
+    for (std::size_t i = 0; i < attachments.size(); ++i) {
+      if (attachments[i]) cloth_.attach(static_cast<int>(i), *attachments[i]);
+    }
+  }
 
   void step(double time_step) { ASSERT_TRUE(integrator_.step(cloth_, state_, time_step).accepted); }
   void move(int particle, const Vector3d& displacement, double duration) {

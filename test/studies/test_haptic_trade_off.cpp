@@ -16,7 +16,7 @@ oracles::PrescribedTouch makeShortPress() {
   press.rest_from = 0.05;
   press.fingertips = [slow = press.fingertips](double time) {
     oracles::Fingertips fingertips = slow(3.0 * time);
-    fingertips[0]->velocity *= 3.0;
+    fingertips[base::Finger::kIndex]->velocity *= 3.0;
     return fingertips;
   };
   return press;

@@ -24,15 +24,15 @@ class CondensedStiffness {
   void clear();
 
   /// -d force / d position of the fingertip (N/m), symmetric, positive semidefinite.
-  Eigen::Matrix3d of(int fingertip) const;
+  Eigen::Matrix3d of(base::Finger finger) const;
 
  private:
   void computeColumn(Patch& patch, double h);
 
-  PerFingertip<Eigen::Matrix3d> condensed_;
-  PerFingertip<Eigen::Vector3d> known_direct_;  // N/m, direct term's column norms when computed
-  PerFingertip<Eigen::Matrix3d> direct_;        // sum of k now
-  int next_ = 0;                                // 3 fingertip + direction
+  base::PerFinger<Eigen::Matrix3d> condensed_;
+  base::PerFinger<Eigen::Vector3d> known_direct_;  // N/m, direct term's column norms when computed
+  base::PerFinger<Eigen::Matrix3d> direct_;        // sum of k now
+  int next_ = 0;                                   // 3 times the place in kFingers, plus direction
 };
 
 }  // namespace haptex::contact

@@ -2,14 +2,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
+#include <optional>
+
+#include "haptex/base/finger.h"
 
 namespace haptex::contact {
-
-/// Two fingertips touch the cloth.
-constexpr int kFingertips = 2;
-template <typename T>
-using PerFingertip = std::array<T, kFingertips>;
 
 struct Fingertip {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, of the centre, world frame
@@ -18,6 +15,9 @@ struct Fingertip {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();       ///< rad/s, world frame
   double radius = 0.0;                                              ///< m, > 0
 };
+
+/// Those that are there.
+using Fingertips = base::PerFinger<std::optional<Fingertip>>;
 
 /// Where the fingertip will be after `seconds` if it keeps its velocities.
 Fingertip predict(const Fingertip& fingertip, double seconds);

@@ -65,10 +65,14 @@ class HapticLayer {
   static constexpr std::size_t kMaxContactPoints = 1024;
 
   /// @param mesh, fabric, effects those of the large-scale layer
-  /// @throws std::invalid_argument what requireTouchable() or cloth::Cloth throws, or if the mesh has
+  /// @throws std::invalid_argument what requireTouchable() or cloth::Cloth throws, or if the mesh
+  /// has
   ///   several panels
   HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric, const cloth::ModelledEffects& effects,
               const HapticSettings& settings);
+  // Its patches refer to its contact law.
+  HapticLayer(const HapticLayer&) = delete;
+  HapticLayer& operator=(const HapticLayer&) = delete;
 
   const HapticSettings& settings() const { return settings_; }
   const ContactLaw& law() const { return law_; }
@@ -98,7 +102,7 @@ class HapticLayer {
 
   /// Advances by settings().time_step. A fingertip that is absent, or not sound, does not touch.
   /// Without a state yet there is no contact.
-  void step(const PerFingertip<std::optional<Fingertip>>& fingertips);
+  void step(const Fingertips& fingertips);
 
   /// False if the last step was not finite: the layer has then started again from the large-scale
   /// state, and the forces are zero.
@@ -106,7 +110,7 @@ class HapticLayer {
   std::size_t particleCount() const { return patch_ ? patch_->particleCount() : 0; }
   const Patch* patch() const { return patch_.get(); }
 
-  const PerFingertip<FingertipContact>& contacts() const { return contacts_; }
+  const base::PerFinger<FingertipContact>& contacts() const { return contacts_; }
   /// What acts on the large-scale cloth, see cloth::Cloth::setPointLoads().
   const std::vector<cloth::PointLoad>& loads() const { return loads_; }
 
@@ -114,7 +118,7 @@ class HapticLayer {
   void stepPatch();
   void stepWholeCloth();
   void startAgain();
-  void fillContact(int fingertip, const std::vector<TouchedParticle>& touched,
+  void fillContact(base::Finger finger, const std::vector<TouchedParticle>& touched,
                    const Particles& particles);
   template <typename RestOf, typename LoadOf>
   void sendBack(FingertipContact& contact, const std::vector<TouchedParticle>& touched,
@@ -131,9 +135,9 @@ class HapticLayer {
   std::unique_ptr<Patch> patch_;
   CondensedStiffness stiffness_;
   std::unique_ptr<WholeClothContact> whole_cloth_;  // null with patches
-  PerFingertip<std::optional<Fingertip>> fingertips_;
-  PerFingertip<const Fingertip*> present_{};  // into fingertips_
-  PerFingertip<FingertipContact> contacts_;
+  Fingertips fingertips_;
+  base::PerFinger<const Fingertip*> present_{};  // into fingertips_
+  base::PerFinger<FingertipContact> contacts_;
   std::vector<cloth::PointLoad> loads_;
   bool last_step_accepted_ = true;
 };

@@ -49,14 +49,14 @@ class Patch {
   /// @param fingertips at the end of the step; null: absent
   /// @param h          s
   /// @returns false if the system could not be solved or the result is not finite; start() again
-  bool advance(const LargeScaleMotion& motion, const PerFingertip<const Fingertip*>& fingertips,
+  bool advance(const LargeScaleMotion& motion, const base::PerFinger<const Fingertip*>& fingertips,
                double h);
 
   /// Forces and anchors at the end of the last step.
-  const SphereContact& contact(int fingertip) const { return contacts_[fingertip]; }
+  const SphereContact& contact(base::Finger finger) const { return contacts_[finger]; }
   /// What the last step was linearised with.
-  const std::vector<TouchedParticle>& linearised(int fingertip) const {
-    return linearised_[fingertip];
+  const std::vector<TouchedParticle>& linearised(base::Finger finger) const {
+    return linearised_[finger];
   }
   /// The place of a particle on the large-scale cloth (m).
   Eigen::Vector3d placeOnCloth(int particle, const LargeScaleMotion& motion) const;
@@ -70,12 +70,12 @@ class Patch {
   /// of the particles at a fingertip, e the unit vector of a direction (0 to 2).
   /// One iteration better than the last time, if that was for a matrix and contact close to these.
   /// @returns 3 x freeCount(), until the next call
-  const linear::BlockVector& respond(int fingertip, int direction);
+  const linear::BlockVector& respond(base::Finger finger, int direction);
 
  private:
   void assemble(const LargeScaleMotion& motion, double h);
   bool solve(double h);
-  void addContact(const PerFingertip<const Fingertip*>& fingertips, double h);
+  void addContact(const base::PerFinger<const Fingertip*>& fingertips, double h);
 
   RefinedCut cut_;
   std::vector<std::array<int, 3>> corners_;  // per particle: those of its owner
@@ -90,12 +90,12 @@ class Patch {
   std::vector<Eigen::Vector3d> predicted_;  // m
   std::vector<Eigen::Vector3d> detours_;    // m, from the place on the cloth; fade
   std::vector<double> tethers_;             // N/m, to that place; fade
-  PerFingertip<SphereContact> contacts_;
-  PerFingertip<std::vector<TouchedParticle>> linearised_;
+  base::PerFinger<SphereContact> contacts_;
+  base::PerFinger<std::vector<TouchedParticle>> linearised_;
   std::vector<double> contact_forces_;
   linear::BlockVector rhs_;
   linear::BlockVector solution_;
-  PerFingertip<std::array<linear::BlockVector, 3>> responses_;  // by direction
+  base::PerFinger<std::array<linear::BlockVector, 3>> responses_;  // by direction
 };
 
 }  // namespace haptex::contact

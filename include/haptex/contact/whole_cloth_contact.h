@@ -20,13 +20,13 @@ class WholeClothContact {
   /// @param period s, from the state's time to that of the step that it is used in
   void receive(const std::vector<Eigen::Vector3d>& positions,
                const std::vector<Eigen::Vector3d>& velocities, double period);
-  void step(const PerFingertip<const Fingertip*>& fingertips);
+  void step(const base::PerFinger<const Fingertip*>& fingertips);
 
-  const SphereContact& contact(int fingertip) const { return contacts_[fingertip]; }
+  const SphereContact& contact(base::Finger finger) const { return contacts_[finger]; }
   Particles particles() const;
   /// -d force / d position of the fingertip within a step of h (N/m): contact springs in series
   /// with the inertia of their particles.
-  Eigen::Matrix3d stiffness(int fingertip, double h) const;
+  Eigen::Matrix3d stiffness(base::Finger finger, double h) const;
   const Eigen::Vector2d& restCoordinates(int particle) const { return rest_coordinates_[particle]; }
   /// A triangle with the particle as its corner.
   int triangleOf(int particle) const { return triangle_of_[particle]; }
@@ -40,7 +40,7 @@ class WholeClothContact {
   std::vector<int> corner_of_;
   std::vector<Eigen::Vector3d> positions_;
   std::vector<Eigen::Vector3d> velocities_;
-  PerFingertip<SphereContact> contacts_;
+  base::PerFinger<SphereContact> contacts_;
 };
 
 }  // namespace haptex::contact

@@ -42,7 +42,7 @@ struct LoopView {
   std::uint64_t states = 0;   ///< of the cloth, taken so far
   double state_period = 0.0;  ///< s, of simulated time, between the last two
   /// Where they were last, also of one that is silent: its patch stays for when it is back.
-  base::PerFinger<std::optional<contact::Fingertip>> fingertips;
+  contact::Fingertips fingertips;
   std::vector<cloth::PointLoad> loads;
   double load_gain = 0.0;  ///< share of them that is to act
 };
@@ -199,7 +199,7 @@ class ForceLoop {
   RendererNews news_;
   FrameFollower follower_;
   FrameMotion hand_;
-  contact::PerFingertip<std::optional<contact::Fingertip>> fingertips_;
+  contact::Fingertips fingertips_;
   base::PerFinger<Rendered> rendered_;
   base::PerFinger<bool> contactors_wanted_{{{true, true}}};
   std::optional<double> simulated_time_;  // of the last state taken

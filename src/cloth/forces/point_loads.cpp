@@ -47,7 +47,8 @@ Vector3d sortedWeights(const PointLoad& load, const std::array<int, 3>& corners,
   return sorted;
 }
 
-/// The load with the part of its stiffness that is exactly symmetric and positive semidefinite.
+}  // namespace
+
 PointLoad checkedLoad(const PointLoad& load, std::size_t index, std::size_t triangle_count) {
   if (load.triangle < 0 || static_cast<std::size_t>(load.triangle) >= triangle_count) {
     refuse(index, "triangle ", load.triangle, " does not exist; the cloth has triangles 0 to ",
@@ -80,8 +81,6 @@ PointLoad checkedLoad(const PointLoad& load, std::size_t index, std::size_t tria
   }
   return checked;
 }
-
-}  // namespace
 
 PointLoads::PointLoads(const mesh::ClothMesh& mesh)
     : triangles_(mesh.triangles), elements_(restElements(mesh)) {

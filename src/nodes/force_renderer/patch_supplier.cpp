@@ -12,7 +12,6 @@
 namespace haptex::nodes {
 namespace {
 
-using base::kFingers;
 using base::Time;
 
 constexpr Time kPatience = std::chrono::milliseconds(2);
@@ -112,8 +111,7 @@ void PatchSupplier::buildLayer(const haptex::ClothMesh& message) {
   if (stopping_) return;
   loop_.offer(std::move(update));
   loop_.setLayerReady(true);
-  selection_ = std::make_unique<contact::PatchSelection>(mesh_.triangles.size());
-  patch_outdated_ = false;
+  supply_.emplace(builder_.settings(), mesh_.triangles.size());
 }
 
 /// Once per state of the cloth; one without points ends the contact.
@@ -149,28 +147,23 @@ void PatchSupplier::ask(const simulation::LoopView& view) {
       return;
     }
   }
-  selection_->begin();
-  for (const base::Finger finger : kFingers) {
-    const std::optional<contact::Fingertip>& fingertip = view.fingertips[finger];
-    if (!fingertip) continue;
-    if (!askAbout(contact::searchVolume(*fingertip, view.state_period, builder_.settings())))
-      return;
-  }
+  const auto search = [this](const contact::SearchVolume& volume,
+                             contact::PatchSelection& selection) {
+    return askAbout(volume, selection);
+  };
+  if (!supply_->ask(view.fingertips, view.state_period, search)) return;
   const Time end = realtime::steadyNow();
-  if (selection_->finish()) patch_outdated_ = true;
   failed_ = false;
   loop_.reportAnswer(true);
   const std::lock_guard<std::mutex> lock(mutex_);
   ++status_.queries;
   status_.query_trouble.clear();
   status_.query_seconds = base::seconds(end - begin);
-  if (patch_attached_ != attached_) {
-    patch_attached_ = attached_;
-    patch_outdated_ = true;
-  }
+  supply_->setAttached(attached_);
 }
 
-bool PatchSupplier::askAbout(const contact::SearchVolume& volume) {
+bool PatchSupplier::askAbout(const contact::SearchVolume& volume,
+                             contact::PatchSelection& selection) {
   Query::Request request = volumeQuery(volume);
   Query::Response response;
   loop_.reportQuestion(realtime::steadyNow());
@@ -183,7 +176,7 @@ bool PatchSupplier::askAbout(const contact::SearchVolume& volume) {
     return false;
   }
   try {
-    addFound(response, mesh_.triangles.size(), builder_.settings(), *selection_);
+    addFound(response, mesh_.triangles.size(), builder_.settings(), selection);
   } catch (const std::invalid_argument& error) {
     fail(std::string("the answer of proximity/query: ") + error.what());
     return false;
@@ -192,18 +185,17 @@ bool PatchSupplier::askAbout(const contact::SearchVolume& volume) {
 }
 
 void PatchSupplier::supplyPatch() {
-  if (!loop_.canOffer() || !patch_outdated_) return;
-  if (patch_attached_.size() != mesh_.rest_coordinates.size()) return;  // of another mesh
-  patch_outdated_ = false;
+  if (!loop_.canOffer() || !supply_->isOutdated()) return;
+  if (supply_->attachedSize() != mesh_.rest_coordinates.size()) return;  // of another mesh
   auto update = std::make_unique<simulation::LayerUpdate>();
   {
     const realtime::OrdinaryScope ordinary;
-    update->patch = layer_->preparePatch(selection_->elements(), patch_attached_);
+    update->patch = supply_->prepare(*layer_);
   }
   update->replaces_patch = true;
   loop_.offer(std::move(update));
   const std::lock_guard<std::mutex> lock(mutex_);
-  status_.triangles = selection_->elements().size();
+  status_.triangles = supply_->triangles().size();
 }
 
 }  // namespace haptex::nodes

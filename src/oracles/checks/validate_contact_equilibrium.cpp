@@ -6,6 +6,7 @@
 namespace haptex::oracles {
 namespace {
 
+using base::Finger;
 using Eigen::Vector3d;
 
 constexpr double kWeightTolerance = 0.01;
@@ -63,7 +64,9 @@ std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand,
   const auto step = [&](double h) {
     return [&cloth, h](const Fingertips& fingertips) { cloth.step(fingertips, h); };
   };
-  const auto force = [&] { return cloth.force(0).z() + cloth.force(1).z(); };
+  const auto force = [&] {
+    return cloth.force(Finger::kIndex).z() + cloth.force(Finger::kThumb).z();
+  };
   move(hand, kStill, 0.0, 1.0, 0.25, step(0.25));
   // Friction remembers the way: up to the touch at once, from there on as finely as it may be.
   const double free_way = hand.gap - 2.0 * contact::ContactLaw(sample.fabric).halfThickness();
@@ -126,7 +129,8 @@ void validateStretch(const material::Fabric& fabric, kes::Direction direction, d
     sink(base::relativeTo(bar, line + "/bar", bar, force, kBarTolerance));
     sink(base::relativeTo(reference[i], line + "/reference", reference[i], force,
                           kReferenceTolerance));
-    const bool slips = loop.layer().contacts()[0].slipping || loop.layer().contacts()[1].slipping;
+    const bool slips = loop.layer().contacts()[Finger::kIndex].slipping ||
+                       loop.layer().contacts()[Finger::kThumb].slipping;
     sink({line + "/slips", 0.0, slips ? 1.0 : 0.0, slips ? 1.0 : 0.0, 0.0});
   }
 }

@@ -8,6 +8,8 @@
 namespace haptex::oracles {
 namespace {
 
+using base::Finger;
+using base::kFingers;
 using contact::Fingertip;
 using Eigen::Vector3d;
 
@@ -30,21 +32,21 @@ void validateRipple(const material::Fabric& fabric, double rate, const Sink& sin
   for (double extension : {0.0, 2e-3, -4e-3}) {
     move(hand, {0.0, 0.0, -extension}, 0.0, 0.2, 1e-3, step);
     move(hand, kStill, 0.0, 0.8, 1e-3, step);
-    std::array<Vector3d, 2> sum{kStill, kStill};
-    std::array<double, 2> squares{};
+    base::PerFinger<Vector3d> sum{{kStill, kStill}};
+    base::PerFinger<double> squares{};
     int count = 0;
     move(hand, kStill, 0.0, 1.0, 1e-3, [&](const Fingertips& fingertips) {
       loop.step(fingertips);
-      for (int f = 0; f < 2; ++f) {
-        const Vector3d& force = loop.layer().contacts()[f].force;
-        sum[f] += force;
-        squares[f] += force.squaredNorm();
+      for (const Finger finger : kFingers) {
+        const Vector3d& force = loop.layer().contacts()[finger].force;
+        sum[finger] += force;
+        squares[finger] += force.squaredNorm();
       }
       ++count;
     });
     double ripple = 0.0;
-    for (int f = 0; f < 2; ++f) {
-      const double variance = squares[f] / count - (sum[f] / count).squaredNorm();
+    for (const Finger finger : kFingers) {
+      const double variance = squares[finger] / count - (sum[finger] / count).squaredNorm();
       ripple = base::largerOrNaN(ripple, std::sqrt(std::max(0.0, variance)));
     }
     const std::string pose = extension == 0.0 ? "straight" : extension > 0.0 ? "taut" : "slack";
@@ -69,8 +71,8 @@ class StepWatch {
     const bool exchanged = loop_.patchChanges() != changes_;
     changes_ = loop_.patchChanges();
     if (exchanged) ++steps_.exchanges;
-    for (int f = 0; f < 2; ++f) {
-      const double size = (loop_.layer().contacts()[f].force - last_[f]).norm();
+    for (const Finger finger : kFingers) {
+      const double size = (loop_.layer().contacts()[finger].force - last_[finger]).norm();
       double& largest = exchanged ? steps_.at_exchange : steps_.elsewhere;
       largest = base::largerOrNaN(largest, size);
     }
@@ -80,11 +82,11 @@ class StepWatch {
 
  private:
   void remember() {
-    for (int f = 0; f < 2; ++f) last_[f] = loop_.layer().contacts()[f].force;
+    for (const Finger finger : kFingers) last_[finger] = loop_.layer().contacts()[finger].force;
   }
   HapticLoop& loop_;
   int changes_;
-  std::array<Vector3d, 2> last_;
+  base::PerFinger<Vector3d> last_;
   ForceSteps steps_;
 };
 
@@ -127,11 +129,11 @@ void validatePassivity(const material::Fabric& fabric, const Sink& sink) {
     const double before = energy;
     for (int tick = 0; tick < 2 * kTicks; ++tick) {
       const double velocity = tick < kTicks ? -kSpeed : kSpeed;
-      const Vector3d force = loop.layer().contacts()[0].force;
+      const Vector3d force = loop.layer().contacts()[Finger::kIndex].force;
       fingertip.velocity.x() = velocity;
       fingertip.position.x() += 1e-3 * velocity;
       loop.step({fingertip, std::nullopt});
-      energy -= 0.5e-3 * velocity * (force + loop.layer().contacts()[0].force).x();
+      energy -= 0.5e-3 * velocity * (force + loop.layer().contacts()[Finger::kIndex].force).x();
       least = std::min(least, energy);
     }
     least_of_cycle = std::min(least_of_cycle, energy - before);
@@ -176,7 +178,7 @@ void validateWholeCloth(const material::Fabric& fabric, const Sink& sink) {
       }
       fingertip.velocity.setZero();
       loop.rest({fingertip, std::nullopt}, 0.6);
-      forces[whole].push_back(loop.layer().contacts()[0].force.x());
+      forces[whole].push_back(loop.layer().contacts()[Finger::kIndex].force.x());
     }
   }
   for (int i = 0; i < 4; ++i) {

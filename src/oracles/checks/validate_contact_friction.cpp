@@ -8,6 +8,7 @@
 namespace haptex::oracles {
 namespace {
 
+using base::Finger;
 using contact::Fingertip;
 using contact::SphereContact;
 using Eigen::Vector3d;
@@ -42,7 +43,8 @@ void validateSlip(const material::Fabric& fabric, const Sink& sink) {
         loop.step(fingertips);
         if (++ticks * 1e-3 * kSpeed <= kStart) return;
         along -= sense * forceOnFingertips(loop.layer()).z();
-        for (const auto& contact : loop.layer().contacts()) normal += std::abs(contact.force.x());
+        for (const auto& contact : loop.layer().contacts().values)
+          normal += std::abs(contact.force.x());
       });
       sink(base::relativeTo(*fabric.friction,
                             "contact/friction/slip/" + std::to_string(std::lround(closing * 1e5)) +
@@ -129,9 +131,9 @@ void validateDrift(const material::Fabric& fabric, const Sink& sink) {
   move(hand, {0.0, 0.0, 5e-5}, 0.0, 0.1, 1e-3, step);
   move(hand, kStill, 0.0, 1.0, 1e-3, step);
   const double before = forceOnFingertips(loop.layer()).z();
-  const Eigen::Vector2d place = loop.layer().contacts()[0].fabric_position;
+  const Eigen::Vector2d place = loop.layer().contacts()[Finger::kIndex].fabric_position;
   move(hand, kStill, 0.0, 2.0, 1e-3, step);
-  const double drift = (loop.layer().contacts()[0].fabric_position - place).norm();
+  const double drift = (loop.layer().contacts()[Finger::kIndex].fabric_position - place).norm();
   sink({"contact/friction/drift_m", 0.0, drift, drift, kDriftTolerance});
   const double after = forceOnFingertips(loop.layer()).z();
   sink(base::relativeTo(before, "contact/friction/held_N", before, after, 0.01));

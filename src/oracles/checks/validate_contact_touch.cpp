@@ -8,6 +8,8 @@
 namespace haptex::oracles {
 namespace {
 
+using base::Finger;
+using base::kFingers;
 using contact::Fingertip;
 using Eigen::Vector3d;
 
@@ -40,16 +42,17 @@ struct Press {
 };
 
 /// Presses at an even pace and waits until nothing moves.
-void pressAll(HapticLoop& loop, const contact::PerFingertip<std::optional<Press>>& presses,
-              double from, double to) {
+void pressAll(HapticLoop& loop, const base::PerFinger<std::optional<Press>>& presses, double from,
+              double to) {
   constexpr double kSpeed = 0.02;  // m/s
   constexpr double kWait = 0.4;    // s
   const contact::ContactLaw& law = loop.layer().law();
   const auto fingertips = [&](double depth, double velocity) {
     Fingertips result;
-    for (int f = 0; f < contact::kFingertips; ++f) {
-      if (presses[f])
-        result[f] = pressed(law, presses[f]->place, depth, presses[f]->side, velocity);
+    for (const Finger finger : kFingers) {
+      if (presses[finger])
+        result[finger] =
+            pressed(law, presses[finger]->place, depth, presses[finger]->side, velocity);
     }
     return result;
   };
@@ -65,7 +68,8 @@ void sinkRim(const HapticLoop& loop, const std::string& name, const Sink& sink) 
   const auto& contacts = loop.layer().contacts();
   const Vector3d force = forceOnFingertips(loop.layer());
   const Vector3d rim = loop.attachmentForce();
-  const double error = (force - rim).norm() / (contacts[0].force.norm() + contacts[1].force.norm());
+  const double error = (force - rim).norm() / (contacts[Finger::kIndex].force.norm() +
+                                               contacts[Finger::kThumb].force.norm());
   sink({"contact/" + name + "/rim", rim.norm(), force.norm(), error, kRimTolerance});
 }
 
@@ -73,7 +77,7 @@ void validateFree(const material::Fabric& fabric, const Sink& sink) {
   HapticLoop loop(tautSample(fabric, kStrain, kRate));
   const Fingertip near = pressed(loop.layer().law(), kMiddle, -1e-4, 1.0, 0.0);
   loop.rest({near, std::nullopt}, 0.1);
-  const contact::FingertipContact& felt = loop.layer().contacts()[0];
+  const contact::FingertipContact& felt = loop.layer().contacts()[Finger::kIndex];
   const double all = felt.force.norm() + felt.normal_force + felt.stiffness.norm();
   sink({"contact/free", 0.0, all, all, 0.0});
   const double loads = static_cast<double>(loop.layer().loads().size());
@@ -86,21 +90,21 @@ void validateTwoPlaces(const material::Fabric& fabric, const Sink& sink) {
   const Vector3d apart(0.0, 0.06, 0.06);
   const HapticLoopSettings sample = tautSample(fabric, kStrain, kRate);
   const Press index{kMiddle + apart, 1.0}, thumb{kMiddle - apart, -1.0};
-  contact::PerFingertip<double> alone{};
-  for (int f = 0; f < contact::kFingertips; ++f) {
+  base::PerFinger<double> alone{};
+  for (const Finger finger : kFingers) {
     HapticLoop loop(sample);
-    contact::PerFingertip<std::optional<Press>> presses;
-    presses[f] = f == 0 ? index : thumb;
+    base::PerFinger<std::optional<Press>> presses;
+    presses[finger] = finger == Finger::kIndex ? index : thumb;
     pressAll(loop, presses, 0.0, kDepth);
-    alone[f] = loop.layer().contacts()[f].force.norm();
-    sinkRim(loop, f == 0 ? "index_alone" : "thumb_alone", sink);
+    alone[finger] = loop.layer().contacts()[finger].force.norm();
+    sinkRim(loop, base::name(finger) + std::string("_alone"), sink);
   }
   HapticLoop both(sample);
   pressAll(both, {index, thumb}, 0.0, kDepth);
-  for (int f = 0; f < contact::kFingertips; ++f) {
-    sink(base::relativeTo(alone[f],
-                          std::string("contact/two_places/") + (f == 0 ? "index" : "thumb"),
-                          alone[f], both.layer().contacts()[f].force.norm(), kAloneTolerance));
+  for (const Finger finger : kFingers) {
+    sink(base::relativeTo(alone[finger], std::string("contact/two_places/") + base::name(finger),
+                          alone[finger], both.layer().contacts()[finger].force.norm(),
+                          kAloneTolerance));
   }
   sinkRim(both, "two_places", sink);
   HapticLoop same_side(sample);
@@ -133,9 +137,9 @@ void validatePinch(const material::Fabric& fabric, const Sink& sink) {
     const double distance = hand.gap + 2.0 * kIndexRadius;
     const double exact = pinchForce(law, kIndexRadius, distance).force;
     sink(base::relativeTo(exact, "contact/pinch/" + std::to_string(4 * i + 4) + "e-4m", exact,
-                          loop.layer().contacts()[0].force.x(), kPinchTolerance));
+                          loop.layer().contacts()[Finger::kIndex].force.x(), kPinchTolerance));
     // The particle that is pressed deepest: how thick is the fabric there?
-    const auto& touched = loop.layer().patch()->contact(0).touched();
+    const auto& touched = loop.layer().patch()->contact(Finger::kIndex).touched();
     const auto deepest =
         std::max_element(touched.begin(), touched.end(),
                          [](const auto& a, const auto& b) { return a.depth < b.depth; });
@@ -164,7 +168,7 @@ std::vector<double> pressForces(const material::Fabric& fabric, int refinement) 
   std::vector<double> forces;
   for (int i = 1; i <= 5; ++i) {
     pressAll(loop, {Press{kMiddle, 1.0}, std::nullopt}, (i - 1) * 1e-3, i * 1e-3);
-    forces.push_back(loop.layer().contacts()[0].force.x());
+    forces.push_back(loop.layer().contacts()[Finger::kIndex].force.x());
   }
   return forces;
 }

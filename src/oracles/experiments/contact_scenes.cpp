@@ -9,8 +9,9 @@
 namespace haptex::oracles {
 namespace {
 
+using base::Finger;
+using base::kFingers;
 using contact::Fingertip;
-using contact::kFingertips;
 using Eigen::Vector3d;
 
 constexpr int kCells = 32;
@@ -98,7 +99,7 @@ void move(Hand& hand, const Vector3d& displacement, double opening, double secon
 }
 
 Vector3d forceOnFingertips(const contact::HapticLayer& layer) {
-  return layer.contacts()[0].force + layer.contacts()[1].force;
+  return layer.contacts()[Finger::kIndex].force + layer.contacts()[Finger::kThumb].force;
 }
 
 RefinedCloth::RefinedCloth(const HapticLoopSettings& sample)
@@ -117,16 +118,17 @@ RefinedCloth::RefinedCloth(const HapticLoopSettings& sample)
 }
 
 void RefinedCloth::step(const Fingertips& fingertips, double h) {
-  contact::PerFingertip<const Fingertip*> present{};
-  for (int f = 0; f < kFingertips; ++f) present[f] = fingertips[f] ? &*fingertips[f] : nullptr;
+  base::PerFinger<const Fingertip*> present{};
+  for (const Finger finger : kFingers)
+    present[finger] = fingertips[finger] ? &*fingertips[finger] : nullptr;
   if (!patch_->advance(motion_, present, h)) {
     throw std::runtime_error("the refined cloth's step could not be solved");
   }
 }
 
-Vector3d RefinedCloth::force(int fingertip) const {
+Vector3d RefinedCloth::force(Finger finger) const {
   Vector3d sum = Vector3d::Zero();
-  for (const contact::TouchedParticle& touched : patch_->contact(fingertip).touched()) {
+  for (const contact::TouchedParticle& touched : patch_->contact(finger).touched()) {
     sum -= touched.force();
   }
   return sum;

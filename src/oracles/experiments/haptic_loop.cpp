@@ -6,7 +6,7 @@ namespace haptex::oracles {
 namespace {
 
 using contact::Fingertip;
-using Fingertips = contact::PerFingertip<std::optional<Fingertip>>;
+using contact::Fingertips;
 
 std::vector<Eigen::Vector3d> restPositions(const mesh::ClothMesh& mesh) {
   std::vector<Eigen::Vector3d> positions;
@@ -30,16 +30,17 @@ HapticLoop::HapticLoop(HapticLoopSettings settings)
       integrator_(cloth_, settings_.step),
       hierarchy_(settings_.mesh.triangles, restPositions(settings_.mesh)),
       layer_(settings_.mesh, settings_.fabric, settings_.effects, settings_.haptics),
-      selection_(settings_.mesh.triangles.size()),
-      attached_(settings_.mesh.rest_coordinates.size(), 0),
+      supply_(settings_.haptics, settings_.mesh.triangles.size()),
       ticks_per_step_(
           static_cast<int>(std::lround(settings_.large_scale_step / settings_.haptics.time_step))) {
+  std::vector<char> attached(settings_.mesh.rest_coordinates.size(), 0);
   for (int particle : settings_.attached_particles) {
     cloth::AttachmentPath path;
     path.start = state_.positions[particle];
     cloth_.attach(particle, path);
-    attached_[particle] = 1;
+    attached[particle] = 1;
   }
+  supply_.setAttached(attached);
   layer_.receive(state_.positions, state_.velocities, settings_.large_scale_step);
 }
 
@@ -66,21 +67,20 @@ void HapticLoop::stepCloth() {
 
 void HapticLoop::choosePatch(const Fingertips& fingertips) {
   hierarchy_.refit(state_.positions);
-  selection_.begin();
-  for (const std::optional<Fingertip>& fingertip : fingertips) {
-    if (!fingertip) continue;
-    const contact::SearchVolume volume =
-        contact::searchVolume(*fingertip, settings_.large_scale_step, settings_.haptics);
-    hierarchy_.query(proximity::Cursor::capsule(volume.begin, volume.end, volume.radius),
-                     {volume.distance, volume.count}, near_);
-    for (std::size_t rank = 0; rank < near_.size(); ++rank) {
-      selection_.add(near_[rank].triangle, near_[rank].distance, static_cast<int>(rank),
-                     settings_.haptics);
-    }
-  }
-  if (!selection_.finish()) return;
+  supply_.ask(fingertips, settings_.large_scale_step,
+              [&](const contact::SearchVolume& volume, contact::PatchSelection& selection) {
+                hierarchy_.query(
+                    proximity::Cursor::capsule(volume.begin, volume.end, volume.radius),
+                    {volume.distance, volume.count}, near_);
+                for (std::size_t rank = 0; rank < near_.size(); ++rank) {
+                  selection.add(near_[rank].triangle, near_[rank].distance, static_cast<int>(rank),
+                                settings_.haptics);
+                }
+                return true;
+              });
+  if (!supply_.isOutdated()) return;
   ++patch_changes_;
-  layer_.exchange(layer_.preparePatch(selection_.elements(), attached_));
+  layer_.exchange(supply_.prepare(layer_));
 }
 
 Eigen::Vector3d HapticLoop::attachmentForce() const {

@@ -11,6 +11,7 @@
 namespace haptex::oracles {
 namespace {
 
+using base::Finger;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -80,7 +81,7 @@ PrescribedTouch makeTouch(const char* name, const HapticLoopSettings& sample, bo
   touch.rest_from = strokes.back().begin + strokes.back().duration;
   touch.fingertips = [=](double time) {
     Fingertips fingertips = handAt(start, strokes, time).fingertips();
-    if (!both) fingertips[1].reset();
+    if (!both) fingertips[Finger::kThumb].reset();
     return fingertips;
   };
   // The taut sample is a little wider than at rest, which is nothing beside kTouchedBy.
@@ -216,7 +217,8 @@ ForceRecord computeInOneLayer(const PrescribedTouch& touch, double cell, double 
   const long steps = std::lround(touch.duration / h);
   for (long i = 1; i <= steps; ++i) {
     cloth.step(touch.fingertips(i * h), h);
-    if (i % steps_per_record == 0) record.forces.push_back({cloth.force(0), cloth.force(1)});
+    if (i % steps_per_record == 0)
+      record.forces.push_back({{cloth.force(Finger::kIndex), cloth.force(Finger::kThumb)}});
   }
   return record;
 }

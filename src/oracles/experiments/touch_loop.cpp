@@ -104,10 +104,10 @@ void TouchLoop::tick() {
 }
 
 void TouchLoop::stepCloth() {
-  contact::PerFingertip<std::optional<contact::Fingertip>> fingertips;
+  contact::Fingertips fingertips;
   for (const Finger finger : kFingers) {
     const FingerMeasurement& measured = device_.controller().measured(finger);
-    contact::Fingertip& tip = fingertips[finger == Finger::kIndex ? 0 : 1].emplace();
+    contact::Fingertip& tip = fingertips[finger].emplace();
     tip.position = hand_ * measured.pose.translation();
     tip.orientation = Eigen::Quaterniond(hand_.linear() * measured.pose.linear());
     tip.velocity = hand_.linear() * measured.velocity + hand_velocity_;
@@ -118,8 +118,7 @@ void TouchLoop::stepCloth() {
 
 ForceCommand TouchLoop::command(Finger finger) {
   if (finger == Finger::kIndex) stepCloth();  // the first of the two to be asked
-  const contact::FingertipContact& contact =
-      cloth_.layer().contacts()[finger == Finger::kIndex ? 0 : 1];
+  const contact::FingertipContact& contact = cloth_.layer().contacts()[finger];
   const FingerMeasurement& measured = device_.controller().measured(finger);
   ForceCommand command;
   command.position = measured.pose.translation();
@@ -144,7 +143,7 @@ Vector3d TouchLoop::felt(Finger finger) const {
 }
 
 Vector3d TouchLoop::rendered(Finger finger) const {
-  return cloth_.layer().contacts()[finger == Finger::kIndex ? 0 : 1].force;
+  return cloth_.layer().contacts()[finger].force;
 }
 
 }  // namespace haptex::oracles

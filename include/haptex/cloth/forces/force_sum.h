@@ -12,6 +12,10 @@ namespace haptex::cloth {
 /// after the other.
 class ForceSum final : public Force {
  public:
+  ForceSum() = default;
+  ForceSum(ForceSum&&) = default;
+  ForceSum& operator=(ForceSum&&) = default;
+
   /// @param force not null. @returns the same
   template <typename AForce>
   AForce& add(std::unique_ptr<AForce> force) {

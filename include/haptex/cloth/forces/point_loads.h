@@ -22,6 +22,11 @@ struct PointLoad {
   Eigen::Matrix3d stiffness;  ///< N/m, symmetric, positive semidefinite
 };
 
+/// The load with the part of its stiffness that is exactly symmetric and positive semidefinite.
+/// @param index for the message
+/// @throws std::invalid_argument as PointLoads::set(), but for their number
+PointLoad checkedLoad(const PointLoad& load, std::size_t index, std::size_t triangle_count);
+
 /// Loads that act until they are replaced; none at first. Their stiffness is in the matrix, so that
 /// a stiff contact stays stable at every time step.
 class PointLoads final : public Force {

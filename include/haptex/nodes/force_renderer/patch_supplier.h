@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "haptex/nodes/common/proximity_messages.h"
 #include "haptex/nodes/force_renderer/layer_builder.h"
 #include "haptex/simulation/force_loop.h"
+#include "haptex/simulation/patch_supply.h"
 
 namespace haptex::nodes {
 
@@ -67,7 +69,7 @@ class PatchSupplier {
   void buildLayer(const haptex::ClothMesh& message);
   void publishForces(const simulation::LoopView& view);
   void ask(const simulation::LoopView& view);
-  bool askAbout(const contact::SearchVolume& volume);
+  bool askAbout(const contact::SearchVolume& volume, contact::PatchSelection& selection);
   void supplyPatch();
   void fail(const std::string& why);
 
@@ -82,10 +84,8 @@ class PatchSupplier {
   Time next_question_{0};
   RestMesh mesh_;
   std::string fabric_;
-  const contact::HapticLayer* layer_ = nullptr;         // the loop's; null: none
-  std::unique_ptr<contact::PatchSelection> selection_;  // with the layer
-  std::vector<char> patch_attached_;
-  bool patch_outdated_ = false;
+  const contact::HapticLayer* layer_ = nullptr;    // the loop's; null: none
+  std::optional<simulation::PatchSupply> supply_;  // with the layer
   std::uint64_t states_published_ = 0;
   bool published_forces_ = false;
   haptex::ContactForces forces_;

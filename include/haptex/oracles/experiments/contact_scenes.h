@@ -10,7 +10,7 @@
 
 namespace haptex::oracles {
 
-using Fingertips = contact::PerFingertip<std::optional<contact::Fingertip>>;
+using contact::Fingertips;
 
 constexpr double kSampleSide = 0.2;      ///< m
 constexpr double kIndexRadius = 7.5e-3;  ///< m
@@ -58,7 +58,7 @@ class RefinedCloth {
   /// @throws std::runtime_error if the step cannot be solved
   void step(const Fingertips& fingertips, double h);
   /// The cloth's force on a fingertip (N).
-  Eigen::Vector3d force(int fingertip) const;
+  Eigen::Vector3d force(base::Finger finger) const;
 
  private:
   contact::ContactLaw law_;

@@ -8,8 +8,8 @@
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/contact/haptic_layer.h"
-#include "haptex/contact/patch_selection.h"
 #include "haptex/proximity/kdop_hierarchy.h"
+#include "haptex/simulation/patch_supply.h"
 
 namespace haptex::oracles {
 
@@ -30,10 +30,9 @@ class HapticLoop {
  public:
   explicit HapticLoop(HapticLoopSettings settings);
 
-  void step(const contact::PerFingertip<std::optional<contact::Fingertip>>& fingertips);
+  void step(const contact::Fingertips& fingertips);
   /// The same for `seconds`.
-  void rest(const contact::PerFingertip<std::optional<contact::Fingertip>>& fingertips,
-            double seconds);
+  void rest(const contact::Fingertips& fingertips, double seconds);
 
   contact::HapticLayer& layer() { return layer_; }
   const contact::HapticLayer& layer() const { return layer_; }
@@ -47,7 +46,7 @@ class HapticLoop {
 
  private:
   void stepCloth();
-  void choosePatch(const contact::PerFingertip<std::optional<contact::Fingertip>>& fingertips);
+  void choosePatch(const contact::Fingertips& fingertips);
 
   HapticLoopSettings settings_;
   cloth::Cloth cloth_;
@@ -55,8 +54,7 @@ class HapticLoop {
   cloth::Integrator integrator_;
   proximity::KdopHierarchy hierarchy_;
   contact::HapticLayer layer_;
-  contact::PatchSelection selection_;
-  std::vector<char> attached_;
+  simulation::PatchSupply supply_;
   std::vector<proximity::NearElement> near_;
   long ticks_ = 0;
   int ticks_per_step_;

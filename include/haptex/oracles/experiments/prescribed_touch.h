@@ -32,7 +32,7 @@ std::vector<PrescribedTouch> prescribedTouches(const material::Fabric& fabric);
 /// The forces on the fingertips (N, world), `interval` apart; the first at one interval.
 struct ForceRecord {
   double interval = 0.0;  ///< s
-  std::vector<contact::PerFingertip<Eigen::Vector3d>> forces;
+  std::vector<base::PerFinger<Eigen::Vector3d>> forces;
 };
 
 /// Time between two records (s): the shortest tick that is compared.

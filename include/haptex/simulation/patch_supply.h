@@ -1,0 +1,49 @@
+// Which patch the small-scale layer is to have: asked for around the fingertips, prepared when the
+// answer has changed.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "haptex/contact/haptic_layer.h"
+#include "haptex/contact/patch_selection.h"
+
+namespace haptex::simulation {
+
+/// One thread.
+class PatchSupply {
+ public:
+  /// @param triangles of the large-scale mesh
+  PatchSupply(const contact::HapticSettings& settings, std::size_t triangles)
+      : settings_(settings), selection_(triangles) {}
+
+  /// Adds what is near a volume to the selection. @returns false if that is not known
+  using Search = std::function<bool(const contact::SearchVolume&, contact::PatchSelection&)>;
+  /// A round about both fingertips. One whose search fails changes nothing.
+  /// @param seconds for which fingertips are predicted
+  /// @returns whether every search was answered
+  bool ask(const contact::Fingertips& fingertips, double seconds, const Search& search);
+
+  /// Which particles of the large-scale mesh are attached, nonzero where they are.
+  void setAttached(const std::vector<char>& attached);
+
+  /// Whether prepare() would make another patch than the last time.
+  bool isOutdated() const { return outdated_; }
+  /// @param layer of the same mesh. @returns null where there is nothing near or free
+  /// @throws std::invalid_argument as HapticLayer::preparePatch()
+  std::unique_ptr<contact::Patch> prepare(const contact::HapticLayer& layer);
+
+  /// Of the large-scale mesh, ascending.
+  const std::vector<int>& triangles() const { return selection_.elements(); }
+  std::size_t attachedSize() const { return attached_.size(); }
+
+ private:
+  contact::HapticSettings settings_;
+  contact::PatchSelection selection_;
+  std::vector<char> attached_;
+  bool outdated_ = false;
+};
+
+}  // namespace haptex::simulation
