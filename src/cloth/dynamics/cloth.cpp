@@ -23,6 +23,12 @@ void requireDensity(const material::Fabric& fabric) {
   }
 }
 
+std::vector<material::Fabric> alone(material::Fabric fabric) {
+  std::vector<material::Fabric> fabrics;
+  fabrics.push_back(std::move(fabric));
+  return fabrics;
+}
+
 /// @param fabrics that the panels name, at least
 std::vector<double> lumpedMasses(const mesh::ClothMesh& mesh,
                                  const std::vector<material::Fabric>& fabrics) {
@@ -53,7 +59,7 @@ Eigen::Vector3d AttachmentPath::velocity(double time) const {
 }
 
 Cloth::Cloth(mesh::ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects)
-    : Cloth(std::move(mesh), std::vector<material::Fabric>{std::move(fabric)}, effects) {}
+    : Cloth(std::move(mesh), alone(std::move(fabric)), effects) {}
 
 Cloth::Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
              const ModelledEffects& effects)
