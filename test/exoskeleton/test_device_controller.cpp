@@ -361,7 +361,7 @@ TEST(DeviceController, WhateverThePersonTheLineAndTheCommanderDoTorquesAreSafe) 
         device.wanted[finger]->stiffness =
             200.0 * std::abs(normal(generator)) * Eigen::Matrix3d::Identity();
       }
-      if (once_in(100)) device.wanted[finger]->force.x() = kNan;
+      if (once_in(100) && device.wanted[finger]) device.wanted[finger]->force.x() = kNan;
       if (once_in(300)) device.wanted[finger].reset();
     }
     device.tick();
