@@ -83,7 +83,7 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric,
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
     whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabric_, law_);
   }
-  loads_.reserve(cloth::Cloth::kMaxPointLoads);
+  loads_.reserve(cloth::PointLoads::kMax);
   for (FingertipContact& contact : contacts_.values) contact.points.reserve(kMaxContactPoints);
 }
 

@@ -35,6 +35,12 @@ cloth::ForceSum forcesOn(const mesh::ClothMesh& mesh, const material::Fabric& fa
   return forces;
 }
 
+/// A third of each adjacent triangle (m^2), per particle.
+std::vector<double> areasOf(const cloth::ForceSum& forces, std::size_t particles) {
+  return cloth::shareOut(forces.find<cloth::Membrane>()->elements(), particles,
+                         [](std::size_t) { return 1.0; });
+}
+
 std::vector<double> scaled(double factor, std::vector<double> values) {
   for (double& value : values) value *= factor;
   return values;
@@ -56,9 +62,9 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabr
              const cloth::ModelledEffects& effects, const ContactLaw& law)
     : cut_(std::move(cut)),
       effects_(effects),
-      areas_(cloth::tributaryAreas(cloth::restElements(cut_.mesh), cut_.supports.size())),
-      masses_(scaled(fabric.areal_density, areas_)),
       forces_(forcesOn(cut_.mesh, fabric, effects)),
+      areas_(areasOf(forces_, cut_.supports.size())),
+      masses_(scaled(fabric.areal_density, areas_)),
       matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, forces_.pairs()),
       solver_(leadingPattern(matrix_, cut_.free_count)),
       contacts_{{SphereContact(law, cut_.free_count), SphereContact(law, cut_.free_count)}},

@@ -64,18 +64,13 @@ void findPanelDefects(const ClothMesh& mesh, MeshDefects& defects) {
 
 }  // namespace
 
-Panel ClothMesh::panelOf(std::size_t triangle) const {
-  if (panels.empty()) return {};
-  return panels[triangle_panels.empty() ? 0 : triangle_panels[triangle]];
-}
-
 std::array<Eigen::Vector2d, 3> ClothMesh::restCorners(std::size_t triangle) const {
   std::array<Eigen::Vector2d, 3> corners;
   for (int i = 0; i < 3; ++i) {
     corners[i] = corner_coordinates.empty() ? rest_coordinates[triangles[triangle][i]]
                                             : corner_coordinates[triangle][i];
   }
-  const double grain = panelOf(triangle).grain;
+  const double grain = panel(panelOf(triangle)).grain;
   if (grain == 0.0) return corners;
   const Eigen::Rotation2Dd into_fabric(-grain);
   for (Eigen::Vector2d& corner : corners) corner = into_fabric * corner;
@@ -87,7 +82,7 @@ CutPanel cutPanel(const ClothMesh& mesh, int panel) {
   std::vector<int> place(mesh.rest_coordinates.size(), -1);
   std::vector<std::size_t> triangles;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!mesh.triangle_panels.empty() && mesh.triangle_panels[t] != panel) continue;
+    if (mesh.panelOf(t) != panel) continue;
     triangles.push_back(t);
     for (const int particle : mesh.triangles[t]) place[particle] = 0;
   }
@@ -106,7 +101,6 @@ CutPanel cutPanel(const ClothMesh& mesh, int panel) {
       cut.sheet.rest_coordinates[triangle[i]] = corners[i];
     }
   }
-  if (!mesh.panels.empty()) cut.panel = mesh.panels[panel];
   return cut;
 }
 

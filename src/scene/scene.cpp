@@ -171,8 +171,8 @@ cloth::BendingSettings readBending(const YamlValue& value) {
   if (value.has("rest_curvature")) {
     const YamlValue curvature = value.at("rest_curvature");
     curvature.requireKeys({"weft", "warp"});
-    settings.rest_curvature << readCurvature(curvature.at("weft")),
-        readCurvature(curvature.at("warp"));
+    settings.rest_curvature = {readCurvature(curvature.at("weft")),
+                               readCurvature(curvature.at("warp"))};
   }
   return settings;
 }

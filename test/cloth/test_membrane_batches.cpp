@@ -24,9 +24,10 @@ MembraneSystem sumOfEachAlone(
   for (std::size_t t = 0; t < cloth.mesh().triangles.size(); ++t) {
     mesh::ClothMesh mesh = cloth.mesh();
     mesh.triangles = {mesh.triangles[t]};
-    const Membrane membrane(restElements(mesh), fabric, cloth.effects().viscosity,
-                            cloth.effects().contraction);
+    Membrane membrane(restElements(mesh), fabric, cloth.effects().viscosity,
+                      cloth.effects().contraction);
     linear::SymmetricBlockMatrix matrix(sum.matrix.size(), mesh.triangles);
+    membrane.bind(matrix);
     add(membrane, t, matrix, sum.rhs);
     for (int i = 0; i < matrix.size(); ++i) {
       sum.matrix.diagonal(i) += matrix.diagonal(i);

@@ -307,11 +307,10 @@ TEST(PointLoads, AreRefusedByIndexAndReasonAndThenTheOldOnesStay) {
   bad.stiffness = Vector3d(100.0, 100.0, 0.0).asDiagonal();
   bad.stiffness(0, 1) = bad.stiffness(1, 0) = 101.0;  // no negative diagonal, but indefinite
   expectRefused(bad, "the stiffness has the eigenvalue -1");
-  const std::string message =
-      refusal(cloth, std::vector<PointLoad>(Cloth::kMaxPointLoads + 1, load(0)));
+  const std::string message = refusal(cloth, std::vector<PointLoad>(PointLoads::kMax + 1, load(0)));
   EXPECT_EQ(message, "there are 4097 point loads; allowed are 4096");
   EXPECT_EQ(loadsOf(cloth).size(), 1u);
-  EXPECT_EQ(refusal(cloth, std::vector<PointLoad>(Cloth::kMaxPointLoads, load(0))), "accepted");
+  EXPECT_EQ(refusal(cloth, std::vector<PointLoad>(PointLoads::kMax, load(0))), "accepted");
   EXPECT_EQ(refusal(cloth, {}), "accepted");
   EXPECT_TRUE(loadsOf(cloth).empty());
 }

@@ -80,9 +80,9 @@ class Patch {
   RefinedCut cut_;
   std::vector<std::array<int, 3>> corners_;  // per particle: those of its owner
   cloth::ModelledEffects effects_;
+  cloth::ForceSum forces_;
   std::vector<double> areas_;   // m^2, per particle
   std::vector<double> masses_;  // kg
-  cloth::ForceSum forces_;
   linear::SymmetricBlockMatrix matrix_;
   PatchSolver solver_;
 

@@ -29,7 +29,10 @@ struct ClothMesh {
   std::vector<std::array<Eigen::Vector2d, 3>> corner_coordinates = {};
 
   int panelCount() const { return panels.empty() ? 1 : static_cast<int>(panels.size()); }
-  Panel panelOf(std::size_t triangle) const;
+  int panelOf(std::size_t triangle) const {
+    return triangle_panels.empty() ? 0 : triangle_panels[triangle];
+  }
+  Panel panel(int index) const { return panels.empty() ? Panel() : panels[index]; }
   /// Of the corners of a triangle, (u along weft, v along warp) of its fabric, m.
   std::array<Eigen::Vector2d, 3> restCorners(std::size_t triangle) const;
 };
@@ -38,7 +41,6 @@ struct ClothMesh {
 struct CutPanel {
   ClothMesh sheet;
   std::vector<int> particles;  ///< of the mesh, for every one of the sheet, ascending
-  Panel panel;
 };
 /// @param mesh sound @param panel of it
 CutPanel cutPanel(const ClothMesh& mesh, int panel);

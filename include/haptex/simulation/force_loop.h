@@ -37,7 +37,7 @@ struct LayerUpdate {
 
 /// For those who ask what is near the fingertips and tell the cloth what acts on it.
 struct LoopView {
-  LoopView() { loads.reserve(cloth::Cloth::kMaxPointLoads); }
+  LoopView() { loads.reserve(cloth::PointLoads::kMax); }
 
   std::uint64_t states = 0;   ///< of the cloth, taken so far
   double state_period = 0.0;  ///< s, of simulated time, between the last two

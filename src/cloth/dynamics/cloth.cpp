@@ -32,15 +32,9 @@ std::vector<material::Fabric> alone(material::Fabric fabric) {
 /// @param fabrics that the panels name, at least
 std::vector<double> lumpedMasses(const mesh::ClothMesh& mesh,
                                  const std::vector<material::Fabric>& fabrics) {
-  std::vector<double> masses(mesh.rest_coordinates.size(), 0.0);
-  const std::vector<MembraneElement> elements = restElements(mesh);
-  for (std::size_t t = 0; t < elements.size(); ++t) {
-    const double density = fabrics[mesh.panelOf(t).fabric].areal_density;
-    for (int particle : elements[t].particles) {
-      masses[particle] += density * elements[t].area / 3.0;
-    }
-  }
-  return masses;
+  return shareOut(restElements(mesh), mesh.rest_coordinates.size(), [&](std::size_t triangle) {
+    return fabrics[mesh.panel(mesh.panelOf(triangle)).fabric].areal_density;
+  });
 }
 
 }  // namespace

@@ -23,6 +23,12 @@ double timeOf(const Stage& stage) {
   return (1.0 - stage.share) * stage.base.time + stage.share * stage.end;
 }
 
+/// What forces of the stage depend on, with what they remember from the beginning of the step.
+ForceState forceState(const Stage& stage, const Positions& positions,
+                      const Velocities& velocities) {
+  return {positions, velocities, timeOf(stage), stage.base.memory.data()};
+}
+
 }  // namespace
 
 StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
@@ -73,12 +79,6 @@ void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const 
     result.positions[i] = attachment ? placeIn(stage, *attachment, i)
                                      : stage.base.positions[i] + stage.a * result.velocities[i];
   }
-}
-
-/// The forces of the stage in a state, with what they remember of the beginning of the step.
-ForceState StageSolver::forceState(const Stage& stage, const Positions& positions,
-                                   const Velocities& velocities) {
-  return {positions, velocities, timeOf(stage), stage.base.memory.data()};
 }
 
 /// What Newton iterations hold fixed. @param at near the end of the stage

@@ -279,16 +279,19 @@ double Aerodynamics::incrementalPotential(const ForceState& state, const Vector3
 }
 
 void Aerodynamics::addJacobian(const ForceState& state, JacobianRows& rows) const {
-  for (const MembraneElement& element : elements_) {
-    const auto& [a, b, c] = element.particles;
-    if (!rows.asksFor(a) && !rows.asksFor(b) && !rows.asksFor(c)) continue;
-    const Jacobian jacobian = exactJacobian(element, state.positions, state.velocities, state.time);
-    for (const int row : element.particles) {
-      for (int j = 0; j < 3; ++j) {
-        rows.add(row, element.particles[j], jacobian.by_position[j], jacobian.by_velocity);
-      }
-    }
-  }
+  addElementJacobians(
+      elements_,
+      [&](const MembraneElement& element) {
+        const Jacobian alike =
+            exactJacobian(element, state.positions, state.velocities, state.time);
+        ElementJacobian blocks;
+        for (int i = 0; i < 3; ++i) {
+          blocks.by_position[i] = alike.by_position;
+          blocks.by_velocity[i].fill(alike.by_velocity);
+        }
+        return blocks;
+      },
+      rows);
 }
 
 Aerodynamics::Jacobian Aerodynamics::exactJacobian(const MembraneElement& element,

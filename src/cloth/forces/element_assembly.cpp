@@ -20,6 +20,7 @@ MembraneElement restElement(const mesh::ClothMesh& mesh, std::size_t triangle) {
   const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
   MembraneElement element{};
   element.particles = particles;
+  element.slots = {-1, -1, -1};
   element.weft_weights = {(vb - vc) / d, (vc - va) / d, (va - vb) / d};
   element.warp_weights = {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d};
   element.area = 0.5 * std::abs(d);
@@ -32,10 +33,8 @@ std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh, std::opti
   std::vector<MembraneElement> elements;
   elements.reserve(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const int of = mesh.triangle_panels.empty() ? 0 : mesh.triangle_panels[t];
-    if (!panel || *panel == of) elements.push_back(restElement(mesh, t));
+    if (!panel || *panel == mesh.panelOf(t)) elements.push_back(restElement(mesh, t));
   }
-  bindElements({static_cast<int>(mesh.rest_coordinates.size()), mesh.triangles}, elements);
   return elements;
 }
 
@@ -45,20 +44,6 @@ void bindElements(const linear::SymmetricBlockMatrix& matrix,
     const auto& [a, b, c] = element.particles;
     element.slots = {matrix.slot(b, a), matrix.slot(c, a), matrix.slot(c, b)};
   }
-}
-
-std::vector<double> tributaryAreas(const std::vector<MembraneElement>& elements,
-                                   std::size_t particle_count) {
-  std::vector<double> areas(particle_count, 0.0);
-  for (const MembraneElement& element : elements) {
-    for (int particle : element.particles) areas[particle] += element.area / 3.0;
-  }
-  return areas;
-}
-
-MembraneStrain greenStrain(const MembraneElement& element, const std::vector<Vector3d>& positions) {
-  const auto [weft, warp] = elementFrame(element, positions);
-  return {0.5 * (weft.squaredNorm() - 1.0), 0.5 * (warp.squaredNorm() - 1.0), weft.dot(warp)};
 }
 
 Vector3d projectStress(const Vector3d& stress) {

@@ -13,9 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 struct Membrane::Frame : ElementFrame {
-  MembraneStrain strain() const {
-    return {0.5 * (weft.squaredNorm() - 1.0), 0.5 * (warp.squaredNorm() - 1.0), weft.dot(warp)};
-  }
+  MembraneStrain strain() const { return greenStrain(*this); }
   MembraneStrain rate(const Frame& derivative) const {
     return {weft.dot(derivative.weft), warp.dot(derivative.warp),
             derivative.weft.dot(warp) + weft.dot(derivative.warp)};
@@ -93,16 +91,10 @@ Membrane::Membrane(std::vector<MembraneElement> elements, const material::Fabric
       elastic_{fabric.weft.elastic, fabric.warp.elastic, fabric.shear.elastic},
       viscous_{fabric.weft.viscous, fabric.warp.viscous, fabric.shear.viscous},
       viscosity_(viscosity),
-      coupling_(contraction ? material::contractionModulus(fabric) : 0.0) {
-  makeBatches();
-}
+      coupling_(contraction ? material::contractionModulus(fabric) : 0.0) {}
 
 void Membrane::bind(const linear::SymmetricBlockMatrix& matrix) {
   bindElements(matrix, elements_);
-  makeBatches();
-}
-
-void Membrane::makeBatches() {
   batches_.clear();
   if (!kernels::canAddBatches()) return;
   for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {

@@ -40,16 +40,12 @@ void requireModelled(const material::Fabric& fabric, const ModelledEffects& effe
   }
 }
 
-int fabricOf(const mesh::ClothMesh& mesh, int panel) {
-  return mesh.panels.empty() ? 0 : mesh.panels[panel].fabric;
-}
-
 void requirePanels(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                    const ModelledEffects& effects) {
   for (int p = 0; p < mesh.panelCount(); ++p) {
-    if (fabricOf(mesh, p) < static_cast<int>(fabrics.size())) continue;
+    if (mesh.panel(p).fabric < static_cast<int>(fabrics.size())) continue;
     throw std::invalid_argument("panel " + std::to_string(p) + " is of fabric " +
-                                std::to_string(fabricOf(mesh, p)) + "; there are " +
+                                std::to_string(mesh.panel(p).fabric) + "; there are " +
                                 std::to_string(fabrics.size()));
   }
   if (mesh.panelCount() > 1 && effects.elasticity == Elasticity::kMassSpring) {
@@ -67,7 +63,7 @@ void addElasticity(const mesh::ClothMesh& mesh, const std::vector<material::Fabr
     return;
   }
   for (int p = 0; p < mesh.panelCount(); ++p) {
-    const material::Fabric& fabric = fabrics[fabricOf(mesh, p)];
+    const material::Fabric& fabric = fabrics[mesh.panel(p).fabric];
     std::vector<MembraneElement> elements = restElements(mesh, p);
     if (effects.elasticity == Elasticity::kCorotational) {
       forces.add(std::make_unique<Corotational>(std::move(elements), fabric, effects.viscosity));
@@ -102,7 +98,7 @@ void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fa
   if (effects.air) forces.add(std::make_unique<Aerodynamics>(restElements(mesh), *effects.air));
   if (!effects.bending || effects.elasticity == Elasticity::kMassSpring) return;
   for (int p = 0; p < mesh.panelCount(); ++p) {
-    addBending(mesh::cutPanel(mesh, p), fabrics[fabricOf(mesh, p)], effects, forces);
+    addBending(mesh::cutPanel(mesh, p), fabrics[mesh.panel(p).fabric], effects, forces);
   }
 }
 

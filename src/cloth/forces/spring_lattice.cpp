@@ -95,7 +95,6 @@ double SpringLattice::Law::energy(const LatticeSpring& spring, double strain) co
 SpringLattice::SpringLattice(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
                              bool viscosity, bool bend)
     : springs_(findLatticeSprings(mesh, bend)), viscosity_(viscosity) {
-  bind({static_cast<int>(mesh.rest_coordinates.size()), mesh.triangles, pairs()});
   if (bend) {
     const material::BendingRigidity& rigidity = fabric.bending.value();
     elastic_.rigidity = {rigidity.weft, rigidity.warp};

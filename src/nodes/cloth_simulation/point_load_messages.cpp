@@ -36,10 +36,10 @@ std::vector<cloth::PointLoad> pointLoads(const haptex::ContactForces& message,
                                          std::size_t triangle_count) {
   requireFixedFrame(message.header);
   const std::size_t points = message.triangles.size();
-  if (points > cloth::Cloth::kMaxPointLoads) {
+  if (points > cloth::PointLoads::kMax) {
     throw std::invalid_argument("triangles has " + std::to_string(points) +
                                 " elements: allowed are " +
-                                std::to_string(cloth::Cloth::kMaxPointLoads));
+                                std::to_string(cloth::PointLoads::kMax));
   }
   requireLength("barycentric", message.barycentric.size(), points, 3);
   requireLength("positions", message.positions.size(), points, 1);

@@ -45,8 +45,6 @@ struct AttachmentPath {
 
 class Cloth {
  public:
-  static constexpr std::size_t kMaxPointLoads = PointLoads::kMax;
-
   /// @throws std::invalid_argument if the mesh has defects, the density is not finite and > 0,
   ///   gravity is not finite, or as addFabricForces()
   Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
@@ -127,7 +125,7 @@ class Cloth {
   double potentialEnergy(const ClothState& state) const;
   double kineticEnergy(const ClothState& state) const;
   /// Tells whether potentialEnergy() of a state may be another now: a number greater than 0 that no
-  /// other cloth has but copies, and that setFabric(), setExternalForce() and setPointLoads()
+  /// other cloth has, and that setFabric(), setExternalForce() and setPointLoads()
   /// change.
   std::uint64_t revision() const { return revision_; }
 

@@ -72,8 +72,6 @@ class StageSolver {
  private:
   enum class Descent { kFound, kBelowRounding, kNone };
 
-  static ForceState forceState(const Stage& stage, const Positions& positions,
-                               const Velocities& velocities);
   void hold(const Cloth& cloth, const Stage& stage, const ClothState& at, bool passive);
   double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result);
   void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);

@@ -17,25 +17,35 @@ namespace haptex::cloth {
 /// along weft, V likewise along warp (no unit); the weights (1/m) sum to zero.
 struct MembraneElement {
   std::array<int, 3> particles;        ///< ascending
-  std::array<int, 3> slots;            ///< of the matrix blocks (1,0), (2,0), (2,1)
+  std::array<int, 3> slots;            ///< of the matrix blocks (1,0), (2,0), (2,1); -1 before
+                                       ///< bindElements()
   std::array<double, 3> weft_weights;  ///< ru of the design, 1/m
   std::array<double, 3> warp_weights;  ///< rv, 1/m
   double area;                         ///< at rest, m^2
 };
 
-/// The elements of all triangles of a mesh without defects, or of one panel's, with the slots of a
-/// matrix that has the edges of the triangles and nothing else.
+/// The elements of all triangles of a mesh without defects, or of one panel's.
 std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh,
                                           std::optional<int> panel = std::nullopt);
 
-/// Looks up the slots of elements in a matrix whose pattern has more than that.
+/// Looks up the slots of elements in a matrix.
 /// @throws std::out_of_range if the pattern lacks one of them
 void bindElements(const linear::SymmetricBlockMatrix& matrix,
                   std::vector<MembraneElement>& elements);
 
-/// A third of the area of each adjacent triangle (m^2), per particle.
-std::vector<double> tributaryAreas(const std::vector<MembraneElement>& elements,
-                                   std::size_t particle_count);
+/// A third of each adjacent triangle, per particle: of its area (m^2) times `density`.
+/// @param density of an element, by its place: of the area what is to be shared out
+template <typename Density>
+std::vector<double> shareOut(const std::vector<MembraneElement>& elements,
+                             std::size_t particle_count, const Density& density) {
+  std::vector<double> shares(particle_count, 0.0);
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    for (int particle : elements[t].particles) {
+      shares[particle] += density(t) * elements[t].area / 3.0;
+    }
+  }
+  return shares;
+}
 
 /// Blocks [i][j] of the particles of an element, in its order.
 struct ElementJacobian {
@@ -79,9 +89,15 @@ inline ElementFrame elementFrame(const MembraneElement& element,
 /// shear U.V.
 using MembraneStrain = Eigen::Vector3d;
 
-/// Green-Lagrange strain of an element.
-MembraneStrain greenStrain(const MembraneElement& element,
-                           const std::vector<Eigen::Vector3d>& positions);
+/// Green-Lagrange strain of an element. @param frame of elementFrame() of the positions
+inline MembraneStrain greenStrain(const ElementFrame& frame) {
+  return {0.5 * (frame.weft.squaredNorm() - 1.0), 0.5 * (frame.warp.squaredNorm() - 1.0),
+          frame.weft.dot(frame.warp)};
+}
+inline MembraneStrain greenStrain(const MembraneElement& element,
+                                  const std::vector<Eigen::Vector3d>& positions) {
+  return greenStrain(elementFrame(element, positions));
+}
 
 /// Projects the symmetric tensor [[s0, s2], [s2, s1]] to its nearest positive semidefinite one
 /// (Frobenius norm) by clamping its two eigenvalues in closed form.

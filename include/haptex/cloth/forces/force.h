@@ -86,6 +86,7 @@ class Force {
 
   /// How many vectors Newton iterations of a stage hold fixed.
   virtual std::size_t heldSize() const { return 0; }
+  /// Writes them. @param held heldSize() vectors, whose units are the force's own affair
   virtual void hold(const NewtonStart& start, Eigen::Vector3d* held) const;
 
   // Where nothing is held and the linearised force is the exact one, what follows need not be

@@ -15,6 +15,7 @@ struct JacobianBlock {
   Eigen::Matrix3d by_velocity;  ///< N.s/m
 };
 
+/// Adds up the blocks of some rows; those of other rows are left out.
 class JacobianRows {
  public:
   /// @param particles whose rows are asked for; may repeat

@@ -31,7 +31,7 @@ PointLoad checkedLoad(const PointLoad& load, std::size_t index, std::size_t tria
 /// a stiff contact stays stable at every time step.
 class PointLoads final : public Force {
  public:
-  static constexpr std::size_t kMax = 4096;
+  static constexpr std::size_t kMax = 4096;  ///< loads
 
   /// @param mesh without defects
   explicit PointLoads(const mesh::ClothMesh& mesh);

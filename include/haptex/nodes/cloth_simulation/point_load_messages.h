@@ -19,7 +19,7 @@ constexpr double kMaxWeights = 100.0;       ///< no unit, norm
 
 /// @param triangle_count of the cloth
 /// @throws std::invalid_argument naming what is wrong: the frame is not kFixedFrame, the arrays
-///   differ in length, there are more points than Cloth::kMaxPointLoads, a number is beyond the
+///   differ in length, there are more points than PointLoads::kMax, a number is beyond the
 ///   bounds above, or what Cloth::setPointLoads() refuses
 std::vector<cloth::PointLoad> pointLoads(const haptex::ContactForces& message,
                                          std::size_t triangle_count);
