@@ -124,7 +124,7 @@ std::string YamlValue::text() const {
   return node_.Scalar();
 }
 
-std::string YamlValue::oneOf(std::initializer_list<const char*> words) const {
+std::string YamlValue::oneOf(const std::vector<const char*>& words) const {
   const std::vector<std::string> allowed(words.begin(), words.end());
   if (!node_.IsScalar() || !contains(allowed, node_.Scalar())) {
     refuse(allowed.size() == 1 ? "must be " + allowed.front() : "must be one of " + join(allowed));

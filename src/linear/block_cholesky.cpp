@@ -4,6 +4,19 @@
 #include <cmath>
 #include <type_traits>
 
+// The steps of a factorisation. The order of elimination and the panels, each a supernode as a
+// dense column-major matrix with its square at the diagonal above the rows below, are those of
+// analyse().
+//   1. load(): the blocks of A go to their places in the panel that is next, the target.
+//   2. applyDescendant(): every earlier panel that has rows among the target's columns subtracts
+//      the product of its rows from it. Left-looking: a panel is written once, when all that acts
+//      on it is known, and needs no memory for updates of others.
+//   3. factoriseNarrow() or factoriseWide(): dense Cholesky within the panel.
+//   4. The panel joins the list of the next target that it acts on: that of its first row below.
+// Panels of one subtree of the elimination tree act on each other and on the top only, so that
+// subtrees are factorised side by side, and then the top, whose large panels are shared by rows.
+// Ng and Peyton, Block sparse Cholesky algorithms on advanced uniprocessor computers, SIAM J. Sci.
+// Comput. 14 (1993).
 namespace haptex::linear {
 namespace {
 
@@ -46,6 +59,7 @@ BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern,
   if constexpr (std::is_same_v<T, float>) scales_.resize(3, pattern.size());
 }
 
+/// Panels lie in memory in the order in which they are factorised.
 template <typename T>
 void BasicBlockCholesky<T>::makePanels() {
   std::size_t size = 0;
@@ -77,6 +91,8 @@ void BasicBlockCholesky<T>::cutTree() {
   }
   top_place_.assign(elimination_.order.size(), -1);
   std::vector<int> roots = children[count];
+  // What remains of a subtree without its root are its children's: a cut through the tree comes
+  // down where the work is.
   const auto cheaper = [&](int a, int b) { return cost[a] < cost[b]; };
   while (cost_ > kMinCut) {
     const auto costliest = std::max_element(roots.begin(), roots.end(), cheaper);
@@ -93,6 +109,7 @@ void BasicBlockCholesky<T>::cutTree() {
     const Supernode& supernode = elimination_.supernodes[s];
     for (int k = supernode.first; k < supernode.end; ++k) top_place_[k] = top_columns_++;
   }
+  // Neighbours in the postorder share the columns that they act on, so groups are runs of them.
   double all = 0.0, done = 0.0;
   for (int root : roots) all += cost[root];
   for (int root : roots) {
@@ -108,6 +125,7 @@ void BasicBlockCholesky<T>::cutTree() {
   }
 }
 
+/// A block goes to the panel of the one of its two particles that is eliminated first.
 template <typename T>
 void BasicBlockCholesky<T>::makeEntries(const SymmetricBlockMatrix& pattern) {
   std::vector<std::vector<Entry>> entries_of(elimination_.supernodes.size());
@@ -161,6 +179,7 @@ bool BasicBlockCholesky<T>::computeScales(const SymmetricBlockMatrix& matrix) {
   return sound;
 }
 
+/// Zeros where the factor fills in, and the matrix's blocks at their places.
 template <typename T>
 void BasicBlockCholesky<T>::load(const SymmetricBlockMatrix& matrix, int target, T shift) {
   const Panel& panel = panel_of_[target];
@@ -195,6 +214,7 @@ void BasicBlockCholesky<T>::load(const SymmetricBlockMatrix& matrix, int target,
   }
 }
 
+/// Three columns at a time: what those before contribute, the 3x3 square, and the rows below.
 template <typename T>
 bool BasicBlockCholesky<T>::factoriseNarrow(int target) {
   const Panel& panel = panel_of_[target];
@@ -245,6 +265,7 @@ bool BasicBlockCholesky<T>::factoriseWide(int target) {
   return true;
 }
 
+/// The subtrees of a group, one after the other, by one thread.
 template <typename T>
 void BasicBlockCholesky<T>::factoriseGroup(int group, const SymmetricBlockMatrix& matrix, T shift,
                                            Workspace& work) {
@@ -262,6 +283,7 @@ void BasicBlockCholesky<T>::factoriseGroup(int group, const SymmetricBlockMatrix
       work.positive = factoriseNarrow(s);
       next_row_[s] = 0;
       const auto& rows = elimination_.supernodes[s].rows;
+      // The lists of the top's targets are made when all threads are done: collectTopDescendants().
       if (rows.empty() || top_place_[rows.front()] != -1) continue;
       const int later = elimination_.supernode_of[rows.front()];
       next_descendant_[s] = first_descendant_[later];
@@ -284,6 +306,8 @@ void BasicBlockCholesky<T>::collectTopDescendants() {
   }
 }
 
+/// A panel of the top: every thread applies all descendants to its share of the rows, always in the
+/// order of the list.
 template <typename T>
 bool BasicBlockCholesky<T>::factoriseTop(int target, const SymmetricBlockMatrix& matrix, T shift) {
   std::vector<int>& panel_row = work_[0].panel_row;

@@ -41,7 +41,7 @@ class ObjReader {
       readLine(line.substr(0, line.find('#')));
     }
     if (stream.bad()) throw std::runtime_error(path_ + ": cannot be read to its end");
-    if (with_textures_) takeRestCoordinates();
+    if (with_textures_) fillRestCoordinates();
     return std::move(mesh_);
   }
 
@@ -132,7 +132,7 @@ class ObjReader {
   }
 
   // A particle in no face keeps the origin here; requireSound() then reports it.
-  void takeRestCoordinates() {
+  void fillRestCoordinates() {
     for (const std::optional<int>& texture : texture_of_particle_) {
       mesh_.rest_coordinates.push_back(texture ? textures_[*texture] : Eigen::Vector2d::Zero());
     }

@@ -13,9 +13,11 @@ constexpr double kLongestTimeStep = 10.0;   // s
 constexpr int kMaxNewtonIterations = 1000;
 
 cloth::IntegrationMethod readIntegrator(const YamlValue& value) {
-  const std::string name =
-      value.oneOf({"backward_euler", "backward_midpoint", "bdf2", "tr_bdf2", "explicit_euler",
-                   "midpoint", "runge_kutta_4", "two_step_euler"});
+  std::vector<const char*> names;
+  for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
+    names.push_back(named.name);
+  }
+  const std::string name = value.oneOf(names);
   for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
     if (name == named.name) return named.method;
   }

@@ -37,33 +37,33 @@ ForceLoop::ForceLoop(const base::PerFinger<double>& radii)
   }
 }
 
-void ForceLoop::takePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival,
-                         Time measured) {
+void ForceLoop::receivePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival,
+                            Time measured) {
   FingerInput& input = inputs_[finger];
   const std::lock_guard<std::mutex> lock(input.writers);
   input.pose.write({in_hand_base, arrival, measured, true});
 }
 
-void ForceLoop::takeTwist(Finger finger, const FingertipTwist& in_hand_base, Time arrival) {
+void ForceLoop::receiveTwist(Finger finger, const FingertipTwist& in_hand_base, Time arrival) {
   FingerInput& input = inputs_[finger];
   const std::lock_guard<std::mutex> lock(input.writers);
   input.twist.write({in_hand_base, arrival, true});
 }
 
-void ForceLoop::takeHandBase(const Eigen::Isometry3d& in_world, Time time, Time arrival,
-                             bool fixed) {
+void ForceLoop::receiveHandBase(const Eigen::Isometry3d& in_world, Time time, Time arrival,
+                                bool fixed) {
   hand_base_.write({in_world, time, arrival, fixed});
 }
 
-void ForceLoop::takeHeartbeat(Time arrival) { heartbeat_ = arrival.count(); }
+void ForceLoop::receiveHeartbeat(Time arrival) { heartbeat_ = arrival.count(); }
 
-void ForceLoop::takeState(const LargeScaleState& state, Time arrival) {
+void ForceLoop::receiveState(const LargeScaleState& state, Time arrival) {
   incoming_state_.state = state;
   incoming_state_.arrival = arrival;
   states_.write(incoming_state_);
 }
 
-void ForceLoop::takeArray(Finger finger, const Eigen::Isometry3d& in_fingertip) {
+void ForceLoop::receiveArray(Finger finger, const Eigen::Isometry3d& in_fingertip) {
   inputs_[finger].array.write({in_fingertip, true});
 }
 
@@ -151,7 +151,7 @@ void ForceLoop::receiveState(double period) {
 void ForceLoop::takeFingers(Time now) {
   if (hand_base_.update()) {
     const HandBase& hand = hand_base_.value();
-    follower_.take(hand.pose, hand.time, now);
+    follower_.receive(hand.pose, hand.time, now);
     news_.hand_base = hand.arrival;
     news_.hand_base_fixed = hand.fixed;
   }

@@ -42,7 +42,7 @@ FrameMotion FrameFollower::at(Time now) const {
   return motion;
 }
 
-void FrameFollower::take(const Eigen::Isometry3d& pose, Time time, Time now) {
+void FrameFollower::receive(const Eigen::Isometry3d& pose, Time time, Time now) {
   const bool is_first = !time_;
   const FrameMotion before = at(now);
   const Time period = is_first ? Time{0} : time - *time_;

@@ -69,7 +69,7 @@ void RealTimeLoop::setPaused(bool paused) {
   });
 }
 
-StepsTaken RealTimeLoop::takeSteps(std::uint32_t count) {
+StepsRun RealTimeLoop::runSteps(std::uint32_t count) {
   std::unique_lock<std::mutex> lock(mutex_);
   requireRunning();
   if (!status_.paused) {
@@ -79,7 +79,7 @@ StepsTaken RealTimeLoop::takeSteps(std::uint32_t count) {
     throw std::invalid_argument("steps for another caller are being taken: allowed is one at once");
   }
   steps_requested_ = true;
-  steps_taken_ = StepsTaken{};
+  steps_taken_ = StepsRun{};
   steps_wanted_ = count;
   wake_loop_.notify_all();
   wake_callers_.wait(lock, [&] { return steps_wanted_ == 0; });
@@ -106,16 +106,16 @@ void RealTimeLoop::run() {
     const auto disturbed = [this] { return !running_ || !requests_.empty(); };
     if (!running_) break;
     if (steps_wanted_ > 0) {
-      takeRequestedStep(lock);
+      runRequestedStep(lock);
     } else if (status_.paused) {
       wake_loop_.wait(lock, [&] { return disturbed() || steps_wanted_ > 0; });
     } else if (Clock::now() >= due_) {  // before new requests, which would starve the steps
-      takeDueStep(lock);
+      runDueStep(lock);
     } else {
       wake_loop_.wait_until(lock, due_, disturbed);
     }
   }
-  endSteps(StepsTaken::End::kInterrupted);
+  endSteps(StepsRun::End::kInterrupted);
   for (Request* request : requests_) {
     request->error = std::make_exception_ptr(std::runtime_error("the simulation has ended"));
     request->done = true;
@@ -144,17 +144,17 @@ bool RealTimeLoop::carryOutRequests(std::unique_lock<std::mutex>& lock) {
   return count > 0;
 }
 
-void RealTimeLoop::takeRequestedStep(std::unique_lock<std::mutex>& lock) {
+void RealTimeLoop::runRequestedStep(std::unique_lock<std::mutex>& lock) {
   step(lock, false);
   if (status_.last_step_rejected) {
-    endSteps(StepsTaken::End::kRejected);
+    endSteps(StepsRun::End::kRejected);
     return;
   }
   ++steps_taken_.steps;
   if (--steps_wanted_ == 0) wake_callers_.notify_all();
 }
 
-void RealTimeLoop::takeDueStep(std::unique_lock<std::mutex>& lock) {
+void RealTimeLoop::runDueStep(std::unique_lock<std::mutex>& lock) {
   const bool cheapest = simulation_.runsCheapest();
   const double seconds = step(lock, true);
   const Clock::time_point now = Clock::now();
@@ -201,10 +201,10 @@ double RealTimeLoop::step(std::unique_lock<std::mutex>& lock, bool in_real_time)
 void RealTimeLoop::resume() {
   due_ = Clock::now();
   startWindow();
-  if (steps_wanted_ > 0) endSteps(StepsTaken::End::kInterrupted);
+  if (steps_wanted_ > 0) endSteps(StepsRun::End::kInterrupted);
 }
 
-void RealTimeLoop::endSteps(StepsTaken::End end) {
+void RealTimeLoop::endSteps(StepsRun::End end) {
   if (steps_wanted_ == 0) return;
   steps_taken_.end = end;
   steps_wanted_ = 0;

@@ -34,13 +34,6 @@ void printRow(std::ostream& out, const std::string& name, const std::string& val
   out << text("  %-20s ", name.c_str()) << value << '\n';
 }
 
-std::string methodName(cloth::IntegrationMethod method) {
-  for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
-    if (named.method == method) return named.name;
-  }
-  throw std::logic_error("an integrator has no name");
-}
-
 std::string solverName(linear::LinearSolverMethod method) {
   switch (method) {
     case linear::LinearSolverMethod::kAutomatic:
@@ -103,10 +96,9 @@ void printScene(const std::string& path, const scene::Scene& scene, const materi
   printRow(out, "mesh",
            text("%zu triangles, %zu particles of which %zu are attached, cells of %.3g mm",
                 scene.mesh.triangles.size(), scene.mesh.initial_positions.size(),
-                scene.attached_particles.size(), 1e3 * cellSize(scene.mesh)));
+                scene.attached_particles.size(), 1e3 * medianCellSize(scene.mesh)));
   printRow(out, "stretch and shear", elasticityName(scene.effects.elasticity));
-  std::string step =
-      text("%g ms, %s", 1e3 * scene.time_step, methodName(scene.step.method).c_str());
+  std::string step = text("%g ms, %s", 1e3 * scene.time_step, nameOf(scene.step.method));
   if (cloth::isImplicit(scene.step.method)) {
     step += text(", %d linear solve%s by %s to %g, %d thread%s", scene.step.newton_iterations,
                  scene.step.newton_iterations == 1 ? "" : "s at most",
@@ -185,9 +177,8 @@ void printErrors(const scene::Scene& scene, const material::Fabric& fabric,
   }
   printRow(out, "nearest studied",
            text("%s: cells of %.3g mm, steps of %.3g ms, %s", quality->name.c_str(),
-                1e3 * quality->cell_size, 1e3 * quality->time_step,
-                methodName(quality->step.method).c_str()));
-  if (kNear * cellSize(scene.mesh) < quality->cell_size) {
+                1e3 * quality->cell_size, 1e3 * quality->time_step, nameOf(quality->step.method)));
+  if (kNear * medianCellSize(scene.mesh) < quality->cell_size) {
     printRow(out, "", "the scene's cells are finer; most of these errors comes from the step");
   }
   const bool same =
@@ -251,7 +242,7 @@ scene::Scene withoutEffect(scene::Scene scene, const std::string& name) {
   return scene;
 }
 
-double cellSize(const mesh::ClothMesh& mesh) {
+double medianCellSize(const mesh::ClothMesh& mesh) {
   std::vector<double> sizes;
   for (const std::array<int, 3>& corners : mesh.triangles) {
     std::array<double, 3> edges;
@@ -276,7 +267,7 @@ const scene::Quality* nearestQuality(const scene::Scene& scene,
         quality.step.newton_iterations != scene.step.newton_iterations) {
       continue;
     }
-    const double coarser = std::log(cellSize(scene.mesh) / quality.cell_size);
+    const double coarser = std::log(medianCellSize(scene.mesh) / quality.cell_size);
     const double steps = std::abs(std::log(quality.time_step / scene.time_step));
     if (std::max(coarser, steps) > std::log(kNear)) continue;
     if (std::abs(coarser) + steps >= least) continue;

@@ -71,11 +71,11 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
   makeIntegrators();
 }
 
-bool SimulatedCloth::step() { return take(1, 0.0); }
+bool SimulatedCloth::step() { return run(1, 0.0); }
 
-bool SimulatedCloth::stepInRealTime(double waited) { return take(plans_[plan_].cycles, waited); }
+bool SimulatedCloth::stepInRealTime(double waited) { return run(plans_[plan_].cycles, waited); }
 
-bool SimulatedCloth::take(int cycles, double waited) {
+bool SimulatedCloth::run(int cycles, double waited) {
   last_cycles_ = asleep_ ? 1 : cycles;
   if (asleep_) {
     state_.time += time_step_;
@@ -83,10 +83,10 @@ bool SimulatedCloth::take(int cycles, double waited) {
     return true;
   }
   if (!controller_) {
-    takeSubsteps(cycles * time_step_);
+    runSubsteps(cycles * time_step_);
   } else {
     const auto begin = std::chrono::steady_clock::now();
-    takeSubsteps(cycles * time_step_);
+    runSubsteps(cycles * time_step_);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     plan_ = controller_->record(waited + took.count(), cycles);
   }
@@ -115,17 +115,17 @@ void SimulatedCloth::wake() {
   asleep_ = false;
 }
 
-void SimulatedCloth::takeSubsteps(double duration) {
+void SimulatedCloth::runSubsteps(double duration) {
   const int substeps = plans_[plan_].substeps;
   if (substeps > 1) before_ = state_;
-  report_ = takeSubstep(duration / substeps);
+  report_ = runSubstep(duration / substeps);
   for (int i = 1; i < substeps && report_.accepted; ++i) {
-    report_ = sum(report_, takeSubstep(duration / substeps));
+    report_ = sum(report_, runSubstep(duration / substeps));
   }
   if (substeps > 1 && !report_.accepted) state_ = before_;
 }
 
-cloth::StepReport SimulatedCloth::takeSubstep(double duration) {
+cloth::StepReport SimulatedCloth::runSubstep(double duration) {
   cloth::Integrator& integrator = integrators_[plan_];
   return collision_ ? collision_->step(cloth_, integrator, state_, duration)
                     : integrator.step(cloth_, state_, duration);

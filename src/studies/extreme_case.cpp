@@ -40,19 +40,12 @@ void forEachField(Case& extreme, Visit&& visit) {
   visit("magnitude", extreme.magnitude);
 }
 
-const char* nameOfMethod(IntegrationMethod method) {
-  for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
-    if (named.method == method) return named.name;
-  }
-  return "";
-}
-
 template <typename T>
 void write(std::ostream& out, const T& value) {
   out << value;
 }
 void write(std::ostream& out, ExtremeKind kind) { out << nameOf(kind); }
-void write(std::ostream& out, IntegrationMethod method) { out << nameOfMethod(method); }
+void write(std::ostream& out, IntegrationMethod method) { out << cloth::nameOf(method); }
 
 template <typename T>
 bool read(const std::string& text, T& value) {

@@ -206,9 +206,9 @@ std::vector<std::vector<TradeOffResult>> followPoints(const std::vector<TradeOff
 }
 
 std::string nameOf(const TradeOffPoint& point) {
-  std::string name = std::string(nameOf(point.elasticity)) + "-" + nameOf(point.step.method) + "-" +
-                     oracles::numbered(1e3 * point.timeStep()) + "ms-" +
-                     std::to_string(point.cells) + "cells";
+  std::string name =
+      std::string(nameOf(point.elasticity)) + "-" + cloth::nameOf(point.step.method) + "-" +
+      oracles::numbered(1e3 * point.timeStep()) + "ms-" + std::to_string(point.cells) + "cells";
   if (isImplicit(point.step.method)) {
     name += "-" + std::to_string(point.step.newton_iterations) + "solves-" +
             nameOf(point.step.solver) + "-" + oracles::numbered(point.step.tolerance);
@@ -227,13 +227,6 @@ const char* nameOf(cloth::Elasticity elasticity) {
     default:
       return "green_lagrange";
   }
-}
-
-const char* nameOf(IntegrationMethod method) {
-  const auto named =
-      std::find_if(cloth::kIntegrationMethods.begin(), cloth::kIntegrationMethods.end(),
-                   [&](const auto& candidate) { return candidate.method == method; });
-  return named->name;
 }
 
 const char* nameOf(linear::LinearSolverMethod method) {

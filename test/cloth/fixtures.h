@@ -5,20 +5,13 @@
 #include <random>
 
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/material/linear_fabric.h"
 
 namespace haptex::cloth {
 
 /// 100 N/m along the threads, 50 N/m in shear, 0.1 kg/m2.
 inline material::Fabric linearFabric(double viscosity = 0.0) {
-  using material::StrainStressCurve;
-  material::Fabric fabric;
-  fabric.name = "linear";
-  fabric.areal_density = 0.1;
-  fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(100.0);
-  fabric.shear.elastic = StrainStressCurve::linear(50.0);
-  fabric.weft.viscous = fabric.warp.viscous = StrainStressCurve::linear(viscosity);
-  fabric.shear.viscous = StrainStressCurve::linear(0.5 * viscosity);
-  return fabric;
+  return material::linearFabric(100.0, viscosity);
 }
 
 /// Anisotropic and stiffening, with viscosity.

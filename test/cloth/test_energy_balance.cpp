@@ -13,13 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-material::Fabric elasticFabric(double modulus) {
-  material::Fabric fabric = linearFabric();
-  fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(modulus);
-  fabric.shear.elastic = material::StrainStressCurve::linear(0.5 * modulus);
-  return fabric;
-}
-
 ModelledEffects gravity() {
   ModelledEffects effects;
   effects.gravity = {0.0, 0.0, -9.81};
@@ -49,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryImplicitIntegrator,
 // A linearised step takes every particle along its tangent: unguarded, the turning sheet of this
 // test has millions of times its energy after the first step.
 TEST_P(EveryImplicitIntegrator, GainsNoEnergyWhereAStiffSheetIsHurled) {
-  Cloth cloth(square(4), elasticFabric(1e6), gravity());
+  Cloth cloth(square(4), material::linearFabric(1e6), gravity());
   attachTop(cloth);
   ClothState state = cloth.initialState();
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
@@ -72,7 +65,7 @@ TEST_P(EveryImplicitIntegrator, GainsNoEnergyWhereAStiffSheetIsHurled) {
 // Even the exact backward Euler step gains: with x'' = l^2 x, h l = 1/2 and v0 = 1 at x0 = 0 the
 // energy rises by a third. A sheet that is pressed together is such a system out of its plane.
 TEST_P(EveryImplicitIntegrator, GainsNoEnergyWhereASheetBuckles) {
-  Cloth cloth(square(4), elasticFabric(1000.0), {});
+  Cloth cloth(square(4), material::linearFabric(1000.0), {});
   ClothState state = cloth.initialState();
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     state.positions[i] *= 0.8;
@@ -93,7 +86,7 @@ TEST_P(EveryImplicitIntegrator, GainsNoEnergyWhereASheetBuckles) {
 }
 
 TEST_P(EveryImplicitIntegrator, LeavesASmoothMotionAlone) {
-  Cloth cloth(square(6), elasticFabric(100.0), gravity());
+  Cloth cloth(square(6), material::linearFabric(100.0), gravity());
   attachTop(cloth);
   ClothState state = cloth.initialState();
   StepSettings settings;
@@ -110,7 +103,7 @@ TEST_P(EveryImplicitIntegrator, LeavesASmoothMotionAlone) {
 }
 
 TEST(EnergyBalance, CountsTheWorkOfAttachments) {
-  Cloth cloth(square(4), elasticFabric(100.0), gravity());
+  Cloth cloth(square(4), material::linearFabric(100.0), gravity());
   attachTop(cloth);
   ClothState state = cloth.initialState();
   Integrator integrator(cloth, {});
@@ -129,7 +122,7 @@ TEST(EnergyBalance, CountsTheWorkOfAttachments) {
 }
 
 TEST(EnergyBalance, AllowsAJumpOfTheAttachmentsNoMoreThanItStores) {
-  Cloth cloth(square(4), elasticFabric(1e5), gravity());
+  Cloth cloth(square(4), material::linearFabric(1e5), gravity());
   attachTop(cloth);
   ClothState state = cloth.initialState();
   ClothState jumped = state;
@@ -144,13 +137,13 @@ TEST(EnergyBalance, AllowsAJumpOfTheAttachmentsNoMoreThanItStores) {
 }
 
 TEST(EnergyBalance, SeesThatTheClothHasChangedBetweenSteps) {
-  Cloth cloth(square(4), elasticFabric(100.0), {});
+  Cloth cloth(square(4), material::linearFabric(100.0), {});
   attachTop(cloth);
   ClothState state = cloth.initialState();
   state.positions.back().x() += 0.01;
   Integrator integrator(cloth, {}), other(cloth, {});
   integrator.step(cloth, state, 0.01);
-  cloth.setFabric(elasticFabric(1e4));
+  cloth.setFabric(material::linearFabric(1e4));
   ClothState same = state;
   integrator.step(cloth, state, 0.01);
   other.step(cloth, same, 0.01);  // that has not seen the other fabric
@@ -160,7 +153,7 @@ TEST(EnergyBalance, SeesThatTheClothHasChangedBetweenSteps) {
 
 // Velocities of a free particle stand for the energies of a motion.
 TEST(EnergyBalance, LetsAStepGainWhatThoseBeforeItHaveLost) {
-  const Cloth cloth(square(1), elasticFabric(100.0), {});
+  const Cloth cloth(square(1), material::linearFabric(100.0), {});
   ClothState state = cloth.initialState();
   EnergyBalance balance(cloth);
   const auto excessOf = [&](double speed, bool keeps) {
@@ -189,7 +182,7 @@ TEST(EnergyBalance, LetsAStepGainWhatThoseBeforeItHaveLost) {
 }
 
 TEST(EnergyBalance, TakesWhatIsNotFiniteForExcess) {
-  const Cloth cloth(square(1), elasticFabric(100.0), {});
+  const Cloth cloth(square(1), material::linearFabric(100.0), {});
   const ClothState state = cloth.initialState();
   EnergyBalance balance(cloth);
   balance.begin(cloth, state);
@@ -202,7 +195,7 @@ TEST(EnergyBalance, TakesWhatIsNotFiniteForExcess) {
 
 // The state is still the one before the step, and so is its energy.
 TEST(EnergyBalance, KnowsTheEnergyOfTheStateAfterAStepThatWasNotKept) {
-  const Cloth cloth(square(1), elasticFabric(100.0), {});
+  const Cloth cloth(square(1), material::linearFabric(100.0), {});
   ClothState state = cloth.initialState();
   state.positions[0].x() += 0.01;
   EnergyBalance balance(cloth);
@@ -222,7 +215,7 @@ TEST(EnergyBalance, CountsTheWorkOfBodiesThatMove) {
   constexpr double kSpeed = 0.5, kForce = 10.0, kStep = 0.01;
   ModelledEffects effects;
   effects.contacts = true;
-  Cloth cloth(square(1), elasticFabric(100.0), effects);
+  Cloth cloth(square(1), material::linearFabric(100.0), effects);
   const ClothState state = cloth.initialState();
   ClothState next = state;
   next.time = kStep;

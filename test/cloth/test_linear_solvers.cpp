@@ -248,17 +248,9 @@ class FoldedSystem {
   linear::SymmetricBlockMatrix matrix_;
 };
 
-material::Fabric timesStiffer(double factor) {
-  using material::StrainStressCurve;
-  material::Fabric fabric = linearFabric();
-  fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(100.0 * factor);
-  fabric.shear.elastic = StrainStressCurve::linear(50.0 * factor);
-  return fabric;
-}
-
 TEST(LinearSolver, NeedsOneFactorInSinglePrecisionPerSystemOfFoldedClothWhateverItsStiffness) {
   for (double factor : {1.0, 10.0, 100.0}) {
-    FoldedSystem system(timesStiffer(factor));
+    FoldedSystem system(material::linearFabric(100.0 * factor));
     const linear::SymmetricBlockMatrix& matrix = system.matrix();
     linear::BlockVector rhs(3, matrix.size()), x = linear::BlockVector::Zero(3, matrix.size()),
                                                product = x;

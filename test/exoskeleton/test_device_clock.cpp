@@ -25,8 +25,8 @@ struct Device {
 
   bool reads(Time now, Time late = Time{0}) {
     const Time lived = now - late - kBegin + ago;
-    return clock.take(us(Time(static_cast<Time::rep>(speed * static_cast<double>(lived.count())))),
-                      now);
+    return clock.receive(
+        us(Time(static_cast<Time::rep>(speed * static_cast<double>(lived.count())))), now);
   }
   bool runs(Time from, Time to, Time late = Time{0}) {
     bool good = true;

@@ -36,7 +36,7 @@ TEST(HandMotion, KeepsWhatWasTakenAndFollowsThePathWithTheRest) {
   HandMotion motion = straightMotion();
   motion.at(kStart);
   const Eigen::Vector3d target(0.1, 0.2, 0.3);
-  motion.take(Finger::kIndex, target);
+  motion.receive(Finger::kIndex, target);
   HandPlace place = motion.at(kStart + kLength);
   EXPECT_EQ(place.fingertips[Finger::kIndex], target);
   EXPECT_NEAR(place.fingertips[Finger::kThumb].x(), 1.0, 1e-12);
@@ -44,7 +44,7 @@ TEST(HandMotion, KeepsWhatWasTakenAndFollowsThePathWithTheRest) {
 
   Eigen::Isometry3d pose(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
   pose.translation() = Eigen::Vector3d(0.0, 0.5, 0.0);
-  motion.take(pose);
+  motion.receive(pose);
   place = motion.at(kStart + kLength);
   EXPECT_TRUE(place.hand_base.isApprox(pose, 0.0));
   EXPECT_EQ(place.fingertips[Finger::kIndex], target);
@@ -57,15 +57,15 @@ TEST(HandMotion, RefusesWhatIsNotFiniteOrFarAwayAndChangesNothing) {
   for (const double wrong : {kNaN, kInfinity, -kInfinity, beyond, -beyond, 1e300}) {
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3d position = wrong * Eigen::Vector3d::Unit(axis);
-      EXPECT_THROW(motion.take(Finger::kIndex, position), std::invalid_argument);
+      EXPECT_THROW(motion.receive(Finger::kIndex, position), std::invalid_argument);
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
       pose.translation() = position;
-      EXPECT_THROW(motion.take(pose), std::invalid_argument);
+      EXPECT_THROW(motion.receive(pose), std::invalid_argument);
     }
   }
   Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
   turned.linear()(1, 2) = kNaN;
-  EXPECT_THROW(motion.take(turned), std::invalid_argument);
+  EXPECT_THROW(motion.receive(turned), std::invalid_argument);
   const HandPlace place = motion.at(kStart + kLength);
   EXPECT_NEAR(place.fingertips[Finger::kIndex].x(), 1.0, 1e-12);
   EXPECT_NEAR(place.hand_base.translation().x(), 1.0, 1e-12);
@@ -74,7 +74,7 @@ TEST(HandMotion, RefusesWhatIsNotFiniteOrFarAwayAndChangesNothing) {
 TEST(HandMotion, SaysWhatIsAllowed) {
   HandMotion motion = straightMotion();
   try {
-    motion.take(Finger::kThumb, {0.0, 11.0, 0.0});
+    motion.receive(Finger::kThumb, {0.0, 11.0, 0.0});
     FAIL() << "took a target out of reach";
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),

@@ -41,12 +41,12 @@ double stepResponse(int i) {
 
 TEST(SmoothCommand, AStepBecomesTheStepResponseOfTwoFilters) {
   SmoothCommand smooth;
-  smooth.take(constant({2.0, 0.0, -1.0}), kZero, kZero);
+  smooth.receive(constant({2.0, 0.0, -1.0}), kZero, kZero);
   for (int i = 1; i <= 60; ++i) {
     const Vector3d force = smooth.tick(kZero, kZero);
     EXPECT_LT((force - stepResponse(i) * Vector3d(2.0, 0.0, -1.0)).norm(), 1e-12) << i;
   }
-  smooth.take(constant({0.0, 3.0, 0.0}), kZero, kZero);
+  smooth.receive(constant({0.0, 3.0, 0.0}), kZero, kZero);
   const Vector3d force = smooth.tick(kZero, kZero);
   EXPECT_NEAR(force.y(), 3.0 * stepResponse(1), 1e-6);
   EXPECT_NEAR(force.x(), 2.0 - 2.0 * stepResponse(1), 1e-5);
@@ -54,9 +54,9 @@ TEST(SmoothCommand, AStepBecomesTheStepResponseOfTwoFilters) {
 
 TEST(SmoothCommand, GoesOnFromWhatWasRendered) {
   SmoothCommand smooth;
-  smooth.take(constant({2.0, 0.0, 0.0}), kZero, kZero);
+  smooth.receive(constant({2.0, 0.0, 0.0}), kZero, kZero);
   smooth.tick(kZero, kZero);
-  smooth.takeFrom({0.5, 0.0, 0.0}, constant({2.0, 1.0, 0.0}), kZero, kZero);
+  smooth.receiveFrom({0.5, 0.0, 0.0}, constant({2.0, 1.0, 0.0}), kZero, kZero);
   for (int i = 1; i <= 60; ++i) {
     const Vector3d expected = Vector3d(0.5, 0.0, 0.0) + stepResponse(i) * Vector3d(1.5, 1.0, 0.0);
     EXPECT_LT((smooth.tick(kZero, kZero) - expected).norm(), 1e-12) << i;
@@ -67,11 +67,11 @@ TEST(SmoothCommand, TheForceOfAPlaceIsNotLate) {
   SmoothCommand smooth;
   const Vector3d rest(0.1, 0.0, 0.0);
   Vector3d p(0.1, 0.0, 0.0);
-  smooth.take(spring(rest, p), p, kZero);
+  smooth.receive(spring(rest, p), p, kZero);
   for (int i = 0; i < 200; ++i) {
     p.x() = 0.1 + 0.005 * std::sin(0.3 * i);
     // The same spring, linearised anew where the finger is or was.
-    if (i % 3 == 0) smooth.take(spring(rest, p - Vector3d(0.001, 0.0, 0.0)), p, kZero);
+    if (i % 3 == 0) smooth.receive(spring(rest, p - Vector3d(0.001, 0.0, 0.0)), p, kZero);
     EXPECT_LT((smooth.tick(p, kZero) - 500.0 * (rest - p)).norm(), 1e-9);
   }
 }
@@ -79,20 +79,20 @@ TEST(SmoothCommand, TheForceOfAPlaceIsNotLate) {
 TEST(SmoothCommand, BeginsSoftlyAfterARest) {
   SmoothCommand smooth;
   const ForceCommand command = constant({4.0, 0.0, 0.0});
-  smooth.take(command, kZero, kZero);
+  smooth.receive(command, kZero, kZero);
   for (int i = 0; i < 100; ++i) smooth.tick(kZero, kZero);
   smooth.rest();
-  smooth.take(command, kZero, kZero);
+  smooth.receive(command, kZero, kZero);
   EXPECT_NEAR(smooth.tick(kZero, kZero).x(), 4.0 * stepResponse(1), 1e-12);
 }
 
 TEST(SmoothCommand, ForcesBeyondTheDeviceCountAsItsLargest) {
   SmoothCommand smooth;
-  smooth.take(constant({1e300, 0.0, 0.0}), kZero, kZero);
+  smooth.receive(constant({1e300, 0.0, 0.0}), kZero, kZero);
   for (int i = 0; i < 200; ++i) smooth.tick(kZero, kZero);
   EXPECT_TRUE(smooth.saturated());
   EXPECT_NEAR(smooth.tick(kZero, kZero).x(), kMaxForce, 1e-9);
-  smooth.take(constant({1.0, 0.0, 0.0}), kZero, kZero);
+  smooth.receive(constant({1.0, 0.0, 0.0}), kZero, kZero);
   EXPECT_NEAR(smooth.tick(kZero, kZero).x(), kMaxForce - 4.0 * stepResponse(1), 1e-9);
   EXPECT_FALSE(smooth.saturated());
 }
@@ -102,11 +102,11 @@ TEST(SmoothCommand, RecoversFromACommandThatOverflows) {
   ForceCommand overflowing = constant({1.0, 0.0, 0.0});
   overflowing.stiffness.setConstant(1e308);
   overflowing.position.setConstant(1e300);
-  smooth.take(constant({1.0, 0.0, 0.0}), kZero, kZero);
+  smooth.receive(constant({1.0, 0.0, 0.0}), kZero, kZero);
   smooth.tick(kZero, kZero);
-  smooth.take(overflowing, kZero, kZero);
+  smooth.receive(overflowing, kZero, kZero);
   EXPECT_FALSE(smooth.tick(kZero, kZero).allFinite());
-  smooth.take(constant({1.0, 0.0, 0.0}), kZero, kZero);
+  smooth.receive(constant({1.0, 0.0, 0.0}), kZero, kZero);
   EXPECT_NEAR(smooth.tick(kZero, kZero).x(), stepResponse(1), 1e-12);
 }
 

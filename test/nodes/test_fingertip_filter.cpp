@@ -38,8 +38,8 @@ geometry_msgs::TwistStamped someTwist(double age = 0.0) {
 
 TEST(FingertipFilter, TakesWhatTheDriverSends) {
   FingertipFilter filter;
-  const auto pose = filter.take(somePose(), kNow, kSteady);
-  const auto twist = filter.take(someTwist(), kNow, kSteady);
+  const auto pose = filter.receive(somePose(), kNow, kSteady);
+  const auto twist = filter.receive(someTwist(), kNow, kSteady);
   ASSERT_TRUE(pose && twist);
   EXPECT_EQ(pose->translation(), Eigen::Vector3d(0.1, 0.0, 0.0));
   EXPECT_EQ(twist->velocity, Eigen::Vector3d(0.0, 0.2, 0.0));
@@ -66,12 +66,12 @@ TEST(FingertipFilter, DropsAndCountsBadPosesAndSaysWhy) {
   for (const auto& [why, spoil] : flaws) {
     Message message = somePose();
     spoil(message);
-    EXPECT_FALSE(filter.take(message, kNow, kSteady)) << why;
+    EXPECT_FALSE(filter.receive(message, kNow, kSteady)) << why;
     EXPECT_EQ(filter.dropped(), ++dropped);
     EXPECT_NE(filter.lastDrop().find(why), std::string::npos) << filter.lastDrop();
     EXPECT_EQ(filter.lastDrop().find("measured_cp: "), 0u) << filter.lastDrop();
   }
-  EXPECT_TRUE(filter.take(somePose(), kNow, kSteady)) << "a bad one does not spoil the next";
+  EXPECT_TRUE(filter.receive(somePose(), kNow, kSteady)) << "a bad one does not spoil the next";
 }
 
 TEST(FingertipFilter, DropsAndCountsBadVelocities) {
@@ -87,7 +87,7 @@ TEST(FingertipFilter, DropsAndCountsBadVelocities) {
   for (const auto& [why, spoil] : flaws) {
     Message message = someTwist();
     spoil(message);
-    EXPECT_FALSE(filter.take(message, kNow, kSteady)) << why;
+    EXPECT_FALSE(filter.receive(message, kNow, kSteady)) << why;
     EXPECT_NE(filter.lastDrop().find(why), std::string::npos) << filter.lastDrop();
   }
   EXPECT_EQ(filter.dropped(), flaws.size());
@@ -95,18 +95,18 @@ TEST(FingertipFilter, DropsAndCountsBadVelocities) {
 
 TEST(FingertipFilter, DropsWhatIsNotLaterThanTheLast) {
   FingertipFilter filter;
-  ASSERT_TRUE(filter.take(somePose(0.005), kNow, kSteady));
-  EXPECT_FALSE(filter.take(somePose(0.005), kNow, kSteady));
-  EXPECT_FALSE(filter.take(somePose(0.010), kNow, kSteady));
-  EXPECT_TRUE(filter.take(someTwist(0.010), kNow, kSteady)) << "each kind by itself";
-  EXPECT_TRUE(filter.take(somePose(0.004), kNow, kSteady));
+  ASSERT_TRUE(filter.receive(somePose(0.005), kNow, kSteady));
+  EXPECT_FALSE(filter.receive(somePose(0.005), kNow, kSteady));
+  EXPECT_FALSE(filter.receive(somePose(0.010), kNow, kSteady));
+  EXPECT_TRUE(filter.receive(someTwist(0.010), kNow, kSteady)) << "each kind by itself";
+  EXPECT_TRUE(filter.receive(somePose(0.004), kNow, kSteady));
 }
 
 TEST(FingertipFilter, BelievesADriverThatWasStartedAnew) {
   FingertipFilter filter;
-  ASSERT_TRUE(filter.take(somePose(0.0), kNow, kSteady));
-  EXPECT_FALSE(filter.take(somePose(0.010), kNow, kSteady + 99ms));
-  EXPECT_TRUE(filter.take(somePose(0.010), kNow, kSteady + 101ms));
+  ASSERT_TRUE(filter.receive(somePose(0.0), kNow, kSteady));
+  EXPECT_FALSE(filter.receive(somePose(0.010), kNow, kSteady + 99ms));
+  EXPECT_TRUE(filter.receive(somePose(0.010), kNow, kSteady + 101ms));
 }
 
 }  // namespace

@@ -39,8 +39,8 @@ haptex::ServoForce messageAt(const ros::Time& stamp) {
 
 class AServoForceFilter : public ::testing::Test {
  protected:
-  bool takes(const haptex::ServoForce& message) {
-    return filter_.take(message, clocks_.ros, clocks_.steady).has_value();
+  bool accepts(const haptex::ServoForce& message) {
+    return filter_.receive(message, clocks_.ros, clocks_.steady).has_value();
   }
 
   /// Drops the message for the flaw, counts it there only, and says each of the texts.
@@ -50,12 +50,12 @@ class AServoForceFilter : public ::testing::Test {
     for (const ServoForceFlaw each : kServoForceFlaws) {
       counts[static_cast<std::size_t>(each)] = filter_.dropped(each) + (each == flaw ? 1 : 0);
     }
-    const std::uint64_t taken = filter_.taken();
-    EXPECT_FALSE(takes(message));
+    const std::uint64_t taken = filter_.accepted();
+    EXPECT_FALSE(accepts(message));
     for (const ServoForceFlaw each : kServoForceFlaws) {
       EXPECT_EQ(filter_.dropped(each), counts[static_cast<std::size_t>(each)]) << name(each);
     }
-    EXPECT_EQ(filter_.taken(), taken);
+    EXPECT_EQ(filter_.accepted(), taken);
     const std::string why = filter_.explain(message, clocks_.ros);
     for (const char* text : says) EXPECT_NE(why.find(text), std::string::npos) << why;
   }
@@ -79,7 +79,7 @@ TEST_F(AServoForceFilter, TakesAllOfACommand) {
     message.stiffness[i] = (i % 4 == 0 ? 1000.0 : 0.0) + 1e-4 * static_cast<double>(i);
     message.damping[i] = (i % 4 == 0 ? 100.0 : 0.0) + 1e-5 * static_cast<double>(i);
   }
-  const auto command = filter_.take(message, clocks_.ros, clocks_.steady);
+  const auto command = filter_.receive(message, clocks_.ros, clocks_.steady);
   ASSERT_TRUE(command);
   EXPECT_EQ(command->force, Eigen::Vector3d(1.0, 2.0, 3.0));
   EXPECT_EQ(command->position, Eigen::Vector3d(0.1, 0.2, 0.3));
@@ -87,7 +87,7 @@ TEST_F(AServoForceFilter, TakesAllOfACommand) {
   const Eigen::RowVector3d stiffness(3e-4, 1000.0 + 4e-4, 5e-4), damping(6e-5, 7e-5, 100.0 + 8e-5);
   EXPECT_LT((command->stiffness.row(1) - stiffness).norm(), 1e-9);  // row-major
   EXPECT_LT((command->damping.row(2) - damping).norm(), 1e-9);
-  EXPECT_EQ(filter_.taken(), 1u);
+  EXPECT_EQ(filter_.accepted(), 1u);
 }
 
 TEST_F(AServoForceFilter, DropsNumbersBeyondTheirBounds) {
@@ -142,14 +142,14 @@ TEST_F(AServoForceFilter, DropsEveryNumberThatIsNotFinite) {
 }
 
 TEST_F(AServoForceFilter, DropsStampsThatAreTooOld) {
-  EXPECT_TRUE(takes(messageAt(before(clocks_.ros, 20ms))));
+  EXPECT_TRUE(accepts(messageAt(before(clocks_.ros, 20ms))));
   expectDropped(messageAt(before(clocks_.ros, 20ms + 1ns)), ServoForceFlaw::kTooOld,
                 {"ms before the driver's clock", "allowed are 20 ms"});
   expectDropped(messageAt(ros::Time()), ServoForceFlaw::kTooOld, {"before"});
 }
 
 TEST_F(AServoForceFilter, DropsStampsOfTheFuture) {
-  EXPECT_TRUE(takes(messageAt(before(clocks_.ros, -20ms))));
+  EXPECT_TRUE(accepts(messageAt(before(clocks_.ros, -20ms))));
   expectDropped(messageAt(before(clocks_.ros, -20ms - 1ns)), ServoForceFlaw::kTooNew,
                 {"ms after the driver's clock", "allowed are 20 ms"});
   // The last there is: the difference does not fit a ros::Duration.
@@ -160,34 +160,34 @@ TEST_F(AServoForceFilter, ReadsStampsWithMoreThanASecondOfNanoseconds) {
   haptex::ServoForce message = messageAt(clocks_.ros);
   message.header.stamp.sec -= 1;  // as no ros::Time would be, but bytes can
   message.header.stamp.nsec += 1000000000u;
-  EXPECT_TRUE(takes(message));
+  EXPECT_TRUE(accepts(message));
   expectDropped(messageAt(clocks_.ros), ServoForceFlaw::kOrder, {});
 }
 
 TEST_F(AServoForceFilter, DropsStampsThatAreNotLater) {
-  EXPECT_TRUE(takes(messageAt(clocks_.ros)));
+  EXPECT_TRUE(accepts(messageAt(clocks_.ros)));
   clocks_.advance(1ms);
   expectDropped(messageAt(before(clocks_.ros, 1ms)), ServoForceFlaw::kOrder,
                 {"not later", "by 0 ms", "allowed are later ones"});
   expectDropped(messageAt(before(clocks_.ros, 3ms)), ServoForceFlaw::kOrder, {"by 2 ms"});
-  EXPECT_TRUE(takes(messageAt(before(clocks_.ros, 1ms - 1ns))));
+  EXPECT_TRUE(accepts(messageAt(before(clocks_.ros, 1ms - 1ns))));
 }
 
 TEST_F(AServoForceFilter, ADroppedCommandDoesNotCountAsTheLast) {
-  EXPECT_TRUE(takes(messageAt(clocks_.ros)));
+  EXPECT_TRUE(accepts(messageAt(clocks_.ros)));
   haptex::ServoForce bad = messageAt(before(clocks_.ros, -10ms));
   bad.force.x = kNaN;
-  EXPECT_FALSE(takes(bad));
+  EXPECT_FALSE(accepts(bad));
   clocks_.advance(1ms);
-  EXPECT_TRUE(takes(messageAt(clocks_.ros)));
+  EXPECT_TRUE(accepts(messageAt(clocks_.ros)));
 }
 
 TEST_F(AServoForceFilter, RecoversAfterAClockThatWasSetBack) {
   clocks_.ros = ros::Time(2000, 0);
-  EXPECT_TRUE(takes(messageAt(clocks_.ros)));
+  EXPECT_TRUE(accepts(messageAt(clocks_.ros)));
   clocks_.ros = ros::Time(1500, 0);  // the commander shares the clock
   Time silent{0};
-  while (!takes(messageAt(clocks_.ros))) {
+  while (!accepts(messageAt(clocks_.ros))) {
     clocks_.advance(1ms);
     silent += 1ms;
     ASSERT_LE(silent, 200ms);

@@ -33,8 +33,8 @@ TEST(SurfaceChoice, BeginsWithTheScenesFabric) {
 
 TEST(SurfaceChoice, FollowsTheFabricOfTheCloth) {
   SurfaceChoice choice(kWool);
-  EXPECT_FALSE(choice.takeCloth("wool"));
-  EXPECT_TRUE(choice.takeCloth("denim"));
+  EXPECT_FALSE(choice.receiveCloth("wool"));
+  EXPECT_TRUE(choice.receiveCloth("denim"));
   ASSERT_NE(choice.surface(), nullptr);
   EXPECT_EQ(choice.fabric(), "denim");
 }
@@ -43,7 +43,7 @@ TEST(SurfaceChoice, WithoutASceneTakesThatOfTheFirstCloth) {
   SurfaceChoice choice("");
   EXPECT_EQ(choice.surface(), nullptr);
   EXPECT_NE(choice.trouble().find("cloth/mesh"), std::string::npos);
-  EXPECT_TRUE(choice.takeCloth("wool"));
+  EXPECT_TRUE(choice.receiveCloth("wool"));
   EXPECT_NE(choice.surface(), nullptr);
   EXPECT_EQ(choice.trouble(), "");
 }
@@ -59,7 +59,7 @@ TEST(SurfaceChoice, NamesTheKeyThatAFabricLacks) {
 TEST(SurfaceChoice, HasNoneForAClothThatCannotBeStroked) {
   for (const std::string fabric : {"linear", "no_such_fabric", "../fabrics/wool", ""}) {
     SurfaceChoice choice(kWool);
-    EXPECT_TRUE(choice.takeCloth(fabric));
+    EXPECT_TRUE(choice.receiveCloth(fabric));
     EXPECT_EQ(choice.surface(), nullptr) << fabric;
     EXPECT_NE(choice.trouble().find("'" + fabric + "'"), std::string::npos) << choice.trouble();
   }
@@ -69,9 +69,9 @@ TEST(SurfaceChoice, KeepsWhatWasAskedForUntilTheClothChanges) {
   SurfaceChoice choice(kWool);
   choice.ask("denim");
   EXPECT_EQ(choice.fabric(), "denim");
-  EXPECT_FALSE(choice.takeCloth("wool")) << "it is the cloth's fabric as before";
+  EXPECT_FALSE(choice.receiveCloth("wool")) << "it is the cloth's fabric as before";
   EXPECT_EQ(choice.fabric(), "denim");
-  EXPECT_TRUE(choice.takeCloth("linen"));
+  EXPECT_TRUE(choice.receiveCloth("linen"));
   EXPECT_EQ(choice.fabric(), "linen");
   choice.ask(kWool);
   EXPECT_EQ(choice.path(), kWool);

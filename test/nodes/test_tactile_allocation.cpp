@@ -23,7 +23,7 @@ TEST(TactileAllocation, StepsDoNotAllocateWhileAFingertipComesSlidesAndGoes) {
     const base::Time time = i * std::chrono::milliseconds(25);
     const bool slides = i > 20 && i < 80;
     for (const Finger finger : base::kFingers) {
-      for (int j = 0; j < 25; ++j) loop.take(finger, slides ? sliding : none, time);
+      for (int j = 0; j < 25; ++j) loop.receive(finger, slides ? sliding : none, time);
     }
     loop.step(&surface, time, ros::Time(1, 0));
     largest = std::max(largest, loop.messages()[Finger::kThumb].amplitudes_40[0]);

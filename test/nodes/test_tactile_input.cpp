@@ -14,13 +14,13 @@ using tactile::kContactors;
 TEST(TactileInput, GivesNothingWithoutMessagesOrWithoutContact) {
   TactileInput input;
   EXPECT_FALSE(input.endStep());
-  input.take(noContact(), 1ms);
+  input.receive(noContact(), 1ms);
   EXPECT_FALSE(input.endStep());
 }
 
 TEST(TactileInput, MeansTheVelocitiesAndForcesOfAStep) {
   TactileInput input;
-  for (const double speed : {0.01, 0.02, 0.06}) input.take(slidingContact(speed), 1ms);
+  for (const double speed : {0.01, 0.02, 0.06}) input.receive(slidingContact(speed), 1ms);
   const auto step = input.endStep();
   ASSERT_TRUE(step);
   EXPECT_NEAR(step->stroke.velocity.x(), 0.03, 1e-15);
@@ -31,8 +31,8 @@ TEST(TactileInput, MeansTheVelocitiesAndForcesOfAStep) {
 TEST(TactileInput, AContactOfHalfAStepPressesHalfButIsNoSlower) {
   TactileInput input;
   for (int i = 0; i < 10; ++i) {
-    input.take(noContact(), 1ms);
-    input.take(slidingContact(), 1ms);
+    input.receive(noContact(), 1ms);
+    input.receive(slidingContact(), 1ms);
   }
   const auto step = input.endStep();
   ASSERT_TRUE(step);
@@ -43,29 +43,29 @@ TEST(TactileInput, AContactOfHalfAStepPressesHalfButIsNoSlower) {
 
 TEST(TactileInput, KnowsTheLastPlacementAlsoIfTheFingertipHasLeft) {
   TactileInput input;
-  input.take(slidingContact(), 1ms);
+  input.receive(slidingContact(), 1ms);
   haptex::Contact later = slidingContact();
   later.array_origin = {0.3, 0.4};
-  input.take(later, 2ms);
-  input.take(noContact(), 3ms);
+  input.receive(later, 2ms);
+  input.receive(noContact(), 3ms);
   EXPECT_EQ(input.endStep()->placement.origin, Eigen::Vector2d(0.3, 0.4));
 }
 
 TEST(TactileInput, ForgetsAStepThatHasEnded) {
   TactileInput input;
-  input.take(slidingContact(0.5), 1ms);
+  input.receive(slidingContact(0.5), 1ms);
   EXPECT_TRUE(input.endStep());
   EXPECT_FALSE(input.endStep());
-  input.take(slidingContact(), 30ms);
+  input.receive(slidingContact(), 30ms);
   EXPECT_EQ(input.endStep()->stroke.velocity.x(), kWaveSpeed);
 }
 
 TEST(TactileInput, DropsAndCountsWhatIsNotBelievedWithoutLosingTheRest) {
   TactileInput input;
-  input.take(slidingContact(), 1ms);
+  input.receive(slidingContact(), 1ms);
   haptex::Contact bad = slidingContact();
   bad.contactor_forces[3] = std::nan("");
-  input.take(bad, 2ms);
+  input.receive(bad, 2ms);
   const auto step = input.endStep();
   ASSERT_TRUE(step);
   EXPECT_EQ(step->forces[3], kPressOfOne);
@@ -73,7 +73,7 @@ TEST(TactileInput, DropsAndCountsWhatIsNotBelievedWithoutLosingTheRest) {
   EXPECT_EQ(input.status().dropped, 1u);
   EXPECT_EQ(*input.status().last_arrival, 1ms);
   EXPECT_NE(input.status().dropped_why.find("contactor_forces[3]"), std::string::npos);
-  input.take(bad, 30ms);
+  input.receive(bad, 30ms);
   EXPECT_FALSE(input.endStep()) << "as if no message had come";
 }
 

@@ -14,7 +14,7 @@ const ros::Time kStamp(1234, 5678);
 TEST(TactileLoop, AGratingStrokedAtTheFrequencyOfAChannelVibratesWithItsHeight) {
   const tactile::Surface surface = grating();
   TactileLoop loop(tactile::ArrayLimits{});
-  loop.take(Finger::kIndex, slidingContact(), 1ms);
+  loop.receive(Finger::kIndex, slidingContact(), 1ms);
   loop.step(&surface, 25ms, kStamp);
   const haptex::Tactile& index = loop.messages()[Finger::kIndex];
   for (const double amplitude : index.amplitudes_40) {
@@ -31,7 +31,7 @@ TEST(TactileLoop, AGratingStrokedAtTheFrequencyOfAChannelVibratesWithItsHeight) 
 TEST(TactileLoop, IsZeroInTheFirstStepWithoutAMessage) {
   const tactile::Surface surface = grating();
   TactileLoop loop(tactile::ArrayLimits{});
-  loop.take(Finger::kThumb, slidingContact(), 1ms);
+  loop.receive(Finger::kThumb, slidingContact(), 1ms);
   loop.step(&surface, 25ms, kStamp);
   EXPECT_GT(loop.messages()[Finger::kThumb].amplitudes_40[0], 0.0);
   loop.step(&surface, 50ms, kStamp);
@@ -45,15 +45,15 @@ TEST(TactileLoop, ComputesNothingWithoutContactOrSurface) {
   const tactile::Surface surface = grating();
   TactileLoop loop(tactile::ArrayLimits{});
   loop.step(&surface, 25ms, kStamp);
-  loop.take(Finger::kIndex, noContact(), 30ms);
+  loop.receive(Finger::kIndex, noContact(), 30ms);
   loop.step(&surface, 50ms, kStamp);
-  loop.take(Finger::kIndex, slidingContact(), 60ms);
+  loop.receive(Finger::kIndex, slidingContact(), 60ms);
   loop.step(nullptr, 75ms, kStamp);
   EXPECT_EQ(loop.messages()[Finger::kIndex].amplitudes_40[0], 0.0);
   EXPECT_GT(loop.messages()[Finger::kIndex].normal_force, 0.0);
   EXPECT_EQ(loop.computed(), 0u);
   EXPECT_EQ(loop.steps(), 3u);
-  loop.take(Finger::kIndex, slidingContact(), 80ms);
+  loop.receive(Finger::kIndex, slidingContact(), 80ms);
   loop.step(&surface, 100ms, kStamp);
   EXPECT_EQ(loop.computed(), 1u);
 }
@@ -71,7 +71,7 @@ TEST(TactileLoop, KeepsToTheLimitsOfTheArray) {
   tactile::ArrayLimits limits;
   limits.lowest_frequency = 50.0;
   TactileLoop loop(limits);
-  loop.take(Finger::kIndex, slidingContact(), 1ms);
+  loop.receive(Finger::kIndex, slidingContact(), 1ms);
   loop.step(&surface, 25ms, kStamp);
   EXPECT_EQ(loop.messages()[Finger::kIndex].amplitudes_40[0], 0.0);
   EXPECT_GT(loop.messages()[Finger::kIndex].amplitudes_320[0], 0.0);

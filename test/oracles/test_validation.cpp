@@ -5,6 +5,7 @@
 #include "haptex/base/workload.h"
 #include "haptex/kes/equilibrium.h"
 #include "haptex/kes/virtual_test.h"
+#include "haptex/material/linear_fabric.h"
 #include "haptex/oracles/checks/contact_oracles.h"
 #include "haptex/oracles/checks/validation.h"
 #include "haptex/oracles/experiments/cloth_swing.h"
@@ -13,17 +14,9 @@
 namespace haptex::oracles {
 namespace {
 
-material::Fabric linearFabric() {
-  material::Fabric fabric;
-  fabric.areal_density = 0.1;
-  fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(1000.0);
-  fabric.shear.elastic = material::StrainStressCurve::linear(500.0);
-  return fabric;
-}
-
 TEST(ClothSwing, IsBackAfterASecondAndOppositeAfterHalfOfIt) {
   constexpr double kAmplitude = 0.005;  // small, so that the period does not depend on it
-  const ClothSwing swing(linearFabric(), 32, kAmplitude);
+  const ClothSwing swing(material::linearFabric(1000.0), 32, kAmplitude);
   cloth::StepSettings settings;
   settings.method = cloth::IntegrationMethod::kTrBdf2;
   settings.newton_iterations = 2;
@@ -34,7 +27,8 @@ TEST(ClothSwing, IsBackAfterASecondAndOppositeAfterHalfOfIt) {
 }
 
 TEST(ClothSwing, HasNoEnergyWhereItHangs) {
-  const ClothSwing hanging(linearFabric(), 16, 0.0), swinging(linearFabric(), 16, 0.05);
+  const ClothSwing hanging(material::linearFabric(1000.0), 16, 0.0),
+      swinging(material::linearFabric(1000.0), 16, 0.05);
   EXPECT_EQ(hanging.energy(hanging.start()), 0.0);
   std::vector<Eigen::Vector3d> forces;
   hanging.cloth().computeForces(hanging.start(), forces);
@@ -48,15 +42,13 @@ TEST(ClothSwing, HasNoEnergyWhereItHangs) {
 }
 
 TEST(ClothSwing, RefusesWhatItCannotBeMadeOf) {
-  EXPECT_THROW(ClothSwing(linearFabric(), 0, 0.01), std::invalid_argument);
-  EXPECT_THROW(ClothSwing(linearFabric(), 8, 0.11), std::invalid_argument);
-  EXPECT_THROW(ClothSwing(linearFabric(), 8, std::nan("")), std::invalid_argument);
+  EXPECT_THROW(ClothSwing(material::linearFabric(1000.0), 0, 0.01), std::invalid_argument);
+  EXPECT_THROW(ClothSwing(material::linearFabric(1000.0), 8, 0.11), std::invalid_argument);
+  EXPECT_THROW(ClothSwing(material::linearFabric(1000.0), 8, std::nan("")), std::invalid_argument);
 }
 
 TEST(Equilibrium, IsStaticWhereViscosityCouldBalanceForAWhile) {
-  material::Fabric fabric = linearFabric();
-  fabric.weft.viscous = fabric.warp.viscous = material::StrainStressCurve::linear(1000.0);
-  fabric.shear.viscous = material::StrainStressCurve::linear(500.0);
+  const material::Fabric fabric = material::linearFabric(1000.0, 1000.0);
   cloth::ModelledEffects effects;
   effects.viscosity = true;
   effects.gravity = {0.0, 0.0, -9.81};

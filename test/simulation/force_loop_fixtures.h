@@ -32,7 +32,7 @@ class TouchedSheet {
     }
     place(Finger::kIndex, 0.05);
     place(Finger::kThumb, 0.05);
-    loop_.takeHandBase(hand_, now_, now_, true);
+    loop_.receiveHandBase(hand_, now_, now_, true);
   }
 
   ForceLoop& loop() { return loop_; }
@@ -84,10 +84,10 @@ class TouchedSheet {
     const auto lives = [&](RendererSource source) {
       return !silent_[static_cast<std::size_t>(source)];
     };
-    if (lives(RendererSource::kHeartbeat) && ticks_ % 5 == 0) loop_.takeHeartbeat(now_);
+    if (lives(RendererSource::kHeartbeat) && ticks_ % 5 == 0) loop_.receiveHeartbeat(now_);
     if (lives(RendererSource::kClothState) && ticks_ % 12 == 0) {
       state_.simulated_time += 0.012;
-      loop_.takeState(state_, now_);
+      loop_.receiveState(state_, now_);
     }
     if (lives(RendererSource::kProximity)) {
       loop_.reportAnswer(true);
@@ -96,8 +96,8 @@ class TouchedSheet {
     }
     for (const Finger finger : base::kFingers) {
       if (finger == Finger::kIndex && !lives(RendererSource::kFingertip)) continue;
-      loop_.takePose(finger, poses_[finger], now_);
-      loop_.takeTwist(finger, FingertipTwist(), now_);
+      loop_.receivePose(finger, poses_[finger], now_);
+      loop_.receiveTwist(finger, FingertipTwist(), now_);
     }
     loop_.tick(now_);
   }

@@ -93,7 +93,7 @@ TEST(ForceLoop, APausedSimulationThatRepeatsItsStateIsNotReset) {
   const auto sheet = touched();
   sheet->silence(RendererSource::kClothState);
   for (int i = 0; i < 20; ++i) {
-    sheet->loop().takeState(sheet->state(), sheet->now());
+    sheet->loop().receiveState(sheet->state(), sheet->now());
     sheet->tick();
   }
   EXPECT_EQ(sheet->loop().rendered(Finger::kIndex).gain, 1.0);
@@ -156,7 +156,7 @@ TEST(ForceLoop, ContactorsCarryTheForceOfTheContactOnceTheirPlaceIsKnown) {
   Eigen::Isometry3d array = Eigen::Isometry3d::Identity();
   array.linear() = out.toRotationMatrix();
   array.translation() = out * Eigen::Vector3d(0.0, 0.0, TouchedSheet::kRadius);
-  sheet->loop().takeArray(Finger::kIndex, array);
+  sheet->loop().receiveArray(Finger::kIndex, array);
   sheet->run(1);
   const double normal_force = sheet->loop().rendered(Finger::kIndex).contact.normal_force;
   EXPECT_GT(sum(), 0.5 * normal_force);

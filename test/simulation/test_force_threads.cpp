@@ -29,9 +29,9 @@ TEST(ForceThreads, PosesAreWholeWhoeverBringsThem) {
         const int number = kWriters * i + writer;
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
         pose.translation().setConstant(number);
-        loop.takePose(Finger::kIndex, pose, realtime::steadyNow(), Time(number));
-        loop.takeTwist(Finger::kIndex, {}, realtime::steadyNow());
-        loop.takeHeartbeat(realtime::steadyNow());
+        loop.receivePose(Finger::kIndex, pose, realtime::steadyNow(), Time(number));
+        loop.receiveTwist(Finger::kIndex, {}, realtime::steadyNow());
+        loop.receiveHeartbeat(realtime::steadyNow());
       }
       --writing;
     });

@@ -34,7 +34,7 @@ TEST(FrameFollower, IsTheIdentityAtRestBeforeThereIsAPose) {
 
 TEST(FrameFollower, RestsAtASinglePose) {
   FrameFollower follower;
-  follower.take(swing(100ms), 1s, 1s);
+  follower.receive(swing(100ms), 1s, 1s);
   for (const Time now : {Time{1s}, Time{1005ms}, Time{2s}}) {
     EXPECT_TRUE(follower.at(now).pose.isApprox(swing(100ms), 1e-15));
     EXPECT_EQ(follower.at(now).velocity.norm(), 0.0);
@@ -51,7 +51,7 @@ TEST(FrameFollower, IsExactForAUniformMotion) {
            Eigen::AngleAxisd(seconds(time) * 0.3, turning.normalized());
   };
   for (Time now = 1s; now < 1200ms; now += kTick) {
-    if (now % kPeriod == 0ms) follower.take(Eigen::Isometry3d(at(now)), now, now);
+    if (now % kPeriod == 0ms) follower.receive(Eigen::Isometry3d(at(now)), now, now);
     if (now < 1050ms) continue;  // until the blend of the first step is over
     const FrameMotion motion = follower.at(now);
     EXPECT_TRUE(motion.pose.isApprox(Eigen::Isometry3d(at(now)), 1e-12));
@@ -66,7 +66,7 @@ TEST(FrameFollower, FollowsWithoutSteps) {
   Eigen::Isometry3d before = swing(1s), told = swing(1s);
   for (Time now = 1s; now < 3s; now += kTick) {
     if (now % kPeriod == 0ms) {
-      follower.take(swing(now), now, now);
+      follower.receive(swing(now), now, now);
       largest_told = std::max(largest_told, (swing(now).translation() - told.translation()).norm());
       told = swing(now);
     }
@@ -93,7 +93,7 @@ TEST(FrameFollower, DoesNotStepWhenAPoseComesLate) {
   Eigen::Isometry3d before = swing(1s);
   double largest_step = 0.0;
   for (Time now = 1s; now < 3s; now += kTick) {
-    if (now % kPeriod == 3ms) follower.take(swing(now - 3ms), now - 3ms, now);
+    if (now % kPeriod == 3ms) follower.receive(swing(now - 3ms), now - 3ms, now);
     const Eigen::Isometry3d pose = follower.at(now).pose;
     if (now > 1050ms) {
       largest_step = std::max(largest_step, (pose.translation() - before.translation()).norm());
@@ -105,7 +105,7 @@ TEST(FrameFollower, DoesNotStepWhenAPoseComesLate) {
 
 TEST(FrameFollower, StopsWhereItIsWhenNoMorePosesCome) {
   FrameFollower follower;
-  for (Time now = 1s; now <= 1100ms; now += kPeriod) follower.take(swing(now), now, now);
+  for (Time now = 1s; now <= 1100ms; now += kPeriod) follower.receive(swing(now), now, now);
   const Eigen::Isometry3d stopped = follower.at(1100ms + FrameFollower::kPeriods * kPeriod).pose;
   const FrameMotion later = follower.at(2s);
   EXPECT_TRUE(later.pose.isApprox(stopped, 1e-12));
@@ -115,10 +115,10 @@ TEST(FrameFollower, StopsWhereItIsWhenNoMorePosesCome) {
 
 TEST(FrameFollower, DoesNotFlyOffAfterAPauseOrARepeatedStamp) {
   FrameFollower follower;
-  follower.take(swing(1s), 1s, 1s);
-  follower.take(swing(1100ms), 1s, 1001ms);  // the same time, another place
+  follower.receive(swing(1s), 1s, 1s);
+  follower.receive(swing(1100ms), 1s, 1001ms);  // the same time, another place
   EXPECT_EQ(follower.at(1002ms).velocity.norm(), 0.0);
-  follower.take(swing(1500ms), 1500ms, 1500ms);
+  follower.receive(swing(1500ms), 1500ms, 1500ms);
   EXPECT_EQ(follower.at(1501ms).velocity.norm(), 0.0);
   EXPECT_TRUE(follower.at(2s).pose.isApprox(swing(1500ms), 1e-12));
 }

@@ -42,9 +42,9 @@ TEST(RealTimeLoop, TakesExactlyTheStepsAskedFor) {
   loop.start();
   loop.setPaused(true);
   loop.execute([](SimulatedCloth& simulation) { simulation.reset(); });
-  const StepsTaken taken = loop.takeSteps(17);
+  const StepsRun taken = loop.runSteps(17);
   EXPECT_EQ(taken.steps, 17u);
-  EXPECT_EQ(taken.end, StepsTaken::End::kAllTaken);
+  EXPECT_EQ(taken.end, StepsRun::End::kAllRun);
   SimulatedCloth alone = smallSimulation();
   for (int i = 0; i < 17; ++i) alone.step();
   EXPECT_EQ(stateOf(loop).positions, alone.state().positions);
@@ -54,18 +54,18 @@ TEST(RealTimeLoop, TakesExactlyTheStepsAskedFor) {
 TEST(RealTimeLoop, RefusesStepsWhileRunning) {
   RealTimeLoop loop(smallSimulation(), ignore);
   loop.start();
-  EXPECT_THROW(loop.takeSteps(1), std::invalid_argument);
+  EXPECT_THROW(loop.runSteps(1), std::invalid_argument);
 }
 
 TEST(RealTimeLoop, CarriesOutCommandsBetweenRequestedSteps) {
   RealTimeLoop loop(smallSimulation(), ignore);
   loop.start();
   loop.setPaused(true);
-  auto steps = std::async(std::launch::async, [&] { return loop.takeSteps(4000000000u); });
+  auto steps = std::async(std::launch::async, [&] { return loop.runSteps(4000000000u); });
   while (loop.status().steps < 10) std::this_thread::yield();
-  EXPECT_THROW(loop.takeSteps(1), std::invalid_argument);  // one caller at once
+  EXPECT_THROW(loop.runSteps(1), std::invalid_argument);  // one caller at once
   loop.setPaused(false);
-  EXPECT_EQ(steps.get().end, StepsTaken::End::kInterrupted);
+  EXPECT_EQ(steps.get().end, StepsRun::End::kInterrupted);
 }
 
 TEST(RealTimeLoop, RethrowsWhatACommandThrows) {
@@ -91,12 +91,12 @@ TEST(RealTimeLoop, KeepsTheLastGoodStateWhenAStepIsRejected) {
   RealTimeLoop loop(smallSimulation(), ignore);
   loop.start();
   loop.setPaused(true);
-  loop.takeSteps(3);
+  loop.runSteps(3);
   const cloth::ClothState good = stateOf(loop);
   loop.execute(setOverflowingFabric);
-  const StepsTaken taken = loop.takeSteps(5);
+  const StepsRun taken = loop.runSteps(5);
   EXPECT_EQ(taken.steps, 0u);
-  EXPECT_EQ(taken.end, StepsTaken::End::kRejected);
+  EXPECT_EQ(taken.end, StepsRun::End::kRejected);
   EXPECT_EQ(stateOf(loop).positions, good.positions);
   EXPECT_TRUE(loop.status().last_step_rejected);
   EXPECT_EQ(loop.status().rejected_steps, 1u);

@@ -67,7 +67,7 @@ TEST(WithoutEffect, TakesAwayWhatBuildsOnItAndNothingElse) {
 
 TEST(CellSize, IsTheLongerEdgeOfACell) {
   const auto size = [](double width, double height, int cells_u, int cells_v) {
-    return cellSize(
+    return medianCellSize(
         mesh::makeRectangle(width, height, cells_u, cells_v, mesh::Triangulation::kAlternating));
   };
   EXPECT_NEAR(size(0.2, 0.2, 32, 32), 0.00625, 1e-12);

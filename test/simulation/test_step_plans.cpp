@@ -9,7 +9,7 @@
 namespace haptex::simulation {
 namespace {
 
-void takeSteps(SimulatedCloth& simulation, int count) {
+void runSteps(SimulatedCloth& simulation, int count) {
   for (int i = 0; i < count; ++i) ASSERT_TRUE(simulation.step());
 }
 
@@ -54,8 +54,8 @@ TEST(StepPlans, SubstepsAreThoseOfTheIntegratorByHand) {
 TEST(StepPlans, ASceneWithoutThemRunsAsWithTheOneOfItsSettings) {
   SimulatedCloth plain = smallSimulation();
   SimulatedCloth planned = plannedSimulation({{cloth::StepSettings(), 1}});
-  takeSteps(plain, 10);
-  takeSteps(planned, 10);
+  runSteps(plain, 10);
+  runSteps(planned, 10);
   expectSame(plain.state(), planned.state());
 }
 
@@ -63,7 +63,7 @@ TEST(StepPlans, AChangeLeavesTheStateAsItIs) {
   SimulatedCloth simulation = plannedSimulation(severalPlans(), true);
   simulation.move({kSmallTop}, {0.05, 0.1, 0.0}, 0.1);
   for (int change = 0; change < 12; ++change) {
-    takeSteps(simulation, 3);
+    runSteps(simulation, 3);
     const cloth::ClothState before = simulation.state();
     simulation.use((5 * change + 1) % severalPlans().size());
     expectSame(simulation.state(), before);
@@ -82,8 +82,8 @@ TEST(StepPlans, MotionGoesOnWithoutAJumpThroughChanges) {
   for (int i = 0; i < 60; ++i) {
     const cloth::ClothState before = changing.state();
     changing.use(static_cast<std::size_t>(i / 2) % severalPlans().size());
-    takeSteps(changing, 1);
-    takeSteps(staying, 1);
+    runSteps(changing, 1);
+    runSteps(staying, 1);
     for (std::size_t p = 0; p < before.positions.size(); ++p) {
       const Eigen::Vector3d way = changing.state().positions[p] - before.positions[p];
       const Eigen::Vector3d mean =
@@ -96,14 +96,14 @@ TEST(StepPlans, MotionGoesOnWithoutAJumpThroughChanges) {
 
 TEST(StepPlans, ClothAtRestStaysAtRestThroughChanges) {
   SimulatedCloth simulation = plannedSimulation();
-  takeSteps(simulation, 1000);  // 5 s
+  runSteps(simulation, 1000);  // 5 s
   ASSERT_LT(fastest(simulation.state()), 1e-6);
   const cloth::ClothState rest = simulation.state();
   const std::uint64_t computed = simulation.computedSteps();
   for (int change = 0; change < 20; ++change) {
     simulation.use((3 * change + 1) % severalPlans().size());
     simulation.setFabric(simulation.cloth().fabric());  // or it would sleep, whatever the plan
-    takeSteps(simulation, 2);
+    runSteps(simulation, 2);
   }
   EXPECT_EQ(simulation.computedSteps(), computed + 40);
   EXPECT_LT(fastest(simulation.state()), 1e-5);
@@ -117,7 +117,7 @@ TEST(StepPlans, ARejectedSubstepTakesBackTheWholeStep) {
   cloth::StepSettings explicit_step;
   explicit_step.method = cloth::IntegrationMethod::kExplicitEuler;
   SimulatedCloth simulation = plannedSimulation({{explicit_step, 4}});
-  takeSteps(simulation, 2);
+  runSteps(simulation, 2);
   material::Fabric fabric = simulation.cloth().fabric();
   // So stiff that one substep stretches it beyond bounds, and the forces of the next overflow.
   fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(1e160);
@@ -136,7 +136,7 @@ TEST(StepPlans, ARejectedSubstepTakesBackTheWholeStep) {
 TEST(StepPlans, StayThroughResetAndChangesOfTheFabric) {
   SimulatedCloth simulation = plannedSimulation(severalPlans(), true);
   simulation.use(2);
-  takeSteps(simulation, 5);
+  runSteps(simulation, 5);
   const cloth::ClothState after_five = simulation.state();
   material::Fabric other = simulation.cloth().fabric();
   const material::Fabric first = other;
@@ -144,12 +144,12 @@ TEST(StepPlans, StayThroughResetAndChangesOfTheFabric) {
   simulation.setFabric(other);
   for (std::size_t plan = 0; plan < severalPlans().size(); ++plan) {
     simulation.use(plan);
-    takeSteps(simulation, 2);
+    runSteps(simulation, 2);
   }
   simulation.setFabric(first);
   simulation.reset();
   simulation.use(2);
-  takeSteps(simulation, 5);
+  runSteps(simulation, 5);
   expectSame(simulation.state(), after_five);
 }
 
@@ -160,10 +160,10 @@ TEST(StepPlans, FollowTheController) {
   // Budgets that every step misses, and that none does.
   simulation.setController(QualityController({1, 2, 3, 4}, 1e-9, 0.005, 3));
   EXPECT_EQ(simulation.plan(), 3u);
-  takeSteps(simulation, 4);
+  runSteps(simulation, 4);
   EXPECT_EQ(simulation.plan(), 0u);
   simulation.setController(QualityController({1, 2, 3, 4}, 1e9, 0.005, 0));
-  takeSteps(simulation, 1 + static_cast<int>(3 * QualityController::kHold / 0.005) + 3);
+  runSteps(simulation, 1 + static_cast<int>(3 * QualityController::kHold / 0.005) + 3);
   EXPECT_EQ(simulation.plan(), 3u);
   EXPECT_EQ(simulation.controller()->times().cycles, 200u);
 }

@@ -43,7 +43,7 @@ class YamlValue {
   /// A text that is not empty or blank.
   std::string text() const;
   /// One of the given words.
-  std::string oneOf(std::initializer_list<const char*> words) const;
+  std::string oneOf(const std::vector<const char*>& words) const;
 
   /// Throws the refusal of this value: "<file>: <key path>: <value> <reason>".
   [[noreturn]] void refuse(const std::string& reason) const;

@@ -95,7 +95,7 @@ class ForceLoop {
     contact::FingertipContact contact;
     tactile::PerContactor<double> contactor_forces{};  ///< N
     tactile::ArrayPlacement array;                     ///< on the fabric, zero without contact
-    Time measured{0};   ///< stamp of the pose that it was computed from, see takePose()
+    Time measured{0};   ///< stamp of the pose that it was computed from, see receivePose()
     double gain = 0.0;  ///< share of the contact's force that is to be rendered, 0 to 1
   };
 
@@ -105,19 +105,19 @@ class ForceLoop {
   // Only what is believed. Arrivals are when the messages came.
   /// By any thread. @param measured its stamp, by any clock, to be told with the force that comes
   /// of it
-  void takePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival,
-                Time measured = Time{0});
+  void receivePose(Finger finger, const Eigen::Isometry3d& in_hand_base, Time arrival,
+                   Time measured = Time{0});
   /// By any thread.
-  void takeTwist(Finger finger, const FingertipTwist& in_hand_base, Time arrival);
-  void takeHeartbeat(Time arrival);
+  void receiveTwist(Finger finger, const FingertipTwist& in_hand_base, Time arrival);
+  void receiveHeartbeat(Time arrival);
 
   // By the thread of what else comes in.
   /// @param time when the hand was there @param fixed a static transform
-  void takeHandBase(const Eigen::Isometry3d& in_world, Time time, Time arrival, bool fixed);
-  void takeState(const LargeScaleState& state, Time arrival);
+  void receiveHandBase(const Eigen::Isometry3d& in_world, Time time, Time arrival, bool fixed);
+  void receiveState(const LargeScaleState& state, Time arrival);
   /// Pose of the contactor array in the fingertip's frame; without it what is of the array
   /// is zero.
-  void takeArray(Finger finger, const Eigen::Isometry3d& in_fingertip);
+  void receiveArray(Finger finger, const Eigen::Isometry3d& in_fingertip);
 
   // By the thread of layers and patches.
   bool canOffer() { return updates_.isFree(); }

@@ -28,8 +28,8 @@ class FrameFollower {
   static constexpr Time kLongestPeriod = std::chrono::milliseconds(50);
 
   /// @param time when the frame was there
-  /// @param now >= all earlier ones of take() and at()
-  void take(const Eigen::Isometry3d& pose, Time time, Time now);
+  /// @param now >= all earlier ones of receive() and at()
+  void receive(const Eigen::Isometry3d& pose, Time time, Time now);
 
   /// Before the first pose the identity at rest.
   FrameMotion at(Time now) const;

@@ -33,10 +33,10 @@ struct LoopStatus {
   double simulated_time = 0.0;       ///< s, likewise
 };
 
-/// What RealTimeLoop::takeSteps() did.
-struct StepsTaken {
-  std::uint32_t steps = 0;  ///< taken
-  enum class End { kAllTaken, kRejected, kInterrupted } end = End::kAllTaken;
+/// What RealTimeLoop::runSteps() did.
+struct StepsRun {
+  std::uint32_t steps = 0;  ///< that were run
+  enum class End { kAllRun, kRejected, kInterrupted } end = End::kAllRun;
 };
 
 /// Runs a simulation so that simulated time passes like the steady clock. Between two steps, also
@@ -80,7 +80,7 @@ class RealTimeLoop {
   /// Takes steps as fast as possible and waits for them. Commands are carried out between them.
   /// @throws std::invalid_argument if the loop is not paused or already takes steps for another
   ///   caller, std::runtime_error if it has ended
-  StepsTaken takeSteps(std::uint32_t count);
+  StepsRun runSteps(std::uint32_t count);
 
   LoopStatus status() const;
   /// Computing times since the start of all steps that were not slept through.
@@ -97,11 +97,11 @@ class RealTimeLoop {
 
   void run();
   bool carryOutRequests(std::unique_lock<std::mutex>& lock);
-  void takeRequestedStep(std::unique_lock<std::mutex>& lock);
-  void takeDueStep(std::unique_lock<std::mutex>& lock);
+  void runRequestedStep(std::unique_lock<std::mutex>& lock);
+  void runDueStep(std::unique_lock<std::mutex>& lock);
   double step(std::unique_lock<std::mutex>& lock, bool in_real_time);
   void resume();
-  void endSteps(StepsTaken::End end);
+  void endSteps(StepsRun::End end);
   void startWindow();
   void closeWindow();
   void recordSimulation();
@@ -117,9 +117,9 @@ class RealTimeLoop {
   std::condition_variable wake_callers_;
   std::deque<Request*> requests_;
   bool running_ = false;
-  bool steps_requested_ = false;    // a caller waits in takeSteps()
+  bool steps_requested_ = false;    // a caller waits in runSteps()
   std::uint32_t steps_wanted_ = 0;  // still to be taken for it
-  StepsTaken steps_taken_;
+  StepsRun steps_taken_;
   Clock::time_point due_;       // of the next step
   Clock::time_point computed_;  // the last step
 

@@ -28,7 +28,7 @@ scene::Scene withoutEffect(scene::Scene scene, const std::string& name);
 
 /// Edge length (m) of the cells of a sheet, of a mesh the like: the median, over its triangles, of
 /// the second longest edge at rest.
-double cellSize(const mesh::ClothMesh& mesh);
+double medianCellSize(const mesh::ClothMesh& mesh);
 
 /// The studied quality that is nearest to a scene, of those with the same integrator, as many
 /// solves, a time step that differs by less than a factor of 1.5, and cells more than two thirds as

@@ -126,9 +126,9 @@ class SimulatedCloth {
   std::vector<int> requireAttached(const std::vector<std::uint32_t>& particles) const;
   void attachInitially();
   void makeIntegrators();
-  bool take(int cycles, double waited);
-  void takeSubsteps(double duration);
-  cloth::StepReport takeSubstep(double duration);
+  bool run(int cycles, double waited);
+  void runSubsteps(double duration);
+  cloth::StepReport runSubstep(double duration);
   void wake();
   void sleepIfResting();
 

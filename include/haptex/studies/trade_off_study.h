@@ -87,7 +87,6 @@ std::vector<Reference> computeReferences(const std::vector<TradeOffCase>& cases,
 std::string nameOf(const TradeOffPoint& point);
 const char* nameOf(Motion motion);
 const char* nameOf(cloth::Elasticity elasticity);
-const char* nameOf(cloth::IntegrationMethod method);
 const char* nameOf(linear::LinearSolverMethod method);
 
 }  // namespace haptex::studies

@@ -3,6 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+// The rounds of a stage. StageSolver calls
+//   begin()         once: each contact starts from what its particle's did in the last stage, a new
+//                   one sticks if the guess enters the body and is open otherwise;
+//   prepareRound()  a fresh copy of the free system A dv = b; what sticks is prescribed, what slips
+//                   gets its friction as a force on the right-hand side and the resistance of its
+//                   direction on the diagonal;
+//   confine()       takes the normals of what slips out of the unknowns;
+//   update()        after the solve: r = A dv - b of the free system are the impulses that the
+//                   constraints had to exert, r / a the forces N n + T. They say who lets go (N <
+//                   0), slips (|T| > mu N) or sticks again (the slip has come round to where
+//                   friction pushes).
+// until nothing changes. Compare the primal-dual active sets of Hintermueller, Ito and Kunisch,
+// SIAM J. Optim. 13 (2003), and for friction that is given from round to round Necas, Jarusek and
+// Haslinger, Boll. Un. Mat. Ital. 17-B (1980).
 namespace haptex::cloth {
 
 using Eigen::Matrix3d;
@@ -50,6 +64,7 @@ void ActiveSetContactSolver::begin(const Cloth& cloth, const Stage& stage, const
   attached_ = attached;
   free_matrix_ = matrix;
   free_rhs_ = rhs;
+  // What crept to rest sticks; what was not there in the last stage knows nothing.
   for (Entry& entry : entries_) {
     const bool remembered = entry.stage == stages_ - 1;
     if (entry.creeps && entry.speed < kRest) entry.state = State::kSticks;
@@ -73,6 +88,7 @@ ActiveSetContactSolver::Entry ActiveSetContactSolver::entryOf(const Cloth& cloth
   entry.particle = contact.particle;
   entry.normal = contact.normal;
   entry.body = contact.velocity;
+  // With it the stage goes its share of the way: x* + a v = x* + share (place - x*).
   entry.target = stage.share / stage.a * (place - stage.base.positions[contact.particle]);
   entry.friction = contact.friction;
   entry.mass = cloth.masses()[contact.particle];
@@ -165,6 +181,7 @@ void ActiveSetContactSolver::putNormal(linear::BlockVector& solution) const {
 
 bool ActiveSetContactSolver::update(const linear::BlockVector& solution, bool last) {
   constexpr double kFrictionTolerance = 1e-3;  // of the friction of all contacts together
+  // What the free system lacks is what the constraints exert.
   free_matrix_.multiply(solution, residual_);
   residual_ -= free_rhs_;
   bool changed = false;
@@ -221,6 +238,9 @@ void ActiveSetContactSolver::judge(const Vector3d& velocity, const Vector3d& for
     return;
   }
   if (entry.friction == 0.0) return;
+  // Stick to slip: friction goes on in the direction in which it held. Slip to stick: the slip
+  // points where friction pushes, so friction has stopped it and more. What goes on switching
+  // between the two creeps instead, see the header.
   const Vector3d tangential = force - entry.load * entry.normal;
   const Vector3d slip = relative - entry.normal * entry.normal.dot(relative);
   if (entry.state == State::kSticks) {
@@ -244,6 +264,8 @@ bool ActiveSetContactSolver::addNewton(const Velocities& velocities,
                                        linear::SymmetricBlockMatrix& matrix,
                                        linear::BlockVector& rhs, std::vector<char>& fixed,
                                        linear::BlockVector& prescribed) {
+  // The right-hand side of a Newton iteration is minus the residual itself: the contacts' forces
+  // can be read off before the solve.
   fixed = attached_;
   std::fill(confined_.begin(), confined_.end(), 0);
   bool changed = false;

@@ -145,13 +145,13 @@ void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
   if (explicit_step_) return explicit_step_->advance(cloth, begin, h, end_);
   switch (settings_.method) {
     case IntegrationMethod::kBackwardMidpoint:
-      return takeMidpoint(cloth, begin, h, report);
+      return runMidpoint(cloth, begin, h, report);
     case IntegrationMethod::kTrBdf2:
-      return takeTrBdf2(cloth, begin, h, report);
+      return runTrBdf2(cloth, begin, h, report);
     case IntegrationMethod::kBdf2:
-      if (!continuesHistory(begin, h)) return takeTrBdf2(cloth, begin, h, report);
+      if (!continuesHistory(begin, h)) return runTrBdf2(cloth, begin, h, report);
       base_.memory = begin.memory;
-      return takeBdf2(cloth, history_->before, begin, history_->time_step, h, report);
+      return runBdf2(cloth, history_->before, begin, history_->time_step, h, report);
     default:
       return stages_->solve(cloth, {begin, h, end_.time, 1.0, Stage::Rates::kSinceBase},
                             {begin.positions, begin.velocities, h}, end_, report);
@@ -198,8 +198,8 @@ bool Integrator::continuesHistory(const ClothState& begin, double h) const {
 /// so the first term tells how much blend takes away what nonlinear forces have added; where that
 /// does not suffice it is doubled. What they add at the midpoint is of the third order in h, so
 /// the blend is of the first, and the step still of the second order.
-void Integrator::takeMidpoint(const Cloth& cloth, const ClothState& begin, double h,
-                              StepReport& report) {
+void Integrator::runMidpoint(const Cloth& cloth, const ClothState& begin, double h,
+                             StepReport& report) {
   constexpr double kMaxBlend = 0.5;
   const double potential = cloth.potentialEnergy(begin);
   while (true) {
@@ -271,8 +271,8 @@ void Integrator::extrapolate(const Cloth& cloth, const ClothState& begin, double
 
 /// The trapezoidal rule over gamma h, then BDF-2 over its beginning and end; with
 /// gamma = 2 - sqrt 2 both stages have the same a (Bank et al. 1985).
-void Integrator::takeTrBdf2(const Cloth& cloth, const ClothState& begin, double h,
-                            StepReport& report) {
+void Integrator::runTrBdf2(const Cloth& cloth, const ClothState& begin, double h,
+                           StepReport& report) {
   const double first = (2.0 - std::sqrt(2.0)) * h;
   const double a = 0.5 * first;
   base_.memory = begin.memory;
@@ -284,13 +284,13 @@ void Integrator::takeTrBdf2(const Cloth& cloth, const ClothState& begin, double 
   stages_->solve(cloth, {base_, a, begin.time + first, 1.0, Stage::Rates::kOfVelocities},
                  {begin.positions, begin.velocities, first}, end_, report);
   settle(end_.velocities);
-  takeBdf2(cloth, begin, end_, first, h - first, report);
+  runBdf2(cloth, begin, end_, first, h - first, report);
 }
 
 /// From `before` by `first` seconds to `middle`, which may be end_, and by `second` to the end. The
 /// velocities of the guess are the mean ones between `before` and `middle`.
-void Integrator::takeBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,
-                          double first, double second, StepReport& report) {
+void Integrator::runBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,
+                         double first, double second, StepReport& report) {
   const double ratio = second / first;
   const double divisor = 1.0 + 2.0 * ratio;
   const double of_before = ratio * ratio / divisor;

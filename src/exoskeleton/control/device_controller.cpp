@@ -72,7 +72,7 @@ void DeviceController::latch(const char* why) {
 }
 
 void DeviceController::accept(const DeviceState& state, Time now) {
-  const bool another_life = !clock_.take(state.time, now);
+  const bool another_life = !clock_.receive(state.time, now);
   const double dt = state_seen_ ? 1e-6 * (state.time - device_time_) : 0.0;
   if (another_life) {
     for (FingerController& finger : fingers_.values) finger.restartEncoders();

@@ -77,9 +77,9 @@ void FingerController::command(const ForceCommand& command, bool obeyed, Time no
   if (!obeyed) return;
   const Vector3d& p = measurement_.pose.translation();
   if (has_command_ && chain_.commandsStopped()) {
-    command_.takeFrom(chain_.force(), command, p, measurement_.velocity);
+    command_.receiveFrom(chain_.force(), command, p, measurement_.velocity);
   } else {
-    command_.take(command, p, measurement_.velocity);
+    command_.receive(command, p, measurement_.velocity);
   }
   has_command_ = true;
   chain_.commandAccepted(now);

@@ -18,7 +18,7 @@ Vector3d SmoothCommand::value(const Vector3d& p, const Vector3d& v) const {
   return force.allFinite() ? haptex::exoskeleton::saturated(force, kMaxForce) : force;
 }
 
-void SmoothCommand::take(const ForceCommand& command, const Vector3d& p, const Vector3d& v) {
+void SmoothCommand::receive(const ForceCommand& command, const Vector3d& p, const Vector3d& v) {
   const Vector3d before = value(p, v);
   command_ = command;
   if (resting_) return;
@@ -28,8 +28,8 @@ void SmoothCommand::take(const ForceCommand& command, const Vector3d& p, const V
   difference_ += change;
 }
 
-void SmoothCommand::takeFrom(const Vector3d& rendered, const ForceCommand& command,
-                             const Vector3d& p, const Vector3d& v) {
+void SmoothCommand::receiveFrom(const Vector3d& rendered, const ForceCommand& command,
+                                const Vector3d& p, const Vector3d& v) {
   command_ = command;
   const Vector3d force = value(p, v);
   resting_ = !force.allFinite();

@@ -34,13 +34,13 @@ HandPlace HandMotion::at(Time now) {
   return place;
 }
 
-void HandMotion::take(Finger finger, const Eigen::Vector3d& target) {
+void HandMotion::receive(Finger finger, const Eigen::Vector3d& target) {
   requireNear(target, "target");
   const std::lock_guard<std::mutex> lock(mutex_);
   taken_.targets[finger] = target;
 }
 
-void HandMotion::take(const Eigen::Isometry3d& hand_base) {
+void HandMotion::receive(const Eigen::Isometry3d& hand_base) {
   requireNear(hand_base.translation(), "position of hand_base");
   if (!hand_base.linear().allFinite()) {
     throw std::invalid_argument("orientation of hand_base: allowed are finite numbers");

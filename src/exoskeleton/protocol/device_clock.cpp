@@ -20,7 +20,7 @@ void DeviceClock::anchor(std::uint32_t time, Time now) {
   lead_ = Time{0};
 }
 
-bool DeviceClock::take(std::uint32_t time, Time now) {
+bool DeviceClock::receive(std::uint32_t time, Time now) {
   if (!known_) {
     anchor(time, now);
     return true;

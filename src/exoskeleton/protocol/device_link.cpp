@@ -21,16 +21,16 @@ void DeviceLink::receive(const std::uint8_t* bytes, std::size_t count, Time now)
   if (now - last_bytes_ >= kInterrupted) parser_.discard();
   last_bytes_ = now;
   Bytes rest{bytes, count};
-  while (const Frame* frame = parser_.next(rest)) take(*frame, now);
+  while (const Frame* frame = parser_.next(rest)) handle(*frame, now);
   statistics_.received = parser_.statistics();
 }
 
-void DeviceLink::take(const Frame& frame, Time now) {
-  if (frame.type == FrameType::kIdentity) takeIdentity(frame, now);
-  if (frame.type == FrameType::kState) takeState(frame, now);
+void DeviceLink::handle(const Frame& frame, Time now) {
+  if (frame.type == FrameType::kIdentity) handleIdentity(frame, now);
+  if (frame.type == FrameType::kState) handleState(frame, now);
 }
 
-void DeviceLink::takeIdentity(const Frame& frame, Time now) {
+void DeviceLink::handleIdentity(const Frame& frame, Time now) {
   const auto identity = decodeIdentity(frame);
   if (!identity) {
     ++statistics_.meaningless_frames;
@@ -50,7 +50,7 @@ void DeviceLink::takeIdentity(const Frame& frame, Time now) {
   last_state_ = now;
 }
 
-void DeviceLink::takeState(const Frame& frame, Time now) {
+void DeviceLink::handleState(const Frame& frame, Time now) {
   if (status_ != LinkStatus::kConnected) return;
   const auto state = decodeState(frame);
   if (!state) {

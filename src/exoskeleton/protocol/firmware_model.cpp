@@ -20,12 +20,12 @@ void FirmwareModel::receive(const std::uint8_t* bytes, std::size_t count, Time n
   last_bytes_ = now;
   Bytes rest{bytes, count};
   while (const Frame* frame = parser_.next(rest)) {
-    if (frame->type == FrameType::kHello) takeHello(*frame);
-    if (frame->type == FrameType::kCommand) takeCommand(*frame, now);
+    if (frame->type == FrameType::kHello) handleHello(*frame);
+    if (frame->type == FrameType::kCommand) handleCommand(*frame, now);
   }
 }
 
-void FirmwareModel::takeHello(const Frame& frame) {
+void FirmwareModel::handleHello(const Frame& frame) {
   const auto hello = decodeHello(frame);
   if (!hello) return;
   to_answer_ = true;
@@ -34,7 +34,7 @@ void FirmwareModel::takeHello(const Frame& frame) {
   command_number_ = frame.sequence;
 }
 
-void FirmwareModel::takeCommand(const Frame& frame, Time now) {
+void FirmwareModel::handleCommand(const Frame& frame, Time now) {
   const int ahead = numbersAhead(frame.sequence, command_number_);
   if (!greeted_ || ahead == 0) return;
   // After a Hello the command of a dead driver may still come twice, with a number that looks new.

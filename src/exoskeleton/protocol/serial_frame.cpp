@@ -124,7 +124,7 @@ std::optional<DriveMode> driveMode(std::uint8_t byte) {
   return {};
 }
 
-bool taken(std::uint8_t type, LineEnd end) {
+bool receives(std::uint8_t type, LineEnd end) {
   switch (static_cast<FrameType>(type)) {
     case FrameType::kHello:
     case FrameType::kCommand:
@@ -278,7 +278,7 @@ Inspection inspect(Bytes bytes, LineEnd end) {
     return {FrameVerdict::kImpossibleLength, 0, {}};
   }
   if (bytes.size <= kTypeAt) return {FrameVerdict::kUnfinished, kTypeAt + 1, {}};
-  if (!taken(bytes.data[kTypeAt], end)) return {FrameVerdict::kUnknownType, 0, {}};
+  if (!receives(bytes.data[kTypeAt], end)) return {FrameVerdict::kUnknownType, 0, {}};
   const auto type = static_cast<FrameType>(bytes.data[kTypeAt]);
   const std::size_t payload = bytes.data[kLengthAt];
   if (!possible(payload, type)) return {FrameVerdict::kImpossibleLength, 0, {}};

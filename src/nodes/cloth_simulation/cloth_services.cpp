@@ -56,12 +56,12 @@ bool ClothNode::step(StepCloth::Request& request, StepCloth::Response& response)
       throw std::invalid_argument("steps = " + std::to_string(request.steps) +
                                   ": allowed are 1 to " + std::to_string(kMaxSteps));
     }
-    const simulation::StepsTaken taken = loop_.takeSteps(request.steps);
+    const simulation::StepsRun taken = loop_.runSteps(request.steps);
     const std::string message = "took " + counted(taken.steps, "step");
-    if (taken.end == simulation::StepsTaken::End::kRejected) {
+    if (taken.end == simulation::StepsRun::End::kRejected) {
       throw std::runtime_error(message + "; the next was not finite and was rejected");
     }
-    if (taken.end == simulation::StepsTaken::End::kInterrupted) {
+    if (taken.end == simulation::StepsRun::End::kInterrupted) {
       throw std::runtime_error(message + "; then the simulation was resumed or ended");
     }
     return message;

@@ -10,7 +10,7 @@ namespace haptex::nodes {
 ContactInput::ContactInput(const ros::NodeHandle& node, std::size_t triangle_count)
     : triangle_count_(triangle_count) {
   const boost::function<void(const haptex::ContactForces&)> callback =
-      [this](const haptex::ContactForces& message) { take(message); };
+      [this](const haptex::ContactForces& message) { receive(message); };
   ros::NodeHandle subscribing = node;
   subscribing.setCallbackQueue(&queue_);
   subscriber_ = subscribing.subscribe<haptex::ContactForces>(
@@ -22,7 +22,7 @@ ContactInputStatus ContactInput::status() const {
   return status_;
 }
 
-void ContactInput::take(const haptex::ContactForces& message) {
+void ContactInput::receive(const haptex::ContactForces& message) {
   std::string why;
   try {
     loads_.set(pointLoads(message, triangle_count_), realtime::steadyNow());

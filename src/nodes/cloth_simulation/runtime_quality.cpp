@@ -43,13 +43,6 @@ scene::Quality loadPreset(const std::string& path) {
   return qualities.front();
 }
 
-const char* nameOf(cloth::IntegrationMethod method) {
-  const auto named = std::find_if(
-      cloth::kIntegrationMethods.begin(), cloth::kIntegrationMethods.end(),
-      [&](const cloth::NamedIntegrationMethod& other) { return other.method == method; });
-  return named->name;
-}
-
 double milliseconds(double seconds) { return 1e3 * seconds; }
 
 }  // namespace

@@ -28,7 +28,7 @@ void askToEnd() {
   endAsked().post();
 }
 
-void takeSignal(int /*number*/) { askToEnd(); }
+void handleSignal(int /*number*/) { askToEnd(); }
 
 /// The second parameter of shutdown(caller, reason), if the caller has sent a text: it may be
 /// anybody.
@@ -42,7 +42,7 @@ std::string reasonOf(XmlRpc::XmlRpcValue& parameters) {
 
 /// What the master calls for `rosnode kill` and when another node takes the name. Whatever is wrong
 /// with the request, the node ends: that is the safe answer.
-void takeShutdown(XmlRpc::XmlRpcValue& parameters, XmlRpc::XmlRpcValue& result) {
+void handleShutdown(XmlRpc::XmlRpcValue& parameters, XmlRpc::XmlRpcValue& result) {
   ROS_WARN("Asked to end: %s", reasonOf(parameters).c_str());
   askToEnd();
   result = ros::xmlrpc::responseInt(1, "", 0);
@@ -50,9 +50,9 @@ void takeShutdown(XmlRpc::XmlRpcValue& parameters, XmlRpc::XmlRpcValue& result) 
 
 void takeOverEnding() {
   endAsked();  // made before a signal can come
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, takeSignal);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, handleSignal);
   ros::XMLRPCManager::instance()->unbind("shutdown");
-  ros::XMLRPCManager::instance()->bind("shutdown", takeShutdown);
+  ros::XMLRPCManager::instance()->bind("shutdown", handleShutdown);
 }
 
 }  // namespace

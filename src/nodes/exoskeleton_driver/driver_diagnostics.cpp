@@ -159,7 +159,7 @@ void DriverNode::diagnoseForce(Finger finger, Status& status) {
   status.add("observed energy (J)", safety.observed_energy);
   status.add("commands or measurements that were not finite", safety.not_finite);
   FingerTopics& topics = fingers_[finger];
-  status.add("commands taken", topics.filter.taken());
+  status.add("commands taken", topics.filter.accepted());
   for (const ServoForceFlaw flaw : kServoForceFlaws) {
     status.add(std::string("commands dropped: ") + name(flaw), topics.filter.dropped(flaw));
   }

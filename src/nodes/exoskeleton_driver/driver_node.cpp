@@ -125,7 +125,7 @@ void DriverNode::advertiseTopics() {
         node_.advertise<geometry_msgs::WrenchStamped>(topic(finger, "measured_cf"), kMeasuredQueue);
     using Event = const ros::MessageEvent<haptex::ServoForce const>&;
     const boost::function<void(Event)> take = [this, finger](Event event) {
-      takeForce(finger, event);
+      receiveForce(finger, event);
     };
     // Only the latest force counts.
     topics.forces = force_node_.subscribe<haptex::ServoForce, Event>(
@@ -155,8 +155,8 @@ void DriverNode::subscriberGone(const ros::SingleSubscriberPublisher& subscriber
   }
 }
 
-void DriverNode::takeForce(Finger finger,
-                           const ros::MessageEvent<haptex::ServoForce const>& event) {
+void DriverNode::receiveForce(Finger finger,
+                              const ros::MessageEvent<haptex::ServoForce const>& event) {
   const haptex::ServoForceConstPtr& message = event.getConstMessage();
   const Time arrival = realtime::steadyNow();
   const ros::Time now = ros::Time::now();
@@ -164,7 +164,7 @@ void DriverNode::takeForce(Finger finger,
   std::string why;
   {
     const std::lock_guard<std::mutex> lock(commanders_mutex_);
-    if (const auto command = topics.filter.take(*message, now, arrival)) {
+    if (const auto command = topics.filter.receive(*message, now, arrival)) {
       loop_.command(finger, *command, arrival, timeOf(message->measured, now, arrival));
       commanders_.commanded(finger, event.getPublisherName());
       return;

@@ -56,8 +56,8 @@ const char* name(ServoForceFlaw flaw) {
   return "unknown";
 }
 
-std::optional<ForceCommand> ServoForceFilter::take(const haptex::ServoForce& message,
-                                                   const ros::Time& now, Time steady_now) {
+std::optional<ForceCommand> ServoForceFilter::receive(const haptex::ServoForce& message,
+                                                      const ros::Time& now, Time steady_now) {
   const std::optional<ServoForceFlaw> flaw = findFlaw(message, now, steady_now);
   if (flaw) {
     last_flaw_ = *flaw;
@@ -66,7 +66,7 @@ std::optional<ForceCommand> ServoForceFilter::take(const haptex::ServoForce& mes
   }
   last_stamp_ = message.header.stamp;
   last_time_ = steady_now;
-  taken_.fetch_add(1, std::memory_order_relaxed);
+  accepted_.fetch_add(1, std::memory_order_relaxed);
   return commandOf(message);
 }
 

@@ -31,22 +31,24 @@ TargetInput::TargetInput(const ros::NodeHandle& node, exoskeleton::HandMotion& m
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   for (const Finger finger : kFingers) {
     const boost::function<void(const geometry_msgs::PointStamped&)> callback =
-        [this, finger](const geometry_msgs::PointStamped& message) { takePoint(finger, message); };
+        [this, finger](const geometry_msgs::PointStamped& message) {
+          receivePoint(finger, message);
+        };
     point_subscribers_[finger] = node_.subscribe<geometry_msgs::PointStamped>(
         base::name(finger) + std::string("/target"), 1, callback, ros::VoidConstPtr(), hints);
   }
   const boost::function<void(const geometry_msgs::PoseStamped&)> callback =
-      [this](const geometry_msgs::PoseStamped& message) { takePose(message); };
+      [this](const geometry_msgs::PoseStamped& message) { receivePose(message); };
   pose_subscriber_ = node_.subscribe<geometry_msgs::PoseStamped>("hand_base/target", 1, callback,
                                                                  ros::VoidConstPtr(), hints);
 }
 
-/// Takes a target; what is thrown is the refusal.
-template <typename Take>
-void TargetInput::take(const std::string& from, const Take& take) {
+/// Applies a target; what is thrown is the refusal.
+template <typename Apply>
+void TargetInput::receive(const std::string& from, const Apply& apply) {
   std::string why;
   try {
-    take();
+    apply();
   } catch (const std::exception& error) {
     why = error.what();
     ROS_WARN_THROTTLE(1.0, "%s refused: %s", from.c_str(), error.what());
@@ -56,24 +58,24 @@ void TargetInput::take(const std::string& from, const Take& take) {
   if (!why.empty()) status_.refused_why = from + ": " + why;
 }
 
-void TargetInput::takePoint(Finger finger, const geometry_msgs::PointStamped& message) {
-  take(base::name(finger) + std::string("/target"), [&] {
+void TargetInput::receivePoint(Finger finger, const geometry_msgs::PointStamped& message) {
+  receive(base::name(finger) + std::string("/target"), [&] {
     Eigen::Vector3d target = vector(message.point);
     if (target.allFinite() && message.header.frame_id != kHandFrame) {
       target = transformFrom(message.header, kHandFrame, transforms_) * target;
     }
-    motion_.take(finger, target);
+    motion_.receive(finger, target);
   });
 }
 
-void TargetInput::takePose(const geometry_msgs::PoseStamped& message) {
-  take("hand_base/target", [&] {
+void TargetInput::receivePose(const geometry_msgs::PoseStamped& message) {
+  receive("hand_base/target", [&] {
     requireFixedFrame(message.header);
-    motion_.take(fromMessage(message.pose));
+    motion_.receive(fromMessage(message.pose));
   });
 }
 
-void TargetInput::takeFeedback(const Feedback& feedback) {
+void TargetInput::receiveFeedback(const Feedback& feedback) {
   using visualization_msgs::InteractiveMarkerFeedback;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -85,14 +87,14 @@ void TargetInput::takeFeedback(const Feedback& feedback) {
     geometry_msgs::PoseStamped message;
     message.header = feedback->header;
     message.pose = feedback->pose;
-    takePose(message);
+    receivePose(message);
     return;
   }
   geometry_msgs::PointStamped message;
   message.header = feedback->header;
   message.point = feedback->pose.position;
   for (const Finger finger : kFingers) {
-    if (feedback->marker_name == base::name(finger)) takePoint(finger, message);
+    if (feedback->marker_name == base::name(finger)) receivePoint(finger, message);
   }
 }
 
@@ -111,7 +113,7 @@ void TargetInput::moveInteractiveMarkers(const exoskeleton::HandPlace& place) {
   const auto move = [&](const visualization_msgs::InteractiveMarker& marker) {
     if (marker.name == dragged) return;
     if (!interactive_->setPose(marker.name, marker.pose)) {
-      interactive_->insert(marker, [this](const Feedback& feedback) { takeFeedback(feedback); });
+      interactive_->insert(marker, [this](const Feedback& feedback) { receiveFeedback(feedback); });
     }
   };
   for (const Finger finger : kFingers) move(fingertipMarker(finger, place));

@@ -65,9 +65,9 @@ simulation::FingertipTwist soundTwist(const geometry_msgs::Twist& message) {
 }  // namespace
 
 template <typename Value, typename Message, typename Convert>
-std::optional<Value> FingertipFilter::take(const char* topic, const Message& message,
-                                           const ros::Time& now, Time steady_now, Last& last,
-                                           const Convert& convert) {
+std::optional<Value> FingertipFilter::receive(const char* topic, const Message& message,
+                                              const ros::Time& now, Time steady_now, Last& last,
+                                              const Convert& convert) {
   try {
     requireHandFrame(message.header);
     const Value value = convert();
@@ -86,24 +86,22 @@ std::optional<Value> FingertipFilter::take(const char* topic, const Message& mes
   }
 }
 
-std::optional<Eigen::Isometry3d> FingertipFilter::take(const geometry_msgs::PoseStamped& message,
-                                                       const ros::Time& now, Time steady_now) {
-  return take<Eigen::Isometry3d>("measured_cp", message, now, steady_now, last_pose_,
-                                 [&] { return soundPose(message.pose); });
+std::optional<Eigen::Isometry3d> FingertipFilter::receive(const geometry_msgs::PoseStamped& message,
+                                                          const ros::Time& now, Time steady_now) {
+  return receive<Eigen::Isometry3d>("measured_cp", message, now, steady_now, last_pose_,
+                                    [&] { return soundPose(message.pose); });
 }
 
-std::optional<simulation::FingertipTwist> FingertipFilter::take(
+std::optional<simulation::FingertipTwist> FingertipFilter::receive(
     const geometry_msgs::TwistStamped& message, const ros::Time& now, Time steady_now) {
-  return take<simulation::FingertipTwist>("measured_cv", message, now, steady_now, last_twist_,
-                                          [&] { return soundTwist(message.twist); });
+  return receive<simulation::FingertipTwist>("measured_cv", message, now, steady_now, last_twist_,
+                                             [&] { return soundTwist(message.twist); });
 }
 
-std::optional<simulation::FingertipMotion> FingertipFilter::take(const haptex::Fingertips& message,
-                                                                 base::Finger finger,
-                                                                 const ros::Time& now,
-                                                                 Time steady_now) {
+std::optional<simulation::FingertipMotion> FingertipFilter::receive(
+    const haptex::Fingertips& message, base::Finger finger, const ros::Time& now, Time steady_now) {
   const auto i = static_cast<std::size_t>(finger);
-  return take<
+  return receive<
       simulation::
           FingertipMotion>("exoskeleton/fingertips", message, now, steady_now, last_motion_, [&] {
     return simulation::FingertipMotion{soundPose(message.poses[i]), soundTwist(message.twists[i])};

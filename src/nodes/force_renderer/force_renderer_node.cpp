@@ -124,15 +124,15 @@ void ForceRendererNode::subscribe() {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   for (const Finger finger : kFingers) subscribeToFinger(finger);
   const boost::function<void(const haptex::Fingertips&)> take_fingertips =
-      [this](const haptex::Fingertips& message) { takeFingertips(message); };
+      [this](const haptex::Fingertips& message) { receiveFingertips(message); };
   fingertip_subscriber_ = device_node_.subscribe<haptex::Fingertips>(
       "exoskeleton/fingertips", 1, take_fingertips, ros::VoidConstPtr(), hints);
   const boost::function<void(const haptex::ClothState&)> take_state =
-      [this](const haptex::ClothState& message) { takeState(message); };
+      [this](const haptex::ClothState& message) { receiveState(message); };
   state_subscriber_ = input_node_.subscribe<haptex::ClothState>("cloth/state", 1, take_state,
                                                                 ros::VoidConstPtr(), hints);
   const boost::function<void(const std_msgs::Header&)> take_heartbeat =
-      [this](const std_msgs::Header&) { loop_.takeHeartbeat(realtime::steadyNow()); };
+      [this](const std_msgs::Header&) { loop_.receiveHeartbeat(realtime::steadyNow()); };
   heartbeat_subscriber_ = device_node_.subscribe<std_msgs::Header>(
       "cloth/heartbeat", 1, take_heartbeat, ros::VoidConstPtr(), hints);
   const boost::function<void(const haptex::ClothMeshConstPtr&)> take_mesh =
@@ -141,7 +141,7 @@ void ForceRendererNode::subscribe() {
       node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh, ros::VoidConstPtr(), hints);
   // After the listener, which subscribed before on the same thread: the buffer knows them then.
   const boost::function<void(const tf2_msgs::TFMessage&)> take_transforms =
-      [this](const tf2_msgs::TFMessage&) { takeTransforms(); };
+      [this](const tf2_msgs::TFMessage&) { receiveTransforms(); };
   transform_subscriber_ = input_node_.subscribe<tf2_msgs::TFMessage>(
       "/tf", kTransformQueue, take_transforms, ros::VoidConstPtr(), hints);
   static_transform_subscriber_ =
@@ -154,16 +154,16 @@ void ForceRendererNode::subscribeToFinger(Finger finger) {
   const boost::function<void(const geometry_msgs::PoseStamped&)> take_pose =
       [this, finger, &topics](const geometry_msgs::PoseStamped& message) {
         const Time arrival = realtime::steadyNow();
-        const auto pose = topics.filter.take(message, ros::Time::now(), arrival);
-        if (!pose || !takesSingly(arrival)) return;
-        loop_.takePose(finger, *pose, arrival, Time(message.header.stamp.toNSec()));
+        const auto pose = topics.filter.receive(message, ros::Time::now(), arrival);
+        if (!pose || !receivesSingly(arrival)) return;
+        loop_.receivePose(finger, *pose, arrival, Time(message.header.stamp.toNSec()));
         topics.poses.fetch_add(1, std::memory_order_relaxed);
       };
   const boost::function<void(const geometry_msgs::TwistStamped&)> take_twist =
       [this, finger, &topics](const geometry_msgs::TwistStamped& message) {
         const Time arrival = realtime::steadyNow();
-        const auto twist = topics.filter.take(message, ros::Time::now(), arrival);
-        if (twist && takesSingly(arrival)) loop_.takeTwist(finger, *twist, arrival);
+        const auto twist = topics.filter.receive(message, ros::Time::now(), arrival);
+        if (twist && receivesSingly(arrival)) loop_.receiveTwist(finger, *twist, arrival);
       };
   // Only the latest counts.
   topics.pose = device_node_.subscribe<geometry_msgs::PoseStamped>(
@@ -172,15 +172,15 @@ void ForceRendererNode::subscribeToFinger(Finger finger) {
       topic(finger, "measured_cv"), 1, take_twist, ros::VoidConstPtr(), hints);
 }
 
-void ForceRendererNode::takeFingertips(const haptex::Fingertips& message) {
+void ForceRendererNode::receiveFingertips(const haptex::Fingertips& message) {
   const Time arrival = realtime::steadyNow();
   const ros::Time now = ros::Time::now();
   for (const Finger finger : kFingers) {
     FingerTopics& topics = fingers_[finger];
-    const auto motion = topics.filter.take(message, finger, now, arrival);
+    const auto motion = topics.filter.receive(message, finger, now, arrival);
     if (!motion) continue;
-    loop_.takePose(finger, motion->pose, arrival, Time(message.header.stamp.toNSec()));
-    loop_.takeTwist(finger, motion->twist, arrival);
+    loop_.receivePose(finger, motion->pose, arrival, Time(message.header.stamp.toNSec()));
+    loop_.receiveTwist(finger, motion->twist, arrival);
     topics.poses.fetch_add(1, std::memory_order_relaxed);
     last_fingertips_ = arrival;
   }
@@ -188,11 +188,11 @@ void ForceRendererNode::takeFingertips(const haptex::Fingertips& message) {
 }
 
 /// Whether the device tells of its fingers one by one only.
-bool ForceRendererNode::takesSingly(Time arrival) const {
+bool ForceRendererNode::receivesSingly(Time arrival) const {
   return arrival - last_fingertips_.load() > FingertipFilter::kForgetAfter;
 }
 
-void ForceRendererNode::takeState(const haptex::ClothState& message) {
+void ForceRendererNode::receiveState(const haptex::ClothState& message) {
   const Time arrival = realtime::steadyNow();
   try {
     readState(message, state_);
@@ -204,16 +204,16 @@ void ForceRendererNode::takeState(const haptex::ClothState& message) {
     return;
   }
   supplier_.setAttached(state_.attached);
-  loop_.takeState(state_, arrival);
+  loop_.receiveState(state_, arrival);
 }
 
-void ForceRendererNode::takeTransforms() {
-  takeHandBase();
+void ForceRendererNode::receiveTransforms() {
+  receiveHandBase();
   if (!tactile_) return;
-  for (const Finger finger : kFingers) takeArray(finger);
+  for (const Finger finger : kFingers) receiveArray(finger);
 }
 
-void ForceRendererNode::takeHandBase() {
+void ForceRendererNode::receiveHandBase() {
   if (!transforms_.canTransform(kFixedFrame, kHandFrame, ros::Time(0))) return;
   try {
     const geometry_msgs::TransformStamped transform =
@@ -227,14 +227,14 @@ void ForceRendererNode::takeHandBase() {
     has_hand_base_ = true;
     hand_base_stamp_ = transform.header.stamp;
     fixed_hand_base_ = pose;
-    loop_.takeHandBase(pose, fixed ? now : now - ageOf(transform.header.stamp), now, fixed);
+    loop_.receiveHandBase(pose, fixed ? now : now - ageOf(transform.header.stamp), now, fixed);
   } catch (const tf2::TransformException&) {
     // Replaced between the two calls: the next look finds it.
   }
 }
 
 /// Fixed to the fingertip: once is enough.
-void ForceRendererNode::takeArray(Finger finger) {
+void ForceRendererNode::receiveArray(Finger finger) {
   FingerTopics& topics = fingers_[finger];
   if (topics.has_array) return;
   const std::string tip = std::string(base::name(finger)) + "_tip";
@@ -242,7 +242,7 @@ void ForceRendererNode::takeArray(Finger finger) {
   if (!transforms_.canTransform(tip, array, ros::Time(0))) return;
   try {
     const auto transform = transforms_.lookupTransform(tip, array, ros::Time(0));
-    loop_.takeArray(finger, fromMessage(transform.transform));
+    loop_.receiveArray(finger, fromMessage(transform.transform));
     topics.has_array = true;
   } catch (const tf2::TransformException&) {
     // As above.

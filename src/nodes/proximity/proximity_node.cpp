@@ -87,10 +87,11 @@ ProximityNode::ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle&
   marker_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("proximity/markers", 2);
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   ros::NodeHandle input_node = input_thread_.handle(node_);
-  mesh_subscriber_ = input_node.subscribe("cloth/mesh", 1, &ProximityNode::takeMesh, this, hints);
+  mesh_subscriber_ =
+      input_node.subscribe("cloth/mesh", 1, &ProximityNode::receiveMesh, this, hints);
   // Only the latest state counts.
   state_subscriber_ =
-      input_node.subscribe("cloth/state", 1, &ProximityNode::takeState, this, hints);
+      input_node.subscribe("cloth/state", 1, &ProximityNode::receiveState, this, hints);
   query_service_ = service_threads_.handle(node_).advertiseService("proximity/query",
                                                                    &ProximityNode::query, this);
   marker_timer_ = node_.createSteadyTimer(
@@ -100,11 +101,11 @@ ProximityNode::ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle&
   service_threads_.start(kServiceThreads);
 }
 
-void ProximityNode::takeMesh(const haptex::ClothMeshConstPtr& message) {
+void ProximityNode::receiveMesh(const haptex::ClothMeshConstPtr& message) {
   proximity_.setMesh(*message);
 }
 
-void ProximityNode::takeState(const haptex::ClothStateConstPtr& message) {
+void ProximityNode::receiveState(const haptex::ClothStateConstPtr& message) {
   proximity_.setState(message, ClothProximity::Clock::now());
 }
 

@@ -27,7 +27,7 @@ SurfaceChoice::SurfaceChoice(const std::string& scene_fabric) : scene_fabric_(sc
   useIfAny(read);
 }
 
-bool SurfaceChoice::takeCloth(const std::string& fabric) {
+bool SurfaceChoice::receiveCloth(const std::string& fabric) {
   if (fabric == cloth_) return false;
   cloth_ = fabric;
   asked_ = false;

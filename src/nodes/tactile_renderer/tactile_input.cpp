@@ -6,7 +6,7 @@
 
 namespace haptex::nodes {
 
-void TactileInput::take(const haptex::Contact& message, base::Time arrival) {
+void TactileInput::receive(const haptex::Contact& message, base::Time arrival) {
   try {
     const auto touched = touchedFabric(message);
     if (touched) add(*touched);

@@ -81,18 +81,18 @@ void TactileNode::subscribe() {
   for (const Finger finger : kFingers) {
     const boost::function<void(const haptex::Contact&)> take =
         [this, finger](const haptex::Contact& message) {
-          loop_.take(finger, message, realtime::steadyNow());
+          loop_.receive(finger, message, realtime::steadyNow());
         };
     subscribers_[finger] = node_.subscribe<haptex::Contact>(topic(finger, "contact"), kContactQueue,
                                                             take, ros::VoidConstPtr(), hints);
   }
   const boost::function<void(const haptex::ClothMesh&)> take_mesh =
-      [this](const haptex::ClothMesh& message) { takeMesh(message); };
+      [this](const haptex::ClothMesh& message) { receiveMesh(message); };
   mesh_subscriber_ = node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh);
 }
 
-void TactileNode::takeMesh(const haptex::ClothMesh& message) {
-  if (choice_.takeCloth(message.fabric) && !choice_.surface()) {
+void TactileNode::receiveMesh(const haptex::ClothMesh& message) {
+  if (choice_.receiveCloth(message.fabric) && !choice_.surface()) {
     ROS_WARN("The contactors are silent: %s", choice_.trouble().c_str());
   }
 }

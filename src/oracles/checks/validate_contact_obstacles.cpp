@@ -6,8 +6,8 @@
 
 #include "haptex/base/constants.h"
 #include "haptex/base/workload.h"
+#include "haptex/material/linear_fabric.h"
 #include "haptex/oracles/checks/contact_oracles.h"
-#include "haptex/oracles/experiments/linear_fabric.h"
 #include "haptex/oracles/experiments/obstacle_scenes.h"
 
 namespace haptex::oracles {
@@ -34,8 +34,8 @@ cloth::StepSettings settingsOf(IntegrationMethod method) {
 void validateTable(const NamedIntegrationMethod& method, const Sink& sink) {
   const Obstacle table{"table", mesh::ObstacleBox{{0.3, 0.3, 0.02}}, at({0.0, 0.0, -0.01})};
   CollidingCloth scene(flatSheet({0.1, 0.1}, 10, 10, at({0.0, 0.0, 0.02})),
-                       linearFabric(100.0, 0.1), base::kStandardGravity, settingsOf(method.method),
-                       {table});
+                       material::linearFabric(100.0, 0.1), base::kStandardGravity,
+                       settingsOf(method.method), {table});
   while (scene.state.time < 1.0) scene.step(kTimeStep);
   const double weight = 0.1 * 0.01 * base::kStandardGravity;
   const std::string name = kPrefix + "table/" + method.name;
@@ -76,8 +76,8 @@ void validateCapstan(const Sink& sink) {
 double leastDistanceOf(const Obstacle& obstacle, double duration) {
   mesh::ClothMesh mesh = mesh::makeRectangle(0.2, 0.2, 16, 16, mesh::Triangulation::kAlternating);
   const auto held = sideParticles(mesh, mesh::Side::kTop);
-  CollidingCloth scene(std::move(mesh), linearFabric(200.0, 0.2), base::kStandardGravity, {},
-                       {obstacle});
+  CollidingCloth scene(std::move(mesh), material::linearFabric(200.0, 0.2), base::kStandardGravity,
+                       {}, {obstacle});
   for (int particle : held) {
     scene.cloth.attach(particle, {scene.state.positions[particle], Vector3d::Zero(), 0.0, 0.0});
   }
@@ -120,7 +120,7 @@ void validateEnergy(const NamedIntegrationMethod& method, const Sink& sink) {
     Obstacle ball{"ball", mesh::ObstacleSphere{0.04}, at({0.0, 0.0, -0.05})};
     ball.friction = friction;
     CollidingCloth scene(flatSheet({0.15, 0.15}, 14, 14, at({0.0, 0.0, 0.01})),
-                         linearFabric(200.0, 0.2), base::kStandardGravity,
+                         material::linearFabric(200.0, 0.2), base::kStandardGravity,
                          settingsOf(method.method), {ball});
     double least = scene.energy(), growth = 0.0;
     while (scene.state.time < base::unlessSanitized(0.5, 0.15)) {

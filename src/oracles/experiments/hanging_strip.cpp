@@ -6,7 +6,7 @@
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/oracles/experiments/linear_fabric.h"
+#include "haptex/material/linear_fabric.h"
 
 namespace haptex::oracles {
 
@@ -32,7 +32,7 @@ double simulatedElongation(const HangingStrip& strip, int cells, double time_ste
   // Viscosity near the critical damping of the slowest longitudinal mode: it shortens the way to
   // the state of rest and does not change it.
   const double slowest = 0.5 * M_PI / strip.length * std::sqrt(strip.modulus / strip.areal_density);
-  material::Fabric fabric = linearFabric(strip.modulus, strip.modulus / slowest);
+  material::Fabric fabric = material::linearFabric(strip.modulus, strip.modulus / slowest);
   fabric.areal_density = strip.areal_density;
 
   cloth::ModelledEffects effects;

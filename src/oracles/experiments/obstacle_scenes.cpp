@@ -8,7 +8,7 @@
 
 #include "haptex/base/constants.h"
 #include "haptex/contact/obstacles.h"
-#include "haptex/oracles/experiments/linear_fabric.h"
+#include "haptex/material/linear_fabric.h"
 
 namespace haptex::oracles {
 namespace {
@@ -88,7 +88,7 @@ InclineOutcome slideDown(double angle, double friction, cloth::IntegrationMethod
   on_top.translation() = (0.05 + ObstacleCollision::kOffset) * pose.linear().col(2);
   cloth::StepSettings settings;
   settings.method = method;
-  CollidingCloth scene(flatSheet({0.1, 0.1}, 8, 8, on_top), linearFabric(1000.0, 1.0),
+  CollidingCloth scene(flatSheet({0.1, 0.1}, 8, 8, on_top), material::linearFabric(1000.0, 1.0),
                        base::kStandardGravity, settings, {incline});
   const Vector3d down = pose.linear().col(0);
   const auto way = [&] { return down.dot(mean(scene.state.positions)); };
@@ -122,7 +122,8 @@ double pullOverCapsule(double friction) {
   constexpr double h = 1e-3;  // s
   cloth::StepSettings settings;
   settings.tolerance = 1e-8;
-  CollidingCloth scene(std::move(mesh), linearFabric(1000.0, 0.1), 0.0, settings, {capsule});
+  CollidingCloth scene(std::move(mesh), material::linearFabric(1000.0, 0.1), 0.0, settings,
+                       {capsule});
   const auto loaded = sideParticles(scene.cloth.mesh(), mesh::Side::kLeft);
   const auto pulled = sideParticles(scene.cloth.mesh(), mesh::Side::kRight);
   for (int particle : loaded) {

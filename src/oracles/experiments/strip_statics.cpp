@@ -9,7 +9,7 @@
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/kes/equilibrium.h"
-#include "haptex/oracles/experiments/linear_fabric.h"
+#include "haptex/material/linear_fabric.h"
 
 namespace haptex::oracles {
 namespace {
@@ -186,7 +186,7 @@ double simulatedDropOverReach(const Cantilever& cantilever) {
   // Two columns are held: the clamp is half way between them (docs/mechanics.md).
   const double cell = kLength / (cantilever.cells - 0.5);
   const Strip strip = makeStrip(cantilever.mesh, cantilever.along, cantilever.cells, kRows, cell);
-  material::Fabric fabric = linearFabric(kModulus);
+  material::Fabric fabric = material::linearFabric(kModulus);
   const double rigidity = fabric.areal_density * kGravity * std::pow(kLength, 3) / cantilever.gamma;
   fabric.bending = {7.0 * rigidity, 7.0 * rigidity};
   (cantilever.along == kes::Direction::kWeft ? fabric.bending->weft : fabric.bending->warp) =
@@ -210,7 +210,7 @@ double simulatedLateralBucklingLoad(StripMesh mesh, int cells) {
   constexpr int kRows = 3;
   const double cell = kLength / (cells - 0.5);
   const Strip strip = makeStrip(mesh, kes::Direction::kWeft, cells, kRows, cell);
-  material::Fabric fabric = linearFabric(kModulus);
+  material::Fabric fabric = material::linearFabric(kModulus);
   fabric.bending = {kRigidity, kRigidity};
   const auto stiffnessUnder = [&](double gravity) {
     cloth::ModelledEffects effects;
@@ -237,7 +237,7 @@ double simulatedLateralBucklingLoad(StripMesh mesh, int cells) {
 double simulatedRestCurvature(StripMesh mesh, kes::Direction along, cloth::BendingModel model,
                               double curvature) {
   const Strip strip = makeFreeStrip(mesh, along);
-  material::Fabric fabric = linearFabric(kFreeModulus);
+  material::Fabric fabric = material::linearFabric(kFreeModulus);
   fabric.bending = {kFreeRigidity, kFreeRigidity};
   cloth::ModelledEffects effects;
   effects.bending = true;
@@ -257,7 +257,7 @@ double simulatedRestCurvature(StripMesh mesh, kes::Direction along, cloth::Bendi
 double simulatedResidualCurvature(StripMesh mesh, kes::Direction along, cloth::BendingModel model,
                                   double held) {
   const Strip strip = makeFreeStrip(mesh, along);
-  material::Fabric fabric = linearFabric(kFreeModulus);
+  material::Fabric fabric = material::linearFabric(kFreeModulus);
   fabric.bending = {kFreeRigidity, kFreeRigidity};
   fabric.bending_hysteresis = {2.0 * kFreeRigidity * held, 2.0 * kFreeRigidity * held};
   cloth::ModelledEffects effects;
@@ -287,7 +287,7 @@ double simulatedSagOverSpan(StripMesh mesh, int cells) {
   const Strip strip = makeStrip(mesh, kes::Direction::kWeft, cells, kRows, kLength / cells);
   cloth::ModelledEffects effects;
   effects.gravity = {0.0, 0.0, -kGravity};
-  Cloth cloth(strip.mesh, linearFabric(kModulus), effects);
+  Cloth cloth(strip.mesh, material::linearFabric(kModulus), effects);
   // From an arc of the same length and span.
   const double span = kLength / kSlack;
   const double half = root(1e-3, M_PI, [&](double a) { return span / kLength - std::sin(a) / a; });

@@ -62,13 +62,13 @@ class Integrator {
   void keepEnergy(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   void slowDown(const Cloth& cloth, double energy, StepReport& report);
   void advance(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
-  void takeMidpoint(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
+  void runMidpoint(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   double outerWork(const Cloth& cloth, const ClothState& begin, double h, double theta);
   double blendAgainstGrowth(const Cloth& cloth, const ClothState& begin, double allowed) const;
   void extrapolate(const Cloth& cloth, const ClothState& begin, double theta);
-  void takeTrBdf2(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
-  void takeBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,
-                double first, double second, StepReport& report);
+  void runTrBdf2(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
+  void runBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle, double first,
+               double second, StepReport& report);
   bool continuesHistory(const ClothState& begin, double h) const;
   bool touches() const;
   void settle(Velocities& velocities) const;

@@ -36,6 +36,14 @@ inline constexpr std::array<NamedIntegrationMethod, 8> kIntegrationMethods = {{
     {"two_step_euler", IntegrationMethod::kTwoStepEuler},
 }};
 
+/// Its name in kIntegrationMethods.
+constexpr const char* nameOf(IntegrationMethod method) {
+  for (const NamedIntegrationMethod& named : kIntegrationMethods) {
+    if (named.method == method) return named.name;
+  }
+  return "";
+}
+
 /// Whether a step solves equations. Those that do not are stable for short steps only.
 constexpr bool isImplicit(IntegrationMethod method) {
   return method == IntegrationMethod::kBackwardEuler ||

@@ -21,12 +21,12 @@ class SmoothCommand {
   static constexpr double kPeriod = 0.001;  ///< s, of tick()
 
   /// @param p, v place (m) and velocity (m/s) now
-  void take(const ForceCommand& command, const Eigen::Vector3d& p, const Eigen::Vector3d& v);
+  void receive(const ForceCommand& command, const Eigen::Vector3d& p, const Eigen::Vector3d& v);
 
   /// The same, where this force (N) is rendered now, less than the command before asked for: goes
   /// on from there.
-  void takeFrom(const Eigen::Vector3d& rendered, const ForceCommand& command,
-                const Eigen::Vector3d& p, const Eigen::Vector3d& v);
+  void receiveFrom(const Eigen::Vector3d& rendered, const ForceCommand& command,
+                   const Eigen::Vector3d& p, const Eigen::Vector3d& v);
 
   /// No force; the next tick() begins from there.
   void rest();

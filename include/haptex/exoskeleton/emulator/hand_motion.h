@@ -11,7 +11,7 @@
 
 namespace haptex::exoskeleton {
 
-/// at() is for one thread, which does not wait for the others: take() may be called from any.
+/// at() is for one thread, which does not wait for the others: receive() may be called from any.
 class HandMotion {
  public:
   /// Largest coordinate that is taken (m): no hand is further away.
@@ -27,8 +27,8 @@ class HandMotion {
   /// hand_base in world), whatever the path says.
   /// @throws std::invalid_argument naming the value and what is allowed if it is not finite or
   ///   beyond kFarthest; nothing has changed then
-  void take(Finger finger, const Eigen::Vector3d& target);
-  void take(const Eigen::Isometry3d& hand_base);
+  void receive(Finger finger, const Eigen::Vector3d& target);
+  void receive(const Eigen::Isometry3d& hand_base);
 
  private:
   struct Taken {

@@ -21,7 +21,7 @@ class DeviceClock {
 
   /// @param time us, of the device's clock, wraps around @param now when the state was read
   /// @returns whether it still is the clock of the states before; true for the first
-  bool take(std::uint32_t time, Time now);
+  bool receive(std::uint32_t time, Time now);
 
  private:
   void anchor(std::uint32_t time, Time now);

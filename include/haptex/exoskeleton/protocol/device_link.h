@@ -69,9 +69,9 @@ class DeviceLink {
   std::uint8_t lastCommand() const;
 
  private:
-  void take(const Frame& frame, Time now);
-  void takeIdentity(const Frame& frame, Time now);
-  void takeState(const Frame& frame, Time now);
+  void handle(const Frame& frame, Time now);
+  void handleIdentity(const Frame& frame, Time now);
+  void handleState(const Frame& frame, Time now);
 
   LinkStatus status_ = LinkStatus::kConnecting;
   Identity identity_{0, 0, 0, 0};

@@ -63,8 +63,8 @@ class FirmwareModel {
   const ParserStatistics& received() const { return parser_.statistics(); }
 
  private:
-  void takeHello(const Frame& frame);
-  void takeCommand(const Frame& frame, Time now);
+  void handleHello(const Frame& frame);
+  void handleCommand(const Frame& frame, Time now);
   void approach(const DeviceCommand& command, int ahead, Time now);
   /// Share of the torques that the watchdog leaves, 0 to 1.
   double watchdogShare(Time now) const;

@@ -32,7 +32,7 @@ class ContactInput {
   ContactInputStatus status() const;
 
  private:
-  void take(const haptex::ContactForces& message);
+  void receive(const haptex::ContactForces& message);
 
   const std::size_t triangle_count_;
   simulation::NewestLoads loads_;

@@ -80,7 +80,7 @@ class DriverNode {
              DriverNodeParameters parameters);
 
   void advertiseTopics();
-  void takeForce(Finger finger, const ros::MessageEvent<haptex::ServoForce const>& event);
+  void receiveForce(Finger finger, const ros::MessageEvent<haptex::ServoForce const>& event);
   void subscriberGone(const ros::SingleSubscriberPublisher& subscriber);
 
   void publishFingertips(const exoskeleton::DriverSnapshot& snapshot);  // on the loop's thread

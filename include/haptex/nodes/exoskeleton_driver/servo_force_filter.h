@@ -45,8 +45,8 @@ class ServoForceFilter {
 
   /// By one thread. @param now of ROS @param steady_now of the steady clock
   /// @returns the command, or nothing if the message has a flaw: see lastFlaw()
-  std::optional<exoskeleton::ForceCommand> take(const haptex::ServoForce& message,
-                                                const ros::Time& now, base::Time steady_now);
+  std::optional<exoskeleton::ForceCommand> receive(const haptex::ServoForce& message,
+                                                   const ros::Time& now, base::Time steady_now);
 
   /// By the same thread: the commander has died. What it had stamped before and comes only now is
   /// dropped.
@@ -56,12 +56,12 @@ class ServoForceFilter {
   }
 
   /// By the same thread: what was wrong with the last message dropped, and what is allowed. Made
-  /// of the arguments of that take().
+  /// of the arguments of that receive().
   std::string explain(const haptex::ServoForce& message, const ros::Time& now) const;
 
   /// By any thread. Counts since the construction, no units.
   std::uint64_t dropped(ServoForceFlaw flaw) const;
-  std::uint64_t taken() const { return taken_.load(std::memory_order_relaxed); }
+  std::uint64_t accepted() const { return accepted_.load(std::memory_order_relaxed); }
 
  private:
   std::optional<ServoForceFlaw> findFlaw(const haptex::ServoForce& message, const ros::Time& now,
@@ -70,7 +70,7 @@ class ServoForceFilter {
   ServoForceFlaw last_flaw_ = ServoForceFlaw::kFrame;
   ros::Time last_stamp_;                 // of the last command taken
   std::optional<base::Time> last_time_;  // when it was taken; none: none yet
-  std::atomic<std::uint64_t> taken_{0};
+  std::atomic<std::uint64_t> accepted_{0};
   std::array<std::atomic<std::uint64_t>, kServoForceFlaws.size()> dropped_{};
 };
 

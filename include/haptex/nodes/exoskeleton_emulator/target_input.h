@@ -44,11 +44,11 @@ class TargetInput {
  private:
   using Feedback = visualization_msgs::InteractiveMarkerFeedbackConstPtr;
 
-  void takePoint(base::Finger finger, const geometry_msgs::PointStamped& message);
-  void takePose(const geometry_msgs::PoseStamped& message);
-  void takeFeedback(const Feedback& feedback);
-  template <typename Take>
-  void take(const std::string& from, const Take& take);
+  void receivePoint(base::Finger finger, const geometry_msgs::PointStamped& message);
+  void receivePose(const geometry_msgs::PoseStamped& message);
+  void receiveFeedback(const Feedback& feedback);
+  template <typename Apply>
+  void receive(const std::string& from, const Apply& apply);
   void moveInteractiveMarkers(const exoskeleton::HandPlace& place);
 
   ros::NodeHandle node_;

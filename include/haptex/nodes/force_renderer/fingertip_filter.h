@@ -36,14 +36,14 @@ class FingertipFilter {
   static constexpr double kFastestTurning = 1000.0;  ///< rad/s
 
   /// By one thread. @param now of ROS @param steady_now of the steady clock
-  std::optional<Eigen::Isometry3d> take(const geometry_msgs::PoseStamped& message,
-                                        const ros::Time& now, Time steady_now);
-  std::optional<simulation::FingertipTwist> take(const geometry_msgs::TwistStamped& message,
-                                                 const ros::Time& now, Time steady_now);
+  std::optional<Eigen::Isometry3d> receive(const geometry_msgs::PoseStamped& message,
+                                           const ros::Time& now, Time steady_now);
+  std::optional<simulation::FingertipTwist> receive(const geometry_msgs::TwistStamped& message,
+                                                    const ros::Time& now, Time steady_now);
   /// What is in it of `finger`.
-  std::optional<simulation::FingertipMotion> take(const haptex::Fingertips& message,
-                                                  base::Finger finger, const ros::Time& now,
-                                                  Time steady_now);
+  std::optional<simulation::FingertipMotion> receive(const haptex::Fingertips& message,
+                                                     base::Finger finger, const ros::Time& now,
+                                                     Time steady_now);
 
   /// By any thread: messages dropped since the construction, and why the last of them was.
   std::uint64_t dropped() const;
@@ -57,8 +57,8 @@ class FingertipFilter {
 
   /// Runs `convert`, which throws what is wrong, and remembers what was.
   template <typename Value, typename Message, typename Convert>
-  std::optional<Value> take(const char* topic, const Message& message, const ros::Time& now,
-                            Time steady_now, Last& last, const Convert& convert);
+  std::optional<Value> receive(const char* topic, const Message& message, const ros::Time& now,
+                               Time steady_now, Last& last, const Convert& convert);
 
   Last last_pose_;
   Last last_twist_;

@@ -95,14 +95,14 @@ class ForceRendererNode {
   void subscribeToFinger(Finger finger);
 
   // Where the messages of the device arrive.
-  void takeFingertips(const haptex::Fingertips& message);
-  bool takesSingly(Time arrival) const;
+  void receiveFingertips(const haptex::Fingertips& message);
+  bool receivesSingly(Time arrival) const;
 
   // On the thread of what comes in.
-  void takeState(const haptex::ClothState& message);
-  void takeTransforms();
-  void takeHandBase();
-  void takeArray(Finger finger);
+  void receiveState(const haptex::ClothState& message);
+  void receiveTransforms();
+  void receiveHandBase();
+  void receiveArray(Finger finger);
 
   // On the loop's thread.
   void work(Time now);

@@ -54,8 +54,8 @@ class ProximityNode {
   ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                 const ProximityNodeParameters& parameters);
 
-  void takeMesh(const haptex::ClothMeshConstPtr& message);
-  void takeState(const haptex::ClothStateConstPtr& message);
+  void receiveMesh(const haptex::ClothMeshConstPtr& message);
+  void receiveState(const haptex::ClothStateConstPtr& message);
   bool query(haptex::QueryProximity::Request& request, haptex::QueryProximity::Response& response);
   void publishMarkers();
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);

@@ -22,7 +22,7 @@ class SurfaceChoice {
   /// Takes the fabric that cloth/mesh names; does nothing if that is as before. Without a surface
   /// that can be stroked there is none from then on: another fabric's would be wrong.
   /// @returns whether it is another fabric
-  bool takeCloth(const std::string& fabric);
+  bool receiveCloth(const std::string& fabric);
 
   /// @param fabric name of a fabric in config/fabrics or the path of a fabric file
   /// @throws std::exception naming what is wrong with the fabric or its surface, or that it has

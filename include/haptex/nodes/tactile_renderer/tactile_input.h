@@ -25,7 +25,7 @@ struct TactileInputStatus {
 /// computer's.
 class TactileInput {
  public:
-  void take(const haptex::Contact& message, base::Time arrival);
+  void receive(const haptex::Contact& message, base::Time arrival);
 
   /// Ends a step and begins the next. Allocates nothing.
   /// @returns means over the step: of the forces over all of its messages, so that a contact of

@@ -24,8 +24,8 @@ class TactileLoop {
   /// @throws std::invalid_argument what tactile::requireSound() throws
   explicit TactileLoop(const tactile::ArrayLimits& limits);
 
-  void take(Finger finger, const haptex::Contact& message, Time arrival) {
-    inputs_[finger].take(message, arrival);
+  void receive(Finger finger, const haptex::Contact& message, Time arrival) {
+    inputs_[finger].receive(message, arrival);
   }
 
   /// Ends a step of both fingers. A finger without contact, and any without a surface, gets zeros,

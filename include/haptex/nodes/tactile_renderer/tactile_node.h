@@ -53,7 +53,7 @@ class TactileNode {
               const TactileParameters& parameters);
 
   void subscribe();
-  void takeMesh(const haptex::ClothMesh& message);
+  void receiveMesh(const haptex::ClothMesh& message);
   bool setSurface(haptex::SetSurface::Request& request, haptex::SetSurface::Response& response);
   void step();
   bool isWatched() const;  // whether anybody looks at what is computed

@@ -3,6 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+// A stencil with stiffness k resists the second derivatives in one direction s of (wuu, wvv, wuv):
+// energy k (s . w)^2 / 2. What a particle's stencils resist together is the sum of k s s^T over its
+// area, a symmetric 3x3 matrix, and the plate wants PlateRigidity::target() there. So every
+// particle asks for
+//   k >= 0 that minimise || sum k s s^T - area target ||,
+// six equations for a few stencils: a non-negative least-squares problem (Lawson and Hanson,
+// Solving Least Squares Problems, 1974, chapter 23). Steps of fitStiffnesses(), for each particle:
+//   1. scale the derivatives, so that an isotropic plate's target is the identity;
+//   2. groupsOf(): stencils in the same direction cannot be told apart; they share one unknown;
+//   3. nonNegativeLeastSquares() for the groups;
+//   4. addFitted(): a group's stiffness goes to its members in equal shares. A stencil that two
+//      particles use adds up what both ask for.
 namespace haptex::cloth {
 namespace {
 
@@ -86,6 +98,8 @@ PlateRigidity::PlateRigidity(const material::BendingRigidity& rigidity) {
 
 Matrix3d PlateRigidity::target(const std::vector<Eigen::Vector2d>& free_normals) const {
   Matrix3d result = wanted_.asDiagonal();
+  // No moment acts across a free edge, so that the curvature there is what costs no energy: the
+  // target is reduced by what that curvature relaxes (a Schur complement).
   for (const Eigen::Vector2d& n : free_normals) {
     const Vector3d across =
         Vector3d(n.x() * n.x(), n.y() * n.y(), n.x() * n.y()).cwiseProduct(scale_);

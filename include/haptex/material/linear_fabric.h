@@ -3,10 +3,10 @@
 
 #include "haptex/material/fabric.h"
 
-namespace haptex::oracles {
+namespace haptex::material {
 
 /// 0.1 kg/m2, linear, without bending; friction 0.3.
 /// @param modulus N/m along the threads, half of it in shear @param viscosity N.s/m, likewise
-material::Fabric linearFabric(double modulus, double viscosity = 0.0);
+Fabric linearFabric(double modulus, double viscosity = 0.0);
 
-}  // namespace haptex::oracles
+}  // namespace haptex::material

@@ -1,10 +1,9 @@
-#include "haptex/oracles/experiments/linear_fabric.h"
+#include "haptex/material/linear_fabric.h"
 
-namespace haptex::oracles {
+namespace haptex::material {
 
-material::Fabric linearFabric(double modulus, double viscosity) {
-  using material::StrainStressCurve;
-  material::Fabric fabric;
+Fabric linearFabric(double modulus, double viscosity) {
+  Fabric fabric;
   fabric.name = "linear";
   fabric.areal_density = 0.1;
   fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(modulus);
@@ -15,4 +14,4 @@ material::Fabric linearFabric(double modulus, double viscosity) {
   return fabric;
 }
 
-}  // namespace haptex::oracles
+}  // namespace haptex::material
