@@ -286,6 +286,7 @@ void controllerTick(benchmark::State& run) {
   Bench bench;
   bench.command([](double) { return 3.0; });
   bench.loop.run(std::chrono::seconds(1));
+  DeviceController controller = bench.loop.controller();
   DeviceState state = bench.loop.device().read();
   Time now = bench.loop.now();
   ForceCommand command;
@@ -294,8 +295,8 @@ void controllerTick(benchmark::State& run) {
     now += milliseconds(1);
     state.time += 1000;
     ++state.last_command;
-    for (const Finger finger : kFingers) bench.loop.controller().command(finger, command, now);
-    benchmark::DoNotOptimize(bench.loop.controller().tick(&state, now));
+    for (const Finger finger : kFingers) controller.command(finger, command, now);
+    benchmark::DoNotOptimize(controller.tick(&state, now));
   }
 }
 

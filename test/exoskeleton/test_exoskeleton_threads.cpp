@@ -11,6 +11,7 @@
 
 #include "exoskeleton_fixtures.h"
 #include "haptex/exoskeleton/control/driver_loop.h"
+#include "haptex/exoskeleton/control/port_keeper.h"
 #include "haptex/exoskeleton/control/request_box.h"
 #include "haptex/realtime/duration_histogram.h"
 #include "haptex/realtime/periodic_thread.h"
@@ -136,9 +137,9 @@ TEST(ExoskeletonThreads, ThePortIsOpenedWhileTheLoopLooksAndOthersAsk) {
     while (!ports.takeNew()) std::this_thread::yield();
     terminal.reset();
     std::uint8_t byte = 0;
-    while (!ports.port()->closed()) ports.port()->read(&byte, 1);
+    while (!ports.isClosed()) ports.read(&byte, 1);
     ports.discard();
-    EXPECT_EQ(ports.port(), nullptr);
+    EXPECT_FALSE(ports.isThere());
   }
   stop = true;
   asker.join();

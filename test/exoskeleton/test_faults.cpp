@@ -104,10 +104,10 @@ class FaultyLoop {
   void recover() {
     loop.run(milliseconds(300));  // until the link greets again
     if (loop.controller().operatingState().mode == Mode::kFault) {
-      ASSERT_EQ(loop.controller().clearFault(), "");
+      ASSERT_EQ(loop.ask(DriverRequest::kClearFault), "");
     }
     if (loop.controller().operatingState().mode == Mode::kDisabled) {
-      ASSERT_EQ(loop.controller().enable(), "");
+      ASSERT_EQ(loop.ask(DriverRequest::kEnable), "");
     }
     loop.run(milliseconds(1000));
     for (const Finger finger : kFingers) {
@@ -176,8 +176,8 @@ TEST(Faults, AClosedPortTakesTheForceToZeroUntilItIsClearedAndEnabledAgain) {
   EXPECT_LE(worst.motors_on - closed, FirmwareModel::kRamp + kOnTheLine);
   EXPECT_LT(faulty.contactForce(), kWeightAndFriction);
   EXPECT_EQ(faulty.loop.controller().operatingState().mode, Mode::kFault);
-  EXPECT_EQ(faulty.loop.controller().clearFault(), "");
-  EXPECT_NE(faulty.loop.controller().enable(), "") << "there is no device";
+  EXPECT_EQ(faulty.loop.ask(DriverRequest::kClearFault), "");
+  EXPECT_NE(faulty.loop.ask(DriverRequest::kEnable), "") << "there is no device";
 
   faulty.loop.openPort();
   expectSafe(faulty.watch(milliseconds(300)), "opened");

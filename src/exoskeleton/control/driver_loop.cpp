@@ -1,10 +1,9 @@
 #include "haptex/exoskeleton/control/driver_loop.h"
 
-#include <poll.h>
-
 #include <algorithm>
 #include <utility>
 
+#include "haptex/exoskeleton/control/port_keeper.h"
 #include "haptex/realtime/steady_clock.h"
 
 namespace haptex::exoskeleton {
@@ -16,30 +15,40 @@ constexpr Time kStampError = std::chrono::microseconds(200);
 
 unsigned bitOf(Finger finger) { return 1U << static_cast<unsigned>(finger); }
 
-/// Waits until the descriptor has bytes, or something happened to it. @returns false if not in time
-bool awaitBytes(int descriptor, Time until) {
-  pollfd file{descriptor, POLLIN, 0};
-  const timespec patience = realtime::toTimespec(std::max(Time{0}, until - realtime::steadyNow()));
-  return ::ppoll(&file, 1, &patience, nullptr) > 0;
-}
-
 }  // namespace
 
 FixedText::FixedText(const std::string& text) {
   std::copy_n(text.begin(), std::min(text.size(), kCapacity), characters_.begin());
 }
 
+DriverLoop::DriverLoop(std::unique_ptr<PortAccess> port, const std::string& urdf, Observer observer)
+    : controller_(urdf), observer_(std::move(observer)), port_(std::move(port)) {}
+
 DriverLoop::DriverLoop(const std::string& port, const std::string& urdf, Observer observer)
-    : controller_(urdf), observer_(std::move(observer)), ports_(port) {}
+    : DriverLoop(std::make_unique<PortKeeper>(port), urdf, std::move(observer)) {}
 
 void DriverLoop::tick(Time now) {
+  begin(now);
+  end(awaitAnswers(now));
+  measurePath();
+}
+
+void DriverLoop::begin(Time now) {
   takePort();
   receive(now);
   controller_.observe(state_, now);
   snapshot_.operating_state = controller_.operatingState();
   for (const Finger finger : kFingers) snapshot_.fingers[finger] = controller_.measured(finger);
   if (state_ != nullptr && observer_) observer_(snapshot_);
-  now = awaitAnswers(now);
+}
+
+bool DriverLoop::lacksAnswers(Time now) {
+  takeCommands(now);
+  return answersDue() != 0;
+}
+
+void DriverLoop::end(Time now) {
+  takeCommands(now);
   DriverRequest request{};
   const bool asked = requests_.take(request);
   Refusal refusal;
@@ -47,20 +56,19 @@ void DriverLoop::tick(Time now) {
   const DeviceCommand& command = controller_.drive(now);
   send(link_.poll(now));
   send(link_.send(command));
-  measurePath();
   dropClosedPort();
   show();
   if (asked) requests_.answer(std::move(refusal));
 }
 
 void DriverLoop::takePort() {
-  if (!ports_.takeNew()) return;
+  if (!port_->takeNew()) return;
   link_.reset();  // whoever answers there may be another device
 }
 
 void DriverLoop::receiveBytes(Time now) {
-  if (ports_.port() == nullptr) return;
-  const std::size_t count = ports_.port()->read(received_.data(), received_.size());
+  if (!port_->isThere()) return;
+  const std::size_t count = port_->read(received_.data(), received_.size());
   link_.receive(received_.data(), count, now);
 }
 
@@ -81,7 +89,9 @@ void DriverLoop::takeCommands(Time now) {
       controller_.command(finger, newest.command, newest.arrival);
       answered_[finger] = newest.answers;
     }
-    if (died) controller_.commanderDied(finger, now);
+    if (!died) continue;
+    controller_.commanderDied(finger, now);
+    answered_[finger] = Time{-1};  // nothing to wait for
   }
 }
 
@@ -99,15 +109,12 @@ unsigned DriverLoop::answersDue() const {
 
 /// @returns when it is now
 Time DriverLoop::awaitAnswers(Time now) {
-  takeCommands(now);
   const Time end = snapshot_.state_time + kAnswerPatience;
   bool in_time = true;
-  for (unsigned due = answersDue(); due != 0 && in_time; due = answersDue()) {
-    answers_due_ = due;
-    takeCommands(now);  // what came before the bits were there
-    if ((due = answersDue()) == 0) break;
+  while (in_time && lacksAnswers(now)) {
+    answers_due_ = answersDue();
+    if (!lacksAnswers(now)) break;  // what came before the bits were there
     in_time = answered_all_.waitUntil(end);
-    takeCommands(now);
   }
   answers_due_ = 0;
   return std::max(now, realtime::steadyNow());
@@ -123,12 +130,11 @@ void DriverLoop::measurePath() {
 }
 
 bool DriverLoop::awaitState(Time until) {
-  while (ports_.port() != nullptr && !ports_.port()->closed() &&
-         awaitBytes(ports_.port()->descriptor(), until)) {
+  while (port_->isThere() && !port_->isClosed() && port_->awaitBytes(until)) {
     const Time now = realtime::steadyNow();
     receiveBytes(now);
     if (link_.hasState()) return true;
-    if (ports_.port()->closed() || now >= until) break;
+    if (port_->isClosed() || now >= until) break;
   }
   realtime::sleepUntil(until);
   return false;
@@ -151,13 +157,13 @@ Refusal DriverLoop::carryOut(DriverRequest request) {
 }
 
 void DriverLoop::send(Bytes bytes) {
-  if (bytes.empty() || ports_.port() == nullptr) return;
-  if (!ports_.port()->write(bytes)) ++snapshot_.frames_unsent;
+  if (bytes.empty() || !port_->isThere()) return;
+  if (!port_->write(bytes)) ++snapshot_.frames_unsent;
 }
 
 void DriverLoop::dropClosedPort() {
-  if (ports_.port() == nullptr || !ports_.port()->closed()) return;
-  ports_.discard();
+  if (!port_->isThere() || !port_->isClosed()) return;
+  port_->discard();
   link_.reset();
   ++snapshot_.ports_lost;
   const OperatingState& state = controller_.operatingState();
@@ -175,7 +181,7 @@ void DriverLoop::show() {
   snapshot_.link = link_.status();
   snapshot_.link_statistics = link_.statistics();
   snapshot_.identity = link_.identity();
-  snapshot_.port_open = ports_.port() != nullptr;
+  snapshot_.port_open = port_->isThere();
   ++snapshot_.ticks;
   status_.write(snapshot_);
   if (state_ != nullptr) measured_.write(snapshot_);

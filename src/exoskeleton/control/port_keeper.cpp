@@ -1,6 +1,11 @@
 #include "haptex/exoskeleton/control/port_keeper.h"
 
+#include <poll.h>
+
+#include <algorithm>
 #include <exception>
+
+#include "haptex/realtime/steady_clock.h"
 
 namespace haptex::exoskeleton {
 
@@ -23,6 +28,12 @@ bool PortKeeper::takeNew() {
 void PortKeeper::discard() {
   discarded_.store(port_.release(), std::memory_order_relaxed);
   wanted_.store(true, std::memory_order_release);
+}
+
+bool PortKeeper::awaitBytes(Time until) {
+  pollfd file{port_->descriptor(), POLLIN, 0};
+  const timespec patience = realtime::toTimespec(std::max(Time{0}, until - realtime::steadyNow()));
+  return ::ppoll(&file, 1, &patience, nullptr) > 0;
 }
 
 std::string PortKeeper::trouble() const {

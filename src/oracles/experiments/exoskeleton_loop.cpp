@@ -1,6 +1,7 @@
 #include "haptex/oracles/experiments/exoskeleton_loop.h"
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 
 #include "haptex/exoskeleton/protocol/serial_port.h"
@@ -15,6 +16,52 @@ using std::chrono::seconds;
 namespace {
 
 constexpr int kBitsPerByte = 10;  // start, eight data, stop
+
+/// The driver's end of the lines.
+class SimulatedPort final : public PortAccess {
+ public:
+  SimulatedPort(SimulatedLine& to_device, SimulatedLine& to_driver, const Time& now,
+                const bool& open)
+      : to_device_(to_device), to_driver_(to_driver), now_(now), open_(open) {}
+
+  bool takeNew() override {
+    if (is_there_ || !open_) return false;
+    return is_there_ = true;
+  }
+  bool isThere() const override { return is_there_; }
+  bool isClosed() const override { return !open_; }
+  void discard() override {
+    is_there_ = false;
+    buffer_.clear();
+  }
+  std::size_t read(std::uint8_t* buffer, std::size_t capacity) override {
+    const std::vector<std::uint8_t>& bytes = to_driver_.arrived(now_);
+    const std::size_t kept = std::min(bytes.size(), kBuffer - std::min(kBuffer, buffer_.size()));
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.begin() + kept);
+    const std::size_t count = std::min(buffer_.size(), capacity);
+    std::copy_n(buffer_.begin(), count, buffer);
+    buffer_.erase(buffer_.begin(), buffer_.begin() + count);
+    return count;
+  }
+  bool write(Bytes bytes) override {
+    if (open_) to_device_.send(bytes, now_);
+    return open_;
+  }
+  bool awaitBytes(Time) override { return false; }
+  std::string trouble() const override { return is_there_ ? "" : "the simulated port is closed"; }
+  const std::string& path() const override { return path_; }
+
+ private:
+  static constexpr std::size_t kBuffer = 65536;  // bytes that Linux keeps; what comes then is lost
+
+  SimulatedLine& to_device_;
+  SimulatedLine& to_driver_;
+  const Time& now_;
+  const bool& open_;
+  const std::string path_ = "simulated";
+  std::vector<std::uint8_t> buffer_;
+  bool is_there_ = false;
+};
 
 }  // namespace
 
@@ -43,7 +90,8 @@ ExoskeletonLoop::ExoskeletonLoop(const std::string& urdf, unsigned seed,
       firmware_(Identity{}),
       to_device_(seed + 1, exoskeleton::kBaudRate),
       to_driver_(seed + 2, exoskeleton::kBaudRate),
-      controller_(urdf) {
+      driver_(std::make_unique<SimulatedPort>(to_device_, to_driver_, now_, port_open_), urdf,
+              [this](const DriverSnapshot& snapshot) { state_time_ = snapshot.state_time; }) {
   commandForce(Vector3d::Zero());
 }
 
@@ -60,19 +108,19 @@ void ExoskeletonLoop::makeReady() {
   const auto waitUntil = [&](const char* what, auto&& condition) {
     const Time end = now_ + seconds(20);
     while (!condition()) {
-      if (now_ > end || controller_.operatingState().mode == Mode::kFault) {
+      if (now_ > end || controller().operatingState().mode == Mode::kFault) {
         throw std::runtime_error(std::string("the exoskeleton does not get ") + what + ": " +
-                                 controller_.fault());
+                                 controller().fault());
       }
       step();
     }
   };
-  waitUntil("connected", [&] { return link_.status() == LinkStatus::kConnected; });
+  waitUntil("connected", [&] { return driver().link == LinkStatus::kConnected; });
   run(milliseconds(20));
-  accept(controller_.home());
-  waitUntil("homed", [&] { return controller_.operatingState().is_homed; });
+  accept(ask(DriverRequest::kHome));
+  waitUntil("homed", [&] { return controller().operatingState().is_homed; });
   run(seconds(1));
-  accept(controller_.enable());
+  accept(ask(DriverRequest::kEnable));
   run(seconds(1));
 }
 
@@ -87,9 +135,11 @@ void ExoskeletonLoop::closePort() {
   port_open_ = false;
   to_device_.clear();
   to_driver_.clear();
-  if (!driver_lives_) return;
-  link_.reset();
-  controller_.raiseFault("the port is closed");
+}
+
+void ExoskeletonLoop::killCommander() {
+  commander_lives_ = false;
+  for (const Finger finger : kFingers) driver_.commanderDied(finger);
 }
 
 void ExoskeletonLoop::step() {
@@ -98,9 +148,15 @@ void ExoskeletonLoop::step() {
   to_device_.advance(now_);
   to_driver_.advance(now_);
   stepDevice();
-  if (steps_ % kStepsPerTick != kDriverPhase) return;
-  stepCommander();
-  stepDriver();
+  if (!driver_lives_ || now_ < driver_stalls_until_) {
+    if (steps_ % kStepsPerTick == kDriverPhase) stepCommander();
+    return;
+  }
+  if (waited_ >= 0) {
+    ++waited_;
+    endDriver();
+  }
+  if (steps_ % kStepsPerTick == kDriverPhase) beginDriver();
 }
 
 void ExoskeletonLoop::stepDevice() {
@@ -117,47 +173,42 @@ void ExoskeletonLoop::stepDevice() {
 
 void ExoskeletonLoop::stepCommander() {
   if (commander_lives_ && now_ < commander_stalls_until_) return;
+  if (!commander_lives_) {
+    for (const Finger finger : kFingers) commands_[finger] = ForceCommand();
+    return;
+  }
+  const bool hears = now_ >= measurements_stall_until_;
+  if (hears) answered_ = state_time_;
   for (const Finger finger : kFingers) {
-    commanded_[finger].setZero();
-    if (!commander_lives_) continue;
-    const ForceCommand command = commander_(finger, now_);
-    commanded_[finger] = command.force;
-    arrivals_[finger] = {command, now_, true};
+    if (hears) commands_[finger] = commander_(finger, now_);
+    driver_.command(finger, commands_[finger], now_, answered_);
   }
 }
 
-void ExoskeletonLoop::takeCommands() {
-  for (const Finger finger : kFingers) {
-    Arrival& arrival = arrivals_[finger];
-    if (arrival.is_new) controller_.command(finger, arrival.command, arrival.time);
-    arrival.is_new = false;
-    if (!commander_lives_ && !death_is_known_) controller_.commanderDied(finger, now_);
-  }
-  death_is_known_ = !commander_lives_;
+void ExoskeletonLoop::beginDriver() {
+  driver_.begin(now_);
+  stepCommander();
+  waited_ = 0;
+  endDriver();
 }
 
-void ExoskeletonLoop::stepDriver() {
-  if (driver_lives_ && now_ < driver_stalls_until_) return;
-  const std::vector<std::uint8_t>& bytes = to_driver_.arrived(now_);
-  if (!driver_lives_) return;
-  link_.receive(bytes.data(), bytes.size(), now_);
-  takeCommands();
-  const DeviceCommand& command = controller_.tick(link_.takeState(), now_);
-  if (!port_open_) return;
-  to_device_.send(link_.poll(now_), now_);
-  to_device_.send(link_.send(command), now_);
+/// Unless the driver waits for answers.
+void ExoskeletonLoop::endDriver() {
+  if (waited_ < kPatience && driver_.lacksAnswers(now_)) return;
+  waited_ = -1;
+  driver_.end(now_);
 }
 
 LoopSample ExoskeletonLoop::sample(Finger finger) const {
   LoopSample sample;
   sample.time = now_;
-  sample.commanded = commanded_[finger];
-  sample.desired = controller_.measured(finger).desired_force;
+  sample.commanded = commands_[finger].force;
+  sample.desired = controller().measured(finger).desired_force;
   sample.motor_force = device_.truth(finger).motor_force;
   sample.contact_force = device_.truth(finger).contact_force;
-  sample.mode = controller_.operatingState().mode;
-  sample.no_force = controller_.measured(finger).no_force;
-  sample.link = link_.status();
+  sample.mode = controller().operatingState().mode;
+  sample.no_force = controller().measured(finger).no_force;
+  sample.link = driver().link;
   return sample;
 }
 

@@ -69,7 +69,7 @@ class Pinch {
       : loop_(urdf, 1), open_(open), stiffness_(stiffness) {
     for (const Finger finger : kFingers) loop_.device().setTarget(finger, open[finger]);
     loop_.makeReady();
-    loop_.setCommander([this](Finger finger, Time now) { return command(finger, now); });
+    loop_.setCommander([this](Finger finger, Time) { return command(finger); });
   }
 
   void press(double force) {
@@ -90,7 +90,7 @@ class Pinch {
     PerFinger<Watch> watches{{Watch(felt(Finger::kIndex)), Watch(felt(Finger::kThumb))}};
     if (part == StalledPart::kCommands) loop_.stallCommander(duration);
     if (part == StalledPart::kDriver) loop_.stallDriver(duration);
-    if (part == StalledPart::kMeasurements) measurements_stall_until_ = loop_.now() + duration;
+    if (part == StalledPart::kMeasurements) loop_.stallMeasurements(duration);
     loop_.run(duration + kAfter, [&](const ExoskeletonLoop&) {
       for (const Finger finger : kFingers) watches[finger].feel(felt(finger));
     });
@@ -106,12 +106,10 @@ class Pinch {
   }
 
   /// As a renderer does: from what was measured last, linearised there.
-  ForceCommand command(Finger finger, Time now) {
-    ForceCommand& command = commands_[finger];
-    if (now < measurements_stall_until_) return command;
+  ForceCommand command(Finger finger) const {
     const FingerMeasurement& measured = loop_.controller().measured(finger);
     const Vector3d normal = directionOf(finger, open_);
-    command = ForceCommand();
+    ForceCommand command;
     command.position = measured.pose.translation();
     command.velocity = measured.velocity;
     const double depth = (open_[finger] - command.position).dot(normal) - kBefore;
@@ -124,8 +122,6 @@ class Pinch {
   ExoskeletonLoop loop_;
   PerFinger<Vector3d> open_;
   double stiffness_;
-  PerFinger<ForceCommand> commands_;
-  Time measurements_stall_until_{0};
 };
 
 void kill(ExoskeletonLoop& loop, DyingPart part) {

@@ -7,11 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 
 #include "haptex/exoskeleton/control/device_controller.h"
-#include "haptex/exoskeleton/control/port_keeper.h"
+#include "haptex/exoskeleton/control/port_access.h"
 #include "haptex/exoskeleton/control/request_box.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
 #include "haptex/realtime/duration_histogram.h"
@@ -73,13 +74,27 @@ class DriverLoop {
   using Observer = std::function<void(const DriverSnapshot&)>;
 
   /// Times are those of steadyNow().
-  /// @param port path of a serial port, which need not be there yet
+  /// @param port path of a serial port, which need not be there yet (PortKeeper)
   /// @param urdf text of the exoskeleton's URDF
   /// @throws std::invalid_argument as exoskeleton::FingerKinematics
   DriverLoop(const std::string& port, const std::string& urdf, Observer observer = {});
 
+  /// Times are the caller's, who calls begin() and end() instead of tick() and awaitState().
+  DriverLoop(std::unique_ptr<PortAccess> port, const std::string& urdf, Observer observer = {});
+
   /// By one thread, once per kPeriod: states in, commands and requests, torques out.
   void tick(Time now);
+
+  // tick() is: begin(), as long as lacksAnswers() wait for kAnswerPatience after the state at most,
+  // end().
+  void begin(Time now);
+  bool lacksAnswers(Time now);
+  void end(Time now);
+
+  /// By the same thread, between two ticks: as ask().
+  Refusal carryOut(DriverRequest request);
+  /// By the same thread.
+  const DeviceController& controller() const { return controller_; }
 
   /// By the same thread, between two ticks: waits for the next state of the device.
   /// @returns false if none came until then
@@ -115,8 +130,8 @@ class DriverLoop {
   DriverSnapshot status() const;
 
   /// By any thread: why there is no open port; empty while there is one.
-  std::string portTrouble() const { return ports_.trouble(); }
-  const std::string& port() const { return ports_.path(); }
+  std::string portTrouble() const { return port_->trouble(); }
+  const std::string& port() const { return port_->path(); }
 
  private:
   struct StampedCommand {
@@ -137,7 +152,6 @@ class DriverLoop {
   unsigned answersDue() const;
   Time awaitAnswers(Time now);
   void measurePath();
-  Refusal carryOut(DriverRequest request);
   void send(Bytes bytes);
   void dropClosedPort();
   void show();
@@ -154,7 +168,7 @@ class DriverLoop {
   realtime::DurationHistogram path_;
 
   // Between threads.
-  PortKeeper ports_;
+  std::unique_ptr<PortAccess> port_;
   RequestBox requests_;
   PerFinger<CommandBox> commands_;
   std::atomic<unsigned> answers_due_{0};  // a bit per finger, for which the loop waits

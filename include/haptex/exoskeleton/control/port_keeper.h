@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "haptex/exoskeleton/control/port_access.h"
 #include "haptex/exoskeleton/finger.h"
 #include "haptex/exoskeleton/protocol/serial_port.h"
 #include "haptex/realtime/semaphore.h"
@@ -15,27 +16,27 @@ namespace haptex::exoskeleton {
 
 /// Opens the port, and again every kRetryPeriod after it was found closed or absent. Opening and
 /// closing a port may take long, so its user, the loop, does neither.
-class PortKeeper {
+class PortKeeper final : public PortAccess {
  public:
   static constexpr Time kRetryPeriod = std::chrono::milliseconds(500);
 
   /// Starts trying at once.
   explicit PortKeeper(const std::string& path);
-  ~PortKeeper();
+  ~PortKeeper() override;
   PortKeeper(const PortKeeper&) = delete;
   PortKeeper& operator=(const PortKeeper&) = delete;
 
-  /// By the loop only. Takes over a port that has been opened. @returns whether there is a new one
-  bool takeNew();
-  /// By the loop only: the open port, or nullptr.
-  SerialPort* port() { return port_.get(); }
-  /// By the loop only: the port was found closed.
-  void discard();
-
-  /// By any thread: why there is no port, naming it; empty while there is one.
-  std::string trouble() const;
-
-  const std::string& path() const { return path_; }
+  bool takeNew() override;
+  bool isThere() const override { return port_ != nullptr; }
+  bool isClosed() const override { return port_ && port_->closed(); }
+  void discard() override;
+  std::size_t read(std::uint8_t* buffer, std::size_t capacity) override {
+    return port_->read(buffer, capacity);
+  }
+  bool write(Bytes bytes) override { return port_->write(bytes); }
+  bool awaitBytes(Time until) override;
+  std::string trouble() const override;
+  const std::string& path() const override { return path_; }
 
  private:
   void run();

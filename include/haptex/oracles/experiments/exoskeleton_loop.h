@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "haptex/exoskeleton/control/device_controller.h"
+#include "haptex/exoskeleton/control/driver_loop.h"
 #include "haptex/exoskeleton/emulator/emulated_device.h"
 #include "haptex/exoskeleton/emulator/fault_injector.h"
-#include "haptex/exoskeleton/protocol/device_link.h"
 #include "haptex/exoskeleton/protocol/firmware_model.h"
 
 namespace haptex::oracles {
@@ -55,14 +54,19 @@ struct LoopSample {
   exoskeleton::LinkStatus link = exoskeleton::LinkStatus::kConnecting;
 };
 
-/// Commander and driver tick at 1 kHz, the driver kDriverPhase after the device has sent a state,
-/// the commander at once before it; the device steps at EmulatedDevice::kRate.
+/// The driver's loop (DriverLoop) ticks at 1 kHz, kDriverPhase after the device has sent a state.
+/// The commander answers each state at once; what it leaves unanswered the driver waits for. The
+/// device steps at EmulatedDevice::kRate.
 class ExoskeletonLoop {
  public:
   static constexpr base::Time kStep = std::chrono::microseconds(125);
   static constexpr int kStepsPerTick = 8;
   /// In steps: a state of 50 bytes takes 0.54 ms at 921600 baud.
   static constexpr int kDriverPhase = 6;
+  /// In steps: how long the driver waits for an answer, DriverLoop::kAnswerPatience.
+  static constexpr int kPatience = 6;
+  static_assert(kPatience * kStep >= exoskeleton::DriverLoop::kAnswerPatience &&
+                (kPatience - 1) * kStep < exoskeleton::DriverLoop::kAnswerPatience);
 
   /// What a commander asks for. Called once per millisecond.
   using Commander = std::function<exoskeleton::ForceCommand(base::Finger, base::Time)>;
@@ -75,6 +79,9 @@ class ExoskeletonLoop {
   /// @throws std::invalid_argument as DeviceController
   ExoskeletonLoop(const std::string& urdf, unsigned seed,
                   const exoskeleton::FingerMechanics& mechanics = {});
+  // The driver refers to its line.
+  ExoskeletonLoop(const ExoskeletonLoop&) = delete;
+  ExoskeletonLoop& operator=(const ExoskeletonLoop&) = delete;
 
   /// Connects, homes, enables, and waits until the soft start is over and the person is back.
   /// @throws std::runtime_error naming what failed
@@ -88,12 +95,14 @@ class ExoskeletonLoop {
 
   /// The commander dies, and its connection to the driver with it: the driver knows in its next
   /// tick. The driver dies, and the line with it.
-  void killCommander() { commander_lives_ = false; }
+  void killCommander();
   void killDriver() { driver_lives_ = false; }
   /// The commander, or the driver, stands still from now on and then goes on. Connection and line
   /// stay open: the other end sees nothing but silence.
   void stallCommander(base::Time duration) { commander_stalls_until_ = now_ + duration; }
   void stallDriver(base::Time duration) { driver_stalls_until_ = now_ + duration; }
+  /// What is measured does not reach the commander, who repeats the last commands.
+  void stallMeasurements(base::Time duration) { measurements_stall_until_ = now_ + duration; }
   /// No torque from now on.
   void killMotors() { motors_live_ = false; }
   /// The line is unplugged, or plugged in again. The driver notices, latches a fault, and greets
@@ -106,9 +115,10 @@ class ExoskeletonLoop {
 
   exoskeleton::EmulatedDevice& device() { return device_; }
   const exoskeleton::EmulatedDevice& device() const { return device_; }
-  exoskeleton::DeviceController& controller() { return controller_; }
-  const exoskeleton::DeviceController& controller() const { return controller_; }
-  exoskeleton::DeviceLink& link() { return link_; }
+  /// Of the driver.
+  const exoskeleton::DeviceController& controller() const { return driver_.controller(); }
+  exoskeleton::DriverSnapshot driver() const { return driver_.status(); }
+  exoskeleton::Refusal ask(exoskeleton::DriverRequest request) { return driver_.carryOut(request); }
   SimulatedLine& toDevice() { return to_device_; }
   SimulatedLine& toDriver() { return to_driver_; }
 
@@ -116,28 +126,23 @@ class ExoskeletonLoop {
   void step();
   void stepDevice();
   void stepCommander();
-  void takeCommands();
-  void stepDriver();
+  void beginDriver();
+  void endDriver();
 
   exoskeleton::EmulatedDevice device_;
   exoskeleton::FirmwareModel firmware_;
   SimulatedLine to_device_, to_driver_;
-  exoskeleton::DeviceLink link_;
-  exoskeleton::DeviceController controller_;
+  exoskeleton::DriverLoop driver_;
   Commander commander_;
-  base::PerFinger<Eigen::Vector3d> commanded_;
-  struct Arrival {
-    exoskeleton::ForceCommand command;
-    base::Time time{0};
-    bool is_new = false;
-  };
-  base::PerFinger<Arrival> arrivals_;  // at the driver, the newest of each finger
-  base::Time commander_stalls_until_{0}, driver_stalls_until_{0};
+  base::PerFinger<exoskeleton::ForceCommand> commands_;
+  base::Time state_time_{-1};  // of the newest state that the driver has
+  base::Time answered_{-1};    // of the state that the commands are computed from
+  base::Time commander_stalls_until_{0}, driver_stalls_until_{0}, measurements_stall_until_{0};
   base::Time now_{0};
   std::uint64_t steps_ = 0;
+  int waited_ = -1;  // steps, by the driver for answers; negative: its tick is done
   bool commander_lives_ = true, driver_lives_ = true, port_open_ = true;
   bool motors_live_ = true;
-  bool death_is_known_ = false;  // of the commander, by the driver
 };
 
 }  // namespace haptex::oracles
