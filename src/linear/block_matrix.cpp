@@ -34,20 +34,72 @@ SymmetricBlockMatrix::SymmetricBlockMatrix(int size,
   lower_.assign(columns_.size(), Eigen::Matrix3d::Zero());
 }
 
-int SymmetricBlockMatrix::slot(int row, int column) const {
-  const auto begin = columns_.begin() + row_begin_.at(row);
-  const auto end = columns_.begin() + row_begin_.at(row + 1);
+/// @returns the slot, or -1 if the pattern has no such block
+int SymmetricBlockMatrix::find(int row, int column) const {
+  const auto begin = columns_.begin() + row_begin_[row];
+  const auto end = columns_.begin() + row_begin_[row + 1];
   const auto found = std::lower_bound(begin, end, column);
-  if (found == end || *found != column) {
+  return found == end || *found != column ? -1 : static_cast<int>(found - columns_.begin());
+}
+
+int SymmetricBlockMatrix::slot(int row, int column) const {
+  const int slot = row >= 0 && row < size() ? find(row, column) : -1;
+  if (slot < 0) {
     throw std::out_of_range("no block at row " + std::to_string(row) + ", column " +
                             std::to_string(column) + " of the matrix pattern");
   }
-  return static_cast<int>(found - columns_.begin());
+  return slot;
+}
+
+void SymmetricBlockMatrix::addCoupling(int row, int column, const Eigen::Matrix3d& block) {
+  if (std::min(row, column) < 0 || std::max(row, column) >= size() || row == column) {
+    throw std::out_of_range("no coupling at row " + std::to_string(row) + ", column " +
+                            std::to_string(column) + ": both have to be in [0, " +
+                            std::to_string(size()) + ") and to differ");
+  }
+  if (row < column) return addCoupling(column, row, block.transpose());
+  const int slot = find(row, column);
+  if (slot >= 0) {
+    lower_[slot] += block;
+    return;
+  }
+  if (first_coupling_.empty()) first_coupling_.assign(size(), -1);
+  int before = -1, after = first_coupling_[row];
+  while (after >= 0 && couplings_[after].column < column) {
+    before = after;
+    after = couplings_[after].next;
+  }
+  if (after >= 0 && couplings_[after].column == column) {
+    couplings_[after].block += block;
+    return;
+  }
+  const int added = couplingCount();
+  couplings_.push_back({row, column, after, block});
+  (before < 0 ? first_coupling_[row] : couplings_[before].next) = added;
+}
+
+void SymmetricBlockMatrix::clearCouplings() {
+  couplings_.clear();
+  first_coupling_.clear();
+}
+
+void SymmetricBlockMatrix::reserveCouplings(std::size_t count) {
+  couplings_.reserve(count);
+  first_coupling_.reserve(diagonal_.size());
+}
+
+/// Calls function(index in couplings_), rows ascending, and columns ascending in each.
+template <typename Function>
+void SymmetricBlockMatrix::forEachCoupling(const Function& function) const {
+  for (int first : first_coupling_) {
+    for (int k = first; k >= 0; k = couplings_[k].next) function(k);
+  }
 }
 
 void SymmetricBlockMatrix::setZero() {
   std::fill(diagonal_.begin(), diagonal_.end(), Eigen::Matrix3d::Zero());
   std::fill(lower_.begin(), lower_.end(), Eigen::Matrix3d::Zero());
+  clearCouplings();
 }
 
 void SymmetricBlockMatrix::multiply(const BlockVector& x, BlockVector& y) const {
@@ -61,19 +113,26 @@ void SymmetricBlockMatrix::multiply(const BlockVector& x, BlockVector& y) const 
     }
     y.col(i) = sum;
   }
+  forEachCoupling([&](int k) {
+    const Coupling& coupling = couplings_[k];
+    y.col(coupling.row) += coupling.block * x.col(coupling.column);
+    y.col(coupling.column) += coupling.block.transpose() * x.col(coupling.row);
+  });
 }
 
 void SymmetricBlockMatrix::eliminate(const std::vector<char>& fixed, const BlockVector& values,
                                      BlockVector& rhs) {
+  const auto remove = [&](int i, int j, Eigen::Matrix3d& block) {
+    if (!fixed[i] && !fixed[j]) return;
+    if (!fixed[i]) rhs.col(i) -= block * values.col(j);
+    if (!fixed[j]) rhs.col(j) -= block.transpose() * values.col(i);
+    block.setZero();
+  };
   for (int i = 0; i < size(); ++i) {
-    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) {
-      const int j = columns_[s];
-      if (!fixed[i] && !fixed[j]) continue;
-      if (!fixed[i]) rhs.col(i) -= lower_[s] * values.col(j);
-      if (!fixed[j]) rhs.col(j) -= lower_[s].transpose() * values.col(i);
-      lower_[s].setZero();
-    }
+    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) remove(i, columns_[s], lower_[s]);
   }
+  forEachCoupling(
+      [&](int k) { remove(couplings_[k].row, couplings_[k].column, couplings_[k].block); });
   for (int i = 0; i < size(); ++i) {
     if (!fixed[i]) continue;
     diagonal_[i].setIdentity();
@@ -84,16 +143,17 @@ void SymmetricBlockMatrix::eliminate(const std::vector<char>& fixed, const Block
 void SymmetricBlockMatrix::confine(const std::vector<char>& confined, const BlockVector& normals,
                                    const BlockVector& values, BlockVector& rhs) {
   // With P = I - n n^T: the blocks become P_i A_ij P_j, the right-hand side P (b - A values).
+  const auto project = [&](int i, int j, Eigen::Matrix3d& block) {
+    if (confined[j]) rhs.col(i) -= block * values.col(j);
+    if (confined[i]) rhs.col(j) -= block.transpose() * values.col(i);
+    if (confined[j]) block -= (block * normals.col(j)).eval() * normals.col(j).transpose();
+    if (confined[i]) block -= normals.col(i) * (normals.col(i).transpose() * block).eval();
+  };
   for (int i = 0; i < size(); ++i) {
-    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) {
-      const int j = columns_[s];
-      Eigen::Matrix3d& block = lower_[s];
-      if (confined[j]) rhs.col(i) -= block * values.col(j);
-      if (confined[i]) rhs.col(j) -= block.transpose() * values.col(i);
-      if (confined[j]) block -= (block * normals.col(j)).eval() * normals.col(j).transpose();
-      if (confined[i]) block -= normals.col(i) * (normals.col(i).transpose() * block).eval();
-    }
+    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) project(i, columns_[s], lower_[s]);
   }
+  forEachCoupling(
+      [&](int k) { project(couplings_[k].row, couplings_[k].column, couplings_[k].block); });
   for (int i = 0; i < size(); ++i) {
     if (!confined[i]) continue;
     Eigen::Matrix3d& block = diagonal_[i];

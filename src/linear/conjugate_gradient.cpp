@@ -28,8 +28,9 @@ SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, const B
   return iterate(matrix, precondition, rhs, tolerance, max_iterations, x);
 }
 
+template <typename T>
 SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix,
-                                     BasicBlockCholesky<float>& factor, const BlockVector& rhs,
+                                     BasicBlockCholesky<T>& factor, const BlockVector& rhs,
                                      double tolerance, int max_iterations, BlockVector& x) {
   const auto precondition = [&] {
     preconditioned_ = residual_;
@@ -101,5 +102,12 @@ SolveResult ConjugateGradient::iterate(const SymmetricBlockMatrix& matrix,
   }
   return result;
 }
+
+template SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix&,
+                                              BasicBlockCholesky<float>&, const BlockVector&,
+                                              double, int, BlockVector&);
+template SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix&,
+                                              BasicBlockCholesky<double>&, const BlockVector&,
+                                              double, int, BlockVector&);
 
 }  // namespace haptex::linear

@@ -18,6 +18,9 @@ constexpr double kNumberOverBlock = 0.2;
 constexpr double kExpectedSolves = 8.0;
 constexpr double kExpectedIterations = 3.0;
 constexpr int kMaxFreshIterations = 60;
+// A coupling's block, of rank 3, and its transpose add up to 6 eigenvalues to those that conjugate
+// gradients have to find.
+constexpr int kMaxIterationsOfCoupling = 6;
 constexpr int kFirstFreshSolves = 4;
 constexpr int kMaxFreshSolves = 64;
 constexpr int kFirstDirectSolves = 8;
@@ -59,13 +62,17 @@ int LinearSolver::iterationBudget() const {
 
 int LinearSolver::lastTry() const { return std::max(iterationBudget(), kMaxLastIterations); }
 
+/// Exact conjugate gradients end after as many iterations as unknowns; rounding makes it more for
+/// ill-conditioned systems.
+int LinearSolver::mostIterations(const SymmetricBlockMatrix& matrix) {
+  return 10 * 3 * matrix.size();
+}
+
 SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
                                 double tolerance, BlockVector& x, Definiteness definiteness) {
   const bool worth_more = definiteness == Definiteness::kPositive;
   if (method_ == LinearSolverMethod::kConjugateGradient) {
-    // Exact conjugate gradients end after as many iterations as unknowns; rounding makes it more
-    // for ill-conditioned systems.
-    return solveIteratively(matrix, rhs, tolerance, 10 * 3 * matrix.size(), x);
+    return solveIteratively(matrix, rhs, tolerance, mostIterations(matrix), x);
   }
   if (method_ == LinearSolverMethod::kAutomatic) {
     if (direct_solves_left_ == 0) {
@@ -134,7 +141,7 @@ SolveResult LinearSolver::solveByKeptFactor(const SymmetricBlockMatrix& matrix,
       result.indefinite = false;  // double precision decides
       return result;
     }
-    iterate(kMaxFreshIterations);
+    iterate(kMaxFreshIterations + kMaxIterationsOfCoupling * matrix.couplingCount());
     fresh_iterations_ = result.iterations;
   }
   result.iterations = spent;
@@ -148,8 +155,9 @@ SolveResult LinearSolver::solveDirectly(const SymmetricBlockMatrix& matrix, cons
                                         double tolerance, BlockVector& x) {
   last_method_ = LinearSolverMethod::kCholesky;
   SolveResult result;
+  const bool coupled = matrix.couplingCount() > 0;
   const double rhs_norm = rhs.norm();
-  x.setZero();
+  if (!coupled || rhs_norm == 0.0) x.setZero();  // else it is a guess
   if (rhs_norm == 0.0) {
     result.converged = true;
     return result;
@@ -161,6 +169,9 @@ SolveResult LinearSolver::solveDirectly(const SymmetricBlockMatrix& matrix, cons
   }
   ++factorisations_;
   if (!cholesky_->factorise(matrix)) return result;
+  if (coupled) {
+    return conjugate_gradient_.solve(matrix, *cholesky_, rhs, tolerance, mostIterations(matrix), x);
+  }
   residual_ = rhs;
   for (int refinement = 0; refinement <= kMaxRefinements; ++refinement) {
     cholesky_->solve(residual_);

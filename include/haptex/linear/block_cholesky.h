@@ -34,7 +34,7 @@ class BasicBlockCholesky {
   const Elimination& elimination() const { return elimination_; }
 
   /// Factorises a matrix with the constructor's pattern, or the leading part of a larger one that
-  /// has the constructor's pattern there.
+  /// has the constructor's pattern there. Couplings beyond the pattern are left out.
   /// @param shift added to the unit diagonal of the scaled matrix in single precision
   /// @returns false if the matrix is not positive definite to rounding or has a number that is not
   ///   finite; the factor is then unusable

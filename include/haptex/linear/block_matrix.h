@@ -1,8 +1,10 @@
-// Symmetric sparse matrices of 3x3 blocks with a fixed pattern: one block row per particle.
+// Symmetric sparse matrices of 3x3 blocks, one block row per particle: a fixed pattern, and
+// couplings beyond it that come and go.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace haptex::linear {
@@ -14,6 +16,13 @@ using BlockVector = Eigen::Matrix3Xd;
 ///
 /// The pattern has a block (i, j), i > j, for every edge of the triangles and every further pair.
 /// It never changes, so an element may remember the slots that it adds to.
+///
+/// Couplings are blocks (i, j), i != j, of any other pair, such as that of two particles of cloth
+/// that touches itself: they are cleared and added anew before every solve. They are part of the
+/// matrix in multiply(), eliminate(), confine() and in copies; slots and lowerCount() know the
+/// fixed pattern alone. Every sum takes the fixed pattern first and then the couplings by row and
+/// column, so that it does not depend on the order in which pairs were added; without couplings it
+/// is what it is without this feature, to the last bit.
 class SymmetricBlockMatrix {
  public:
   /// @param size      number of block rows
@@ -38,6 +47,25 @@ class SymmetricBlockMatrix {
   int rowBegin(int row) const { return row_begin_[row]; }
   int column(int slot) const { return columns_[slot]; }
 
+  /// Adds a block, and its transpose at (column, row). What is added to one pair more than once is
+  /// summed in the order of adding. A pair of the fixed pattern gets it in its slot: it is then no
+  /// coupling, and clearCouplings() leaves it there.
+  /// Allocates only beyond what is reserved.
+  /// @throws std::out_of_range unless row and column are in [0, size) and differ
+  void addCoupling(int row, int column, const Eigen::Matrix3d& block);
+
+  /// The fixed pattern keeps its values.
+  void clearCouplings();
+
+  /// Pairs beyond the fixed pattern.
+  int couplingCount() const { return static_cast<int>(couplings_.size()); }
+
+  /// Makes room for that many pairs beyond the fixed pattern. A copy holds the couplings without
+  /// the room; assigning leaves the room of what is assigned to, and allocates only if it is too
+  /// small.
+  void reserveCouplings(std::size_t count);
+
+  /// Clears the couplings, too.
   void setZero();
 
   /// y = A x.
@@ -59,10 +87,22 @@ class SymmetricBlockMatrix {
                const BlockVector& values, BlockVector& rhs);
 
  private:
+  struct Coupling {
+    int row, column;  // row > column
+    int next;         // in couplings_: that of the row's next column; -1: none
+    Eigen::Matrix3d block;
+  };
+  int find(int row, int column) const;
+  template <typename Function>
+  void forEachCoupling(const Function& function) const;
+
   std::vector<Eigen::Matrix3d> diagonal_;
   std::vector<Eigen::Matrix3d> lower_;
   std::vector<int> row_begin_;
   std::vector<int> columns_;
+  std::vector<Coupling> couplings_;  // in the order of adding
+  // By row: in couplings_, the one of the lowest column; -1: none. Empty without couplings.
+  std::vector<int> first_coupling_;
 };
 
 }  // namespace haptex::linear

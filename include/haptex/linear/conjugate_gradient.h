@@ -32,7 +32,9 @@ class ConjugateGradient {
   SolveResult solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs, double tolerance,
                     int max_iterations, BlockVector& x);
   /// The same with a factor as preconditioner, in double precision but for the factor.
-  SolveResult solve(const SymmetricBlockMatrix& matrix, BasicBlockCholesky<float>& factor,
+  /// @tparam T float or double
+  template <typename T>
+  SolveResult solve(const SymmetricBlockMatrix& matrix, BasicBlockCholesky<T>& factor,
                     const BlockVector& rhs, double tolerance, int max_iterations, BlockVector& x);
 
  private:
