@@ -286,7 +286,7 @@ void controllerTick(benchmark::State& run) {
   Bench bench;
   bench.command([](double) { return 3.0; });
   bench.loop.run(std::chrono::seconds(1));
-  DeviceController controller = bench.loop.controller();
+  DeviceController& controller = bench.loop.controller();
   DeviceState state = bench.loop.device().read();
   Time now = bench.loop.now();
   ForceCommand command;

@@ -212,10 +212,10 @@ class Feel {
 int main() {
   printComputation();
   const Variant variants[] = {
-      {"as_shipped", 0.0125, true, true, 1},       {"no_prediction", 0.0125, false, true, 1},
-      {"force_only", 0.0125, true, false, 1},      {"as_shipped_3ms", 0.0125, true, true, 3},
-      {"force_only_3ms", 0.0125, true, false, 3},  {"as_shipped_25Hz", 0.04, true, true, 1},
-      {"no_prediction_25Hz", 0.04, false, true, 1}};
+      {"as_shipped", 0.0125, true, true, 0},       {"no_prediction", 0.0125, false, true, 0},
+      {"force_only", 0.0125, true, false, 0},      {"as_shipped_3ms", 0.0125, true, true, 3},
+      {"force_only_3ms", 0.0125, true, false, 3},  {"as_shipped_25Hz", 0.04, true, true, 0},
+      {"no_prediction_25Hz", 0.04, false, true, 0}};
   for (const Variant& variant : variants) {
     Feel(variant).print(std::string("haptic_loop/touch/") + variant.name);
   }

@@ -9,7 +9,7 @@ SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
   const Eigen::Vector3d end =
       settings.predict ? predict(fingertip, seconds).position : fingertip.position;
   return {fingertip.position, end, fingertip.radius, settings.margin + PatchSelection::kHysteresis,
-          static_cast<std::size_t>(settings.most_elements + settings.most_elements / 4)};
+          static_cast<std::size_t>(2 * settings.most_elements)};
 }
 
 void PatchSelection::begin() { std::fill(wanted_.begin(), wanted_.end(), 0); }
@@ -17,7 +17,8 @@ void PatchSelection::begin() { std::fill(wanted_.begin(), wanted_.end(), 0); }
 void PatchSelection::add(int element, double distance, int rank, const HapticSettings& settings) {
   const bool stays = chosen_[element];
   const double reach = settings.margin + (stays ? kHysteresis : 0.0);
-  if (distance <= reach && (stays || rank < settings.most_elements)) wanted_[element] = 1;
+  const int most = settings.most_elements + (stays ? settings.most_elements / 4 : 0);
+  if (distance <= reach && (rank < most || (stays && distance <= kTouching))) wanted_[element] = 1;
 }
 
 bool PatchSelection::finish() {

@@ -21,6 +21,16 @@ std::optional<Time> timeOf(std::int64_t nanoseconds) {
 
 }  // namespace
 
+void fillActingLoads(const LoopView& view, std::vector<cloth::PointLoad>& loads) {
+  loads.clear();
+  if (!(view.load_gain > 0.0)) return;
+  loads.assign(view.loads.begin(), view.loads.end());
+  for (cloth::PointLoad& load : loads) {
+    load.force *= view.load_gain;
+    load.stiffness *= view.load_gain;
+  }
+}
+
 ContactPicture::ContactPicture() {
   positions.reserve(kMaxParticles);
   contact_forces.reserve(kMaxParticles);
@@ -94,7 +104,9 @@ void ForceLoop::tick(Time now) {
   takeFingers(now);
   liveness_.update(news_, now);
   step();
-  showView(state_taken);
+  const bool loads_due = loadsAreDue(state_taken, now);
+  if (loads_due) ++view_.loadings;
+  showView(state_taken || loads_due);
   if (picture_wanted_.exchange(false)) showPicture();
   ++status_.ticks;
   showStatus();
@@ -252,8 +264,21 @@ double ForceLoop::loadGain() const {
   return weights > 0.0 ? sum / weights : 0.0;
 }
 
-void ForceLoop::showView(bool state_taken) {
-  if (!state_taken && ++ticks_to_view_ < kTicksPerView) return;
+/// Once per state: kLoadLead before the next step, or with the state after it if that is sooner.
+bool ForceLoop::loadsAreDue(bool state_taken, Time now) {
+  const bool overdue = state_taken && loads_due_;
+  if (state_taken) {
+    const State& state = states_.value();
+    const std::chrono::duration<double> until_next(state.state.until_next);
+    loads_due_ = state.arrival + std::chrono::round<Time>(until_next) - kLoadLead;
+  }
+  const bool due = loads_due_ && now >= *loads_due_;
+  if (due) loads_due_.reset();
+  return due || overdue;
+}
+
+void ForceLoop::showView(bool has_news) {
+  if (!has_news && ++ticks_to_view_ < kTicksPerView) return;
   ticks_to_view_ = 0;
   view_.states = status_.states;
   view_.state_period = state_period_;
@@ -261,7 +286,7 @@ void ForceLoop::showView(bool state_taken) {
   if (layer_) view_.loads.assign(layer_->loads().begin(), layer_->loads().end());
   view_.load_gain = loadGain();
   views_.write(view_);
-  if (state_taken) state_taken_.post();
+  if (has_news) news_came_.post();
 }
 
 void ForceLoop::showPicture() {

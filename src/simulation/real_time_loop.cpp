@@ -100,7 +100,7 @@ void RealTimeLoop::run() {
     const bool rests = status_.paused ? steps_wanted_ == 0 : status_.last_step_rejected;
     if (carried_out && rests) {
       lock.unlock();
-      observer_(simulation_, true);
+      observer_(simulation_, kNever);
       lock.lock();
     }
     const auto disturbed = [this] { return !running_ || !requests_.empty(); };
@@ -180,6 +180,7 @@ void RealTimeLoop::runDueStep(std::unique_lock<std::mutex>& lock) {
 /// Takes a step and shows it to the observer. @returns its computing time, s
 double RealTimeLoop::step(std::unique_lock<std::mutex>& lock, bool in_real_time) {
   const bool rests = steps_wanted_ == 1;
+  const Clock::time_point due = due_;
   const Clock::time_point ready = std::max(due_, computed_);
   lock.unlock();
   const Clock::time_point begin = Clock::now();
@@ -190,7 +191,11 @@ double RealTimeLoop::step(std::unique_lock<std::mutex>& lock, bool in_real_time)
   computed_ = Clock::now();
   const Clock::duration took = computed_ - begin;
   if (!slept) step_times_.add(took);
-  if (accepted) observer_(simulation_, rests);
+  if (accepted) {
+    const auto next = due + clockDuration(simulation_.lastStepDuration());
+    const double until_next = in_real_time ? std::max(0.0, inSeconds(next - Clock::now())) : 0.0;
+    observer_(simulation_, rests ? kNever : until_next);
+  }
   lock.lock();
   status_.rejected_steps += accepted ? 0 : 1;
   status_.unsolved_steps += simulation_.lastReport().linear_converged ? 0 : 1;

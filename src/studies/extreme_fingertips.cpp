@@ -39,8 +39,9 @@ class TouchedRun {
         loop_(loopSettings(extreme, restingMesh(), untouched_)) {}
 
   ExtremeOutcome run() {
-    for (int i = 0; i < extreme_.disturbed_steps && !failed(); ++i) hold(drawFingertips());
-    hold({});
+    for (int i = 0; i < extreme_.disturbed_steps && !failed(); ++i) hold(drawFingertips(), kHold);
+    // What the fingertips have done last acts in the step after the next state.
+    hold({}, kHold + 2.0 * extreme_.longest_step);
     outcome_.rejected = loop_.rejectedSteps();
     for (int i = 0; i < extreme_.free_steps && !failed(); ++i) watch();
     if (failed()) return outcome_;
@@ -72,8 +73,8 @@ class TouchedRun {
     return fingertips;
   }
 
-  void hold(const oracles::Fingertips& fingertips) {
-    const double end = loop_.time() + kHold;
+  void hold(const oracles::Fingertips& fingertips, double seconds) {
+    const double end = loop_.time() + seconds;
     while (loop_.time() < end && !failed()) {
       loop_.step(fingertips);
       ++outcome_.steps;

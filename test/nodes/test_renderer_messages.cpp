@@ -116,6 +116,8 @@ TEST(RendererMessages, RefusesABadStateAndSaysWhy) {
       {"velocities has 4", [](Message& m) { m.positions.resize(5); }},
       {"attached has 4", [](Message& m) { m.attached.push_back(4); }},
       {"simulated_time", [](Message& m) { m.simulated_time = kNaN; }},
+      {"until_next", [](Message& m) { m.until_next = kNaN; }},
+      {"until_next", [](Message& m) { m.until_next = -0.01; }},
   };
   simulation::LargeScaleState state;
   for (const auto& [why, spoil] : flaws) {
@@ -219,7 +221,7 @@ TEST(RendererMessages, ForcesOnTheCloth) {
   load.force = {4.0, 5.0, 6.0};
   load.stiffness = someContact().stiffness;
   haptex::ContactForces message;
-  fillContactForces({load, load}, 0.5, kStamp, message);
+  fillContactForces({load, load}, kStamp, message);
   EXPECT_EQ(message.header.frame_id, "world");
   ASSERT_EQ(message.triangles.size(), 2u);
   ASSERT_EQ(message.barycentric.size(), 6u);
@@ -227,10 +229,10 @@ TEST(RendererMessages, ForcesOnTheCloth) {
   EXPECT_EQ(message.triangles[1], 5u);
   EXPECT_EQ(message.barycentric[4], 0.3);
   EXPECT_EQ(vector(message.positions[1]), load.position);
-  EXPECT_EQ(vector(message.forces[1]), 0.5 * load.force);
-  EXPECT_EQ(message.stiffness[9 + 1], 0.5 * 1.0);
-  EXPECT_EQ(message.stiffness[9 + 8], 0.5 * 6.0);
-  fillContactForces({load}, 0.0, kStamp, message);
+  EXPECT_EQ(vector(message.forces[1]), load.force);
+  EXPECT_EQ(message.stiffness[9 + 1], 1.0);
+  EXPECT_EQ(message.stiffness[9 + 8], 6.0);
+  fillContactForces({}, kStamp, message);
   EXPECT_TRUE(message.triangles.empty() && message.stiffness.empty());
 }
 

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
+#include <vector>
 
 #include "force_loop_fixtures.h"
 
@@ -110,6 +112,25 @@ TEST(ForceLoop, WhatActsOnTheClothIsTheOppositeOfWhatTheFingertipFeels) {
   EXPECT_NEAR(view.state_period, 0.012, 1e-12);
 }
 
+TEST(ForceLoop, LoadsActTimesTheirGain) {
+  LoopView view;
+  const cloth::PointLoad load{0,
+                              {0.2, 0.3, 0.5},
+                              Eigen::Vector3d::Zero(),
+                              {4.0, 5.0, 6.0},
+                              3.0 * Eigen::Matrix3d::Identity()};
+  view.loads = {load, load};
+  view.load_gain = 0.5;
+  std::vector<cloth::PointLoad> acting;
+  fillActingLoads(view, acting);
+  ASSERT_EQ(acting.size(), 2u);
+  EXPECT_EQ(acting[1].force, 0.5 * load.force);
+  EXPECT_EQ(acting[1].stiffness, 0.5 * load.stiffness);
+  view.load_gain = 0.0;
+  fillActingLoads(view, acting);
+  EXPECT_TRUE(acting.empty());
+}
+
 TEST(ForceLoop, NothingActsOnTheClothFromAFingerThatIsGone) {
   const auto sheet = touched();
   sheet->silence(RendererSource::kFingertip);
@@ -120,12 +141,45 @@ TEST(ForceLoop, NothingActsOnTheClothFromAFingerThatIsGone) {
   EXPECT_TRUE(view.fingertips[Finger::kIndex]) << "its patch stays for when it is back";
 }
 
-TEST(ForceLoop, TellsWhenAStateWasTaken) {
+/// At each of these ticks: whether there was news, how many states were taken, how many loads due.
+using News = std::tuple<bool, std::uint64_t, std::uint64_t>;
+
+std::vector<News> newsOf(TouchedSheet& sheet, int ticks) {
+  std::vector<News> news;
+  for (int i = 0; i < ticks; ++i) {
+    sheet.tick();
+    const bool came = sheet.loop().waitForNews(Time{0});
+    news.push_back({came, sheet.loop().view().states, sheet.loop().view().loadings});
+  }
+  return news;
+}
+
+TEST(ForceLoop, LoadsAreDueOncePerStateShortlyBeforeTheNextStep) {
+  TouchedSheet sheet;  // a state every 12 ms
+  sheet.state().until_next = 0.012;
+  sheet.run(11);
+  const std::vector<News> news = newsOf(sheet, 24);
+  for (int i = 0; i < 24; ++i) {
+    const bool state = i % 12 == 0, loads = i % 12 == 10;
+    EXPECT_EQ(news[i], News(state || loads, 1 + i / 12, (i + 2) / 12)) << i;
+  }
+}
+
+TEST(ForceLoop, LoadsAreDueWithTheStateWhereTheNextStepIsNear) {
+  for (const double until_next : {0.0, 0.001, 0.002}) {
+    TouchedSheet sheet;
+    sheet.state().until_next = until_next;
+    sheet.run(11);
+    EXPECT_EQ(newsOf(sheet, 13).back(), News(true, 2, 2)) << until_next;
+  }
+}
+
+TEST(ForceLoop, LoadsThatAStateOvertakesAreDueWithIt) {
   TouchedSheet sheet;
-  sheet.run(24);
-  EXPECT_TRUE(sheet.loop().waitForState(Time{0}));
-  EXPECT_TRUE(sheet.loop().waitForState(Time{0}));
-  EXPECT_FALSE(sheet.loop().waitForState(Time{0}));
+  sheet.state().until_next = 0.05;
+  sheet.run(12);
+  EXPECT_EQ(newsOf(sheet, 11).back(), News(false, 1, 0));
+  EXPECT_EQ(newsOf(sheet, 1).back(), News(true, 2, 1));
 }
 
 TEST(ForceLoop, PicturesThePatchWhenAsked) {

@@ -10,7 +10,7 @@
 namespace haptex::simulation {
 namespace {
 
-void ignore(const SimulatedCloth& /*simulation*/, bool /*rests*/) {}
+void ignore(const SimulatedCloth& /*simulation*/, double /*until_next*/) {}
 
 cloth::ClothState stateOf(RealTimeLoop& loop) {
   cloth::ClothState state;
@@ -105,7 +105,9 @@ TEST(RealTimeLoop, KeepsTheLastGoodStateWhenAStepIsRejected) {
 TEST(RealTimeLoop, ShowsTheLastGoodStateAfterCommandsWhileStepsAreRejected) {
   std::atomic<int> shown{0};
   RealTimeLoop loop(smallSimulation(),
-                    [&](const SimulatedCloth& /*simulation*/, bool rests) { shown += rests; });
+                    [&](const SimulatedCloth& /*simulation*/, double until_next) {
+                      shown += until_next == RealTimeLoop::kNever;
+                    });
   loop.start();
   loop.execute(setOverflowingFabric);
   while (!loop.status().last_step_rejected) std::this_thread::yield();
@@ -115,8 +117,8 @@ TEST(RealTimeLoop, ShowsTheLastGoodStateAfterCommandsWhileStepsAreRejected) {
 
 TEST(RealTimeLoop, ShowsEveryAcceptedStepOnce) {
   std::vector<std::uint64_t> seen;
-  RealTimeLoop loop(smallSimulation(), [&](const SimulatedCloth& simulation, bool rests) {
-    if (!rests) seen.push_back(simulation.steps());
+  RealTimeLoop loop(smallSimulation(), [&](const SimulatedCloth& simulation, double until_next) {
+    if (until_next != RealTimeLoop::kNever) seen.push_back(simulation.steps());
   });
   loop.start();
   while (loop.status().steps < 10) std::this_thread::yield();

@@ -29,6 +29,7 @@ SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
 class PatchSelection {
  public:
   static constexpr double kHysteresis = 4e-3;  ///< m
+  static constexpr double kTouching = 2e-3;    ///< m
 
   /// @param elements of the large-scale mesh
   explicit PatchSelection(std::size_t elements) : chosen_(elements, 0), wanted_(elements, 0) {}

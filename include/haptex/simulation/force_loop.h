@@ -39,13 +39,17 @@ struct LayerUpdate {
 struct LoopView {
   LoopView() { loads.reserve(cloth::PointLoads::kMax); }
 
-  std::uint64_t states = 0;   ///< of the cloth, taken so far
-  double state_period = 0.0;  ///< s, of simulated time, between the last two
+  std::uint64_t states = 0;    ///< of the cloth, taken so far
+  std::uint64_t loadings = 0;  ///< times that the loads were due to be sent, so far
+  double state_period = 0.0;   ///< s, of simulated time, between the last two
   /// Where they were last, also of one that is silent: its patch stays for when it is back.
   contact::Fingertips fingertips;
   std::vector<cloth::PointLoad> loads;
   double load_gain = 0.0;  ///< share of them that is to act
 };
+
+/// The loads that are to act: times their gain, none without.
+void fillActingLoads(const LoopView& view, std::vector<cloth::PointLoad>& loads);
 
 /// For markers.
 struct ContactPicture {
@@ -89,6 +93,10 @@ class ForceLoop {
   using Time = base::Time;
   using Finger = base::Finger;
   static constexpr Time kPeriod = std::chrono::milliseconds(1);
+  /// How long before the cloth's next step its loads are sent, once per state: the younger they
+  /// are, the less the force errs (scripts/bench trade_off_haptic), and what comes too late acts a
+  /// step later.
+  static constexpr Time kLoadLead = std::chrono::milliseconds(2);
 
   /// What came of a tick for a finger.
   struct Rendered {
@@ -127,8 +135,9 @@ class ForceLoop {
   void reportQuestion(Time asked) { question_ = asked.count(); }
   /// @param good false: refused, or there is nobody who answers
   void reportAnswer(bool good);
-  /// Waits for a state of the cloth to be taken. @returns false if none was in time
-  bool waitForState(Time patience) { return state_taken_.waitFor(patience); }
+  /// Waits until a state of the cloth has been taken or loads are due. @returns false if neither
+  /// was in time
+  bool waitForNews(Time patience) { return news_came_.waitFor(patience); }
   const LoopView& view();
 
   /// By one thread, once per kPeriod, and by it before: whether anybody looks at what is of the
@@ -138,6 +147,8 @@ class ForceLoop {
   /// By the same thread, of the last tick.
   const Rendered& rendered(Finger finger) const { return rendered_[finger]; }
   const FrameMotion& hand() const { return hand_; }
+  /// By the same thread; null without one.
+  const contact::HapticLayer* layer() const { return layer_.get(); }
 
   /// By any thread.
   ForceLoopStatus status() const;
@@ -185,7 +196,8 @@ class ForceLoop {
   bool isPresent(Finger finger) const;
   contact::Fingertip fingertip(Finger finger) const;
   void step();
-  void showView(bool state_taken);
+  bool loadsAreDue(bool state_taken, Time now);
+  void showView(bool has_news);
   void showPicture();
   void showStatus();
   double loadGain() const;
@@ -204,6 +216,7 @@ class ForceLoop {
   base::PerFinger<bool> contactors_wanted_{{{true, true}}};
   std::optional<double> simulated_time_;  // of the last state taken
   double state_period_;                   // s, of simulated time
+  std::optional<Time> loads_due_;         // none: sent since the last state
   LoopView view_;
   int ticks_to_view_ = 0;
   ContactPicture picture_;
@@ -222,7 +235,7 @@ class ForceLoop {
   State incoming_state_;  // of the thread of what comes in
 
   // From it.
-  realtime::Semaphore state_taken_;
+  realtime::Semaphore news_came_;
   realtime::TripleBuffer<LoopView> views_;
   realtime::TripleBuffer<ContactPicture> pictures_;
   mutable std::mutex status_readers_;  // guards reading; never taken by the loop

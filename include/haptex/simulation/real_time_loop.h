@@ -7,6 +7,7 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -52,9 +53,11 @@ class RealTimeLoop {
   static constexpr double kMaxBacklog = 0.1;  ///< s
 
   /// Runs on the loop's thread after an accepted step, and after commands while paused or while
-  /// steps are rejected. `rests` is true if no step follows at once: the state is the last one for
-  /// a while.
-  using Observer = std::function<void(const SimulatedCloth&, bool rests)>;
+  /// steps are rejected.
+  /// @param until_next s, >= 0, until the next step begins; kNever if none follows: the state is
+  ///   the last one for a while
+  using Observer = std::function<void(const SimulatedCloth&, double until_next)>;
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
   using Command = std::function<void(SimulatedCloth&)>;
 
   /// Does not start yet.

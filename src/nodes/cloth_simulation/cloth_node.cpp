@@ -85,8 +85,8 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       heartbeat_(node, "cloth/heartbeat"),
       loop_(
           simulate(parameters, quality, scene),
-          [this](const simulation::SimulatedCloth& simulation, bool rests) {
-            publishStep(simulation, rests);
+          [this](const simulation::SimulatedCloth& simulation, double until_next) {
+            publishStep(simulation, until_next);
           },
           contact_input_
               ? simulation::RealTimeLoop::Command([this](simulation::SimulatedCloth& simulation) {
@@ -130,14 +130,15 @@ void ClothNode::publishMesh(const cloth::Cloth& cloth) {
   mesh_publisher_.publish(meshMessage(cloth, ros::Time::now()));
 }
 
-void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, bool rests) {
+void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double until_next) {
+  const bool rests = until_next == simulation::RealTimeLoop::kNever;
   if (stamped_step_ != simulation.steps()) {
     stamped_step_ = simulation.steps();
     state_stamp_ = ros::Time::now();
   }
   const bool state_due = rests || stamped_step_ % steps_per_state_ == 0;
   if (state_due && state_publisher_.getNumSubscribers() > 0) {
-    publishState(simulation);
+    publishState(simulation, rests ? 0.0 : until_next);
   }
   const bool markers_due = rests || stamped_step_ % steps_per_markers_ == 0;
   if (markers_due && marker_publisher_.getNumSubscribers() > 0) {
@@ -163,13 +164,14 @@ void ClothNode::publishQualityIfDue(const simulation::SimulatedCloth& simulation
 }
 
 /// While the cloth sleeps, only the time is new.
-void ClothNode::publishState(const simulation::SimulatedCloth& simulation) {
+void ClothNode::publishState(const simulation::SimulatedCloth& simulation, double until_next) {
   if (simulation.asleep() && filled_step_ == simulation.computedSteps()) {
     restampStateMessage(simulation, state_stamp_, state_message_);
   } else {
     fillStateMessage(simulation, state_stamp_, forces_, state_message_);
     filled_step_ = simulation.computedSteps();
   }
+  state_message_.until_next = until_next;
   state_publisher_.publish(state_message_);
 }
 

@@ -55,7 +55,7 @@ void PatchSupplier::run() {
   realtime::askForFifoOnce(realtime::kMessagePriority);
   realtime::keepOffForceProcessor(pthread_self());
   while (!stopping_) {
-    const bool state_came = loop_.waitForState(kPatience);
+    loop_.waitForNews(kPatience);
     takeMesh();
     const simulation::LoopView& view = loop_.view();
     publishForces(view);
@@ -63,7 +63,7 @@ void PatchSupplier::run() {
     if (layer_ == nullptr || !patches) continue;
     // A server that has died closes the connection: do not wait for the next question to see it.
     if (!failed_ && !client_.isValid()) fail("the connection to proximity/query is broken");
-    if (state_came || realtime::steadyNow() >= next_question_) ask(view);
+    if (view.states != states_asked_ || realtime::steadyNow() >= next_question_) ask(view);
     supplyPatch();
   }
 }
@@ -106,7 +106,7 @@ void PatchSupplier::buildLayer(const haptex::ClothMesh& message) {
   update->particles = message.rest_weft_coordinates.size();
   layer_ = update->layer.get();
   while ((realtime::steadyNow() < begin + kFall || !loop_.canOffer()) && !stopping_) {
-    loop_.waitForState(kPatience);
+    loop_.waitForNews(kPatience);
   }
   if (stopping_) return;
   loop_.offer(std::move(update));
@@ -116,14 +116,18 @@ void PatchSupplier::buildLayer(const haptex::ClothMesh& message) {
 
 /// Once per state of the cloth; one without points ends the contact.
 void PatchSupplier::publishForces(const simulation::LoopView& view) {
-  if (view.states == states_published_) return;
-  states_published_ = view.states;
+  if (view.loadings == loadings_published_) return;
+  loadings_published_ = view.loadings;
   if (force_publisher_.getNumSubscribers() == 0) return;
-  const bool acts = layer_ != nullptr && view.load_gain > 0.0 && !view.loads.empty();
-  if (!acts && !published_forces_) return;
-  fillContactForces(view.loads, acts ? view.load_gain : 0.0, ros::Time::now(), forces_);
+  if (layer_ != nullptr) {
+    simulation::fillActingLoads(view, loads_);
+  } else {
+    loads_.clear();
+  }
+  if (loads_.empty() && !published_forces_) return;
+  fillContactForces(loads_, ros::Time::now(), forces_);
   force_publisher_.publish(forces_);
-  published_forces_ = acts;
+  published_forces_ = !loads_.empty();
 }
 
 void PatchSupplier::fail(const std::string& why) {
@@ -138,6 +142,7 @@ void PatchSupplier::fail(const std::string& why) {
 void PatchSupplier::ask(const simulation::LoopView& view) {
   const Time begin = realtime::steadyNow();
   next_question_ = begin + kAskPeriod;
+  states_asked_ = view.states;
   if (!client_.isValid()) {
     if (begin < next_connection_) return;
     next_connection_ = begin + kConnectionPeriod;

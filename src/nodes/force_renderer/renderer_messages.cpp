@@ -68,6 +68,10 @@ void readState(const haptex::ClothState& message, simulation::LargeScaleState& s
   if (!std::isfinite(message.simulated_time)) {
     throw std::invalid_argument("simulated_time is not finite");
   }
+  if (!(message.until_next >= 0.0) || std::isinf(message.until_next)) {
+    throw std::invalid_argument("until_next = " + std::to_string(message.until_next) +
+                                " s: allowed are finite numbers >= 0");
+  }
   const std::size_t particles = message.positions.size();
   requireCount("velocities", message.velocities.size(), particles);
   state.positions.resize(particles);
@@ -86,6 +90,7 @@ void readState(const haptex::ClothState& message, simulation::LargeScaleState& s
     state.attached[particle] = 1;
   }
   state.simulated_time = message.simulated_time;
+  state.until_next = message.until_next;
 }
 
 void fillServoForce(const contact::FingertipContact& contact, double gain,
@@ -132,10 +137,10 @@ void fillContact(const contact::FingertipContact& contact,
   }
 }
 
-void fillContactForces(const std::vector<cloth::PointLoad>& loads, double gain,
-                       const ros::Time& stamp, haptex::ContactForces& message) {
+void fillContactForces(const std::vector<cloth::PointLoad>& loads, const ros::Time& stamp,
+                       haptex::ContactForces& message) {
   setHeader(stamp, kFixedFrame, message.header);
-  const std::size_t count = gain > 0.0 ? loads.size() : 0;
+  const std::size_t count = loads.size();
   message.triangles.resize(count);
   message.barycentric.resize(3 * count);
   message.positions.resize(count);
@@ -145,9 +150,9 @@ void fillContactForces(const std::vector<cloth::PointLoad>& loads, double gain,
     const cloth::PointLoad& load = loads[i];
     message.triangles[i] = static_cast<std::uint32_t>(load.triangle);
     message.positions[i] = pointMessage(load.position);
-    message.forces[i] = vectorMessage(gain * load.force);
+    message.forces[i] = vectorMessage(load.force);
     Eigen::Map<Eigen::Vector3d>(&message.barycentric[3 * i]) = load.weights;
-    Eigen::Map<RowMajor>(&message.stiffness[9 * i]) = gain * load.stiffness;
+    Eigen::Map<RowMajor>(&message.stiffness[9 * i]) = load.stiffness;
   }
 }
 

@@ -32,7 +32,7 @@ void validateWeight(const material::Fabric& fabric, double rate, const Sink& sin
   const auto step = [&](const Fingertips& fingertips) { loop.step(fingertips); };
   move(hand, kStill, -2.0 * kOpen, 0.2, 1e-3, step);
   move(hand, kStill, 0.0, 0.3, 1e-3, step);
-  loop.cloth().releaseAll();
+  loop.releaseAll();
   double mean = 0.0, ripple = 0.0;
   bool rests = false;
   while (!rests && loop.time() < kLongest) {

@@ -88,7 +88,8 @@ void validateFree(const material::Fabric& fabric, const Sink& sink) {
 void validateTwoPlaces(const material::Fabric& fabric, const Sink& sink) {
   constexpr double kDepth = 2e-3;
   const Vector3d apart(0.0, 0.06, 0.06);
-  const HapticLoopSettings sample = tautSample(fabric, kStrain, kRate);
+  HapticLoopSettings sample = tautSample(fabric, kStrain, kRate);
+  sample.radii = {{kIndexRadius, kIndexRadius}};
   const Press index{kMiddle + apart, 1.0}, thumb{kMiddle - apart, -1.0};
   base::PerFinger<double> alone{};
   for (const Finger finger : kFingers) {
@@ -121,6 +122,7 @@ void validatePinch(const material::Fabric& fabric, const Sink& sink) {
   HapticLoopSettings sample = tautSample(fabric, 0.0, kRate);
   sample.fabric.friction = 1e-6;
   sample.haptics.refinement = 3;
+  sample.radii = {{kIndexRadius, kIndexRadius}};
   HapticLoop loop(sample);
   const contact::ContactLaw& law = loop.layer().law();
   Hand hand;

@@ -12,8 +12,8 @@ namespace {
 using namespace exoskeleton;
 using Eigen::Vector3d;
 
-constexpr double kOpen = 0.02;                    // m, between the fingertips at first
-const PerFinger<double> kRadii{{0.0075, 0.009}};  // m, of the round ends, as the URDF has them
+constexpr double kOpen = 0.02;  // m, between the fingertips at first
+const PerFinger<double> kRadii{{kIndexRadius, kThumbRadius}};
 
 Pinch requirePinch(const std::string& urdf) {
   const std::optional<Pinch> pinch = findPinch(urdf, Meeting::kPads);
@@ -118,17 +118,18 @@ void TouchLoop::stepCloth() {
 
 ForceCommand TouchLoop::command(Finger finger) {
   if (finger == Finger::kIndex) stepCloth();  // the first of the two to be asked
-  const contact::FingertipContact& contact = cloth_.layer().contacts()[finger];
+  const simulation::ForceLoop::Rendered& rendered = cloth_.forceLoop().rendered(finger);
+  const contact::FingertipContact& contact = rendered.contact;
   const FingerMeasurement& measured = device_.controller().measured(finger);
   ForceCommand command;
   command.position = measured.pose.translation();
   command.velocity = measured.velocity;
   if (contact.touching) {
     const Eigen::Matrix3d to_hand = hand_.linear().transpose();
-    command.force = to_hand * contact.force;
+    command.force = rendered.gain * to_hand * contact.force;
     if (settings_.linearised) {
-      command.stiffness = to_hand * contact.stiffness * to_hand.transpose();
-      command.damping = to_hand * contact.damping * to_hand.transpose();
+      command.stiffness = rendered.gain * to_hand * contact.stiffness * to_hand.transpose();
+      command.damping = rendered.gain * to_hand * contact.damping * to_hand.transpose();
     }
   }
   std::deque<ForceCommand>& line = on_their_way_[finger];
@@ -143,7 +144,8 @@ Vector3d TouchLoop::felt(Finger finger) const {
 }
 
 Vector3d TouchLoop::rendered(Finger finger) const {
-  return cloth_.layer().contacts()[finger].force;
+  const simulation::ForceLoop::Rendered& rendered = cloth_.forceLoop().rendered(finger);
+  return rendered.gain * rendered.contact.force;
 }
 
 }  // namespace haptex::oracles

@@ -95,6 +95,7 @@ class DriverLoop {
   Refusal carryOut(DriverRequest request);
   /// By the same thread.
   const DeviceController& controller() const { return controller_; }
+  DeviceController& controller() { return controller_; }
 
   /// By the same thread, between two ticks: waits for the next state of the device.
   /// @returns false if none came until then

@@ -80,8 +80,8 @@ class ClothNode {
   void advertiseTopics();
   void advertiseServices();
   void publishMesh(const cloth::Cloth& cloth);
-  void publishStep(const simulation::SimulatedCloth& simulation, bool rests);
-  void publishState(const simulation::SimulatedCloth& simulation);
+  void publishStep(const simulation::SimulatedCloth& simulation, double until_next);
+  void publishState(const simulation::SimulatedCloth& simulation, double until_next);
   void republishIfResting();
   void publishQuality(const simulation::SimulatedCloth& simulation);
   void publishQualityIfDue(const simulation::SimulatedCloth& simulation);

@@ -22,7 +22,8 @@ constexpr char kFixedFrame[] = "world";
 /// @param stamp when the fabric became this one
 haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, const ros::Time& stamp);
 
-/// Fills a state message in place, without allocation once its arrays have their size.
+/// Fills a state message in place but for until_next, without allocation once its arrays have their
+/// size.
 /// @param stamp  when the state was computed
 /// @param forces buffer for Cloth::computeForces()
 void fillStateMessage(const simulation::SimulatedCloth& simulation, const ros::Time& stamp,

@@ -86,8 +86,10 @@ class PatchSupplier {
   std::string fabric_;
   const contact::HapticLayer* layer_ = nullptr;    // the loop's; null: none
   std::optional<simulation::PatchSupply> supply_;  // with the layer
-  std::uint64_t states_published_ = 0;
+  std::uint64_t loadings_published_ = 0;
+  std::uint64_t states_asked_ = 0;
   bool published_forces_ = false;
+  std::vector<cloth::PointLoad> loads_;
   haptex::ContactForces forces_;
   bool failed_ = true;
 

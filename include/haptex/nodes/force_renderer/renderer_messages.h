@@ -45,9 +45,9 @@ void fillContact(const contact::FingertipContact& contact,
                  const tactile::ArrayPlacement& array, double gain, const ros::Time& stamp,
                  haptex::Contact& message);
 
-/// What acts on the cloth; no points without a gain.
-void fillContactForces(const std::vector<cloth::PointLoad>& loads, double gain,
-                       const ros::Time& stamp, haptex::ContactForces& message);
+/// What acts on the cloth.
+void fillContactForces(const std::vector<cloth::PointLoad>& loads, const ros::Time& stamp,
+                       haptex::ContactForces& message);
 
 haptex::QueryProximity::Request volumeQuery(const contact::SearchVolume& volume);
 

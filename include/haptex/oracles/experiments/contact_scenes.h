@@ -12,9 +12,7 @@ namespace haptex::oracles {
 
 using contact::Fingertips;
 
-constexpr double kSampleSide = 0.2;      ///< m
-constexpr double kIndexRadius = 7.5e-3;  ///< m
-constexpr double kThumbRadius = 9e-3;    ///< m
+constexpr double kSampleSide = 0.2;  ///< m
 
 /// The 200 mm sample in the plane x = 0, 32 x 32 cells, hanging from the bar at the world's origin
 /// with the given direction of the fabric along +z. Patches of refinement 2.

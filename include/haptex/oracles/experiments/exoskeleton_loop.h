@@ -117,6 +117,7 @@ class ExoskeletonLoop {
   const exoskeleton::EmulatedDevice& device() const { return device_; }
   /// Of the driver.
   const exoskeleton::DeviceController& controller() const { return driver_.controller(); }
+  exoskeleton::DeviceController& controller() { return driver_.controller(); }
   exoskeleton::DriverSnapshot driver() const { return driver_.status(); }
   exoskeleton::Refusal ask(exoskeleton::DriverRequest request) { return driver_.carryOut(request); }
   SimulatedLine& toDevice() { return to_device_; }

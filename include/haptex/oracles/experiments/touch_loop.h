@@ -17,8 +17,7 @@ struct TouchLoopSettings {
   HapticLoopSettings cloth;
   Eigen::Vector3d pinched = Eigen::Vector3d::Zero();  ///< m, world: where the pads would meet
   bool linearised = true;  ///< commands carry stiffness and damping; if not, the force alone
-  /// ms: after which the force for a measured position is commanded, on top of the loop's own
-  int delay = 1;
+  int delay = 0;           ///< ms: how much later the force for a measured position is commanded
 };
 
 /// The fingers close along the world's x axis, the index finger on the side of +x. The hand's
