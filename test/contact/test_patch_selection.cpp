@@ -47,6 +47,18 @@ TEST_F(PatchSelectionTest, TakesNoMoreThanTheNearest) {
   EXPECT_FALSE(round({0.001, 0.002}, 1));
 }
 
+TEST_F(PatchSelectionTest, KeepsAQuarterMoreThanTheNearestAndAllThatTouches) {
+  settings_.most_elements = 4;
+  const double near = PatchSelection::kTouching + 1e-6;
+  round({near, near, near, near});
+  EXPECT_FALSE(round({near, near, near, near}, 1));
+  EXPECT_TRUE(round({near, near, near, near}, 2));
+  EXPECT_EQ(selection_.elements(), Elements({0, 1, 2}));
+  const double touching = PatchSelection::kTouching - 1e-6;
+  EXPECT_TRUE(round({near, touching, touching}, 6));
+  EXPECT_EQ(selection_.elements(), Elements({1, 2}));
+}
+
 TEST_F(PatchSelectionTest, UnitesWhatBothFingertipsAreNearTo) {
   selection_.begin();
   selection_.add(7, 0.001, 0, settings_);

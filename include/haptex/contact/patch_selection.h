@@ -24,12 +24,13 @@ SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
 
 /// An element comes in when it is within the margin of a fingertip and one of the most_elements
 /// nearest. It goes out when it is farther from both fingertips than the margin and kHysteresis, or
-/// there are a quarter more elements that are nearer: a fingertip at rest does not make the patch
-/// change to and fro.
+/// there are a quarter more elements that are nearer and it does not touch: a fingertip at rest, or
+/// cloth that folds around it, does not make the patch change to and fro. At twice most_elements
+/// that are nearer it goes out in any case.
 class PatchSelection {
  public:
   static constexpr double kHysteresis = 4e-3;  ///< m
-  static constexpr double kTouching = 2e-3;    ///< m
+  static constexpr double kTouching = 2e-3;    ///< m, less is taken for contact
 
   /// @param elements of the large-scale mesh
   explicit PatchSelection(std::size_t elements) : chosen_(elements, 0), wanted_(elements, 0) {}

@@ -30,10 +30,9 @@ struct HapticLoopSettings {
 };
 
 /// Drives what the nodes cloth_simulation, proximity and force_renderer run, SimulatedCloth,
-/// PatchSupply and ForceLoop, one millisecond at a time and the same in every run. Messages take no
-/// time: a state of the cloth is there at its own time; the force loop receives it in its next
-/// tick, with what comes of that tick the cloth takes its next step, and a patch is asked for,
-/// which the force loop has in the tick after.
+/// PatchSupply and ForceLoop, one millisecond at a time and the same in every run. Messages and the
+/// cloth's steps take no time: when a step begins, the force loop takes its state in the same tick,
+/// and the patch that the state asks for in the next one.
 class HapticLoop {
  public:
   /// The force loop has run for long enough to render all of its forces.
