@@ -96,7 +96,7 @@ class ForceLoop {
   /// How long before the cloth's next step its loads are sent, once per state: the younger they
   /// are, the less the force errs (scripts/bench trade_off_haptic), and what comes too late acts a
   /// step later.
-  static constexpr Time kLoadLead = std::chrono::milliseconds(2);
+  static constexpr Time kLoadLead = std::chrono::milliseconds(3);
 
   /// What came of a tick for a finger.
   struct Rendered {
