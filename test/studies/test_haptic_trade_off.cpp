@@ -30,7 +30,7 @@ const TouchReference& reference() {
 HapticPoint point(int refinement) {
   HapticPoint point;
   point.haptics.refinement = refinement;
-  point.large_scale_step = 2e-3;
+  point.large_scale_step = 1e-3;
   return point;
 }
 
