@@ -27,16 +27,17 @@ const TouchReference& reference() {
   return reference;
 }
 
-HapticPoint point(int refinement) {
+HapticPoint point(int refinement, double large_scale_step = 4e-3) {
   HapticPoint point;
   point.haptics.refinement = refinement;
-  point.large_scale_step = 1e-3;
+  point.large_scale_step = large_scale_step;
   return point;
 }
 
 TEST(HapticTradeOff, FinerIsNearerToTheReferenceAndHasMoreParticles) {
-  const HapticCost coarse = measureTouch(shortPress(), point(0), reference());
-  const HapticCost fine = measureTouch(shortPress(), point(1), reference());
+  constexpr double kStep = 1e-3;  // s: loads of no age, whose error no refinement mends
+  const HapticCost coarse = measureTouch(shortPress(), point(0, kStep), reference());
+  const HapticCost fine = measureTouch(shortPress(), point(1, kStep), reference());
   EXPECT_GT(coarse.force_error, 2.0 * fine.force_error);
   EXPECT_LT(fine.force_error, 0.2 * reference().force);
   EXPECT_GT(fine.particles, 2 * coarse.particles);
