@@ -219,6 +219,19 @@ TEST(Faults, TheMotorsAreOffWithinTenMillisecondsAfterTheCommandersDeath) {
   std::cout << "contact force 20 ms after the commander's death " << largest << " N\n";
 }
 
+TEST(Faults, TheDriverDoesNotWaitForTheAnswersOfADeadCommander) {
+  const PerFinger<Vector3d> open =
+      loadHandPath(HAPTEX_SOURCE_DIRECTORY "/config/paths/pinch.yaml").at(1.5).fingertips;
+  const auto motorsOn = [&](oracles::DyingPart part) {
+    return oracles::dieInAHold(shippedUrdf(), open, kCommanded, part).motors_on;
+  };
+  // Within the tick after the death, to the quarter of a period in which that was looked for, as
+  // when the driver itself dies; DriverLoop::kAnswerPatience would come on top.
+  const double period = 1e3 * base::seconds(DriverLoop::kPeriod);
+  EXPECT_LT(motorsOn(oracles::DyingPart::kCommander),
+            motorsOn(oracles::DyingPart::kDriver) + 1.25 * period);
+}
+
 TEST(Faults, TheMotorsAreOffTwentyMillisecondsAfterCommanderOrDriverFellSilent) {
   for (const bool driver : {false, true}) {
     for (int i = 0; i < kMoments; ++i) {

@@ -29,6 +29,7 @@ haptex::ClothState someState() {
   haptex::ClothState message;
   message.header.frame_id = "world";
   message.simulated_time = 2.5;
+  message.until_next = 0.011;
   message.positions.resize(4);
   message.velocities.resize(4);
   message.positions[2].y = 0.25;
@@ -98,6 +99,7 @@ TEST(RendererMessages, StateOfAMessage) {
   simulation::LargeScaleState state;
   readState(someState(), state);
   EXPECT_EQ(state.simulated_time, 2.5);
+  EXPECT_EQ(state.until_next, 0.011);
   ASSERT_EQ(state.positions.size(), 4u);
   EXPECT_EQ(state.positions[2], Eigen::Vector3d(0.0, 0.25, 0.0));
   EXPECT_EQ(state.velocities[3], Eigen::Vector3d(0.0, 0.0, -0.5));
@@ -118,6 +120,7 @@ TEST(RendererMessages, RefusesABadStateAndSaysWhy) {
       {"simulated_time", [](Message& m) { m.simulated_time = kNaN; }},
       {"until_next", [](Message& m) { m.until_next = kNaN; }},
       {"until_next", [](Message& m) { m.until_next = -0.01; }},
+      {"until_next", [](Message& m) { m.until_next = 1e300; }},
   };
   simulation::LargeScaleState state;
   for (const auto& [why, spoil] : flaws) {

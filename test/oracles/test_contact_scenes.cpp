@@ -118,5 +118,22 @@ TEST(RefinedCloth, FeelsWhatTheTwoLayersFeelOfAPinch) {
   EXPECT_NEAR(cloth.force(Finger::kIndex).x(), -cloth.force(Finger::kThumb).x(), 0.05 * force);
 }
 
+TEST(HapticLoop, RefusesAFingertipOfAnotherRadius) {
+  HapticLoop loop(smallTautSample());
+  Hand hand = handOnSmallSample();
+  hand.thumb_radius = kIndexRadius;
+  EXPECT_THROW(loop.step(hand.fingertips()), std::invalid_argument);
+}
+
+TEST(HapticLoop, AFingertipThatIsAbsentDoesNotTouch) {
+  HapticLoop loop(smallTautSample());
+  Hand hand = handOnSmallSample();
+  hand.gap = -1e-3;
+  loop.rest(hand.fingertips(), 0.05);
+  EXPECT_TRUE(loop.layer().contacts()[Finger::kIndex].touching);
+  loop.step({});
+  EXPECT_FALSE(loop.layer().contacts()[Finger::kIndex].touching);
+}
+
 }  // namespace
 }  // namespace haptex::oracles

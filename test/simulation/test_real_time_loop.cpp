@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <future>
 #include <stdexcept>
+#include <vector>
 
 #include "haptex/simulation/real_time_loop.h"
 #include "small_scene.h"
@@ -113,6 +115,36 @@ TEST(RealTimeLoop, ShowsTheLastGoodStateAfterCommandsWhileStepsAreRejected) {
   while (!loop.status().last_step_rejected) std::this_thread::yield();
   loop.execute([](SimulatedCloth&) {});
   while (shown == 0) std::this_thread::yield();  // a loop that shows nothing would hang here
+}
+
+TEST(RealTimeLoop, TellsWhenTheNextStepBegins) {
+  const double step = smallSimulation().timeStep();
+  std::vector<double> told;
+  RealTimeLoop loop(smallSimulation(),
+                    [&](const SimulatedCloth& /*simulation*/, double until_next) {
+                      if (until_next != RealTimeLoop::kNever) told.push_back(until_next);
+                    });
+  loop.start();
+  while (loop.status().steps < 20) std::this_thread::yield();
+  loop.stop();
+  ASSERT_FALSE(told.empty());
+  EXPECT_GE(*std::min_element(told.begin(), told.end()), 0.0);
+  const double longest = *std::max_element(told.begin(), told.end());
+  EXPECT_LE(longest, step);
+  EXPECT_GT(longest, 0.0) << "the loop never has time left";
+}
+
+TEST(RealTimeLoop, TellsThatRequestedStepsFollowAtOnceUntilTheLast) {
+  std::vector<double> told;
+  RealTimeLoop loop(smallSimulation(), [&](const SimulatedCloth& /*simulation*/,
+                                           double until_next) { told.push_back(until_next); });
+  loop.start();
+  loop.setPaused(true);
+  loop.runSteps(3);
+  loop.stop();
+  ASSERT_GE(told.size(), 3u);
+  EXPECT_EQ(std::vector<double>(told.end() - 3, told.end()),
+            (std::vector<double>{0.0, 0.0, RealTimeLoop::kNever}));
 }
 
 TEST(RealTimeLoop, ShowsEveryAcceptedStepOnce) {

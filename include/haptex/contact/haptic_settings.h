@@ -10,10 +10,10 @@ struct HapticSettings {
   /// particles of the large-scale layer, which the scene then steps at 1 kHz itself.
   enum class Layer { kPatch, kWholeCloth };
   Layer layer = Layer::kPatch;
-  int refinement = 2;       ///< every element becomes 4^refinement, 0 to 4
-  double margin = 0.008;    ///< m, how far from the fingertip's surface the patch reaches, > 0
-  int most_elements = 24;   ///< of the large-scale mesh, in a patch, per fingertip, >= 1
-  bool predict = true;      ///< the patch also covers where the fingertip will be
+  int refinement = 2;      ///< every element becomes 4^refinement, 0 to 4
+  double margin = 0.008;   ///< m, how far from the fingertip's surface the patch reaches, > 0
+  int most_elements = 24;  ///< of the large-scale mesh, that come into a patch, per fingertip, >= 1
+  bool predict = true;     ///< the patch also covers where the fingertip will be
   double time_step = 1e-3;  ///< s
 };
 

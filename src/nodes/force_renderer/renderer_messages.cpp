@@ -15,7 +15,8 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-constexpr double kFastest = 1e4;  // m/s, of a cloth
+constexpr double kFastest = 1e4;         // m/s, of a cloth
+constexpr double kLongestStep = 3600.0;  // s, of the steady clock, likewise
 
 geometry_msgs::Vector3 vectorMessage(const Eigen::Vector3d& vector) {
   geometry_msgs::Vector3 message;
@@ -68,9 +69,11 @@ void readState(const haptex::ClothState& message, simulation::LargeScaleState& s
   if (!std::isfinite(message.simulated_time)) {
     throw std::invalid_argument("simulated_time is not finite");
   }
-  if (!(message.until_next >= 0.0) || std::isinf(message.until_next)) {
-    throw std::invalid_argument("until_next = " + std::to_string(message.until_next) +
-                                " s: allowed are finite numbers >= 0");
+  if (!(message.until_next >= 0.0 && message.until_next <= kLongestStep)) {
+    std::ostringstream text;
+    text << "until_next = " << message.until_next << " s: allowed are numbers from 0 to "
+         << kLongestStep;
+    throw std::invalid_argument(text.str());
   }
   const std::size_t particles = message.positions.size();
   requireCount("velocities", message.velocities.size(), particles);
