@@ -49,13 +49,18 @@ struct Worst {
   Time motors_on{0};  ///< when there was a motor force last
 };
 
+/// Where the fingertips are for taking the sample (m, frame of the hand).
+PerFinger<Vector3d> openHand() {
+  return loadHandPath(HAPTEX_SOURCE_DIRECTORY "/config/paths/pinch.yaml").at(1.5).fingertips;
+}
+
 /// Two fingers as far apart as for taking the sample, pushed apart by what is commanded.
 class FaultyLoop {
  public:
   explicit FaultyLoop(unsigned seed = 1) : loop(shippedUrdf(), seed) {
-    const HandPlace open = loadHandPath(HAPTEX_SOURCE_DIRECTORY "/config/paths/pinch.yaml").at(1.5);
-    const Vector3d index = open.fingertips[Finger::kIndex];
-    const Vector3d thumb = open.fingertips[Finger::kThumb];
+    const PerFinger<Vector3d> open = openHand();
+    const Vector3d index = open[Finger::kIndex];
+    const Vector3d thumb = open[Finger::kThumb];
     apart_ = (index - thumb).normalized();
     loop.device().setTarget(Finger::kIndex, index);
     loop.device().setTarget(Finger::kThumb, thumb);
@@ -220,8 +225,7 @@ TEST(Faults, TheMotorsAreOffWithinTenMillisecondsAfterTheCommandersDeath) {
 }
 
 TEST(Faults, TheDriverDoesNotWaitForTheAnswersOfADeadCommander) {
-  const PerFinger<Vector3d> open =
-      loadHandPath(HAPTEX_SOURCE_DIRECTORY "/config/paths/pinch.yaml").at(1.5).fingertips;
+  const PerFinger<Vector3d> open = openHand();
   const auto motorsOn = [&](oracles::DyingPart part) {
     return oracles::dieInAHold(shippedUrdf(), open, kCommanded, part).motors_on;
   };
@@ -249,8 +253,7 @@ TEST(Faults, TheMotorsAreOffTwentyMillisecondsAfterCommanderOrDriverFellSilent) 
 }
 
 TEST(Faults, AStallOfUpToFifteenMillisecondsDoesNotOpenTheHand) {
-  const PerFinger<Vector3d> open =
-      loadHandPath(HAPTEX_SOURCE_DIRECTORY "/config/paths/pinch.yaml").at(1.5).fingertips;
+  const PerFinger<Vector3d> open = openHand();
   for (const oracles::StalledPart part : oracles::kStalledParts) {
     const auto holds = oracles::holdThroughStalls(
         shippedUrdf(), open, 1.6, 800.0, part,

@@ -12,7 +12,7 @@ struct LargeScaleState {
   std::vector<Eigen::Vector3d> velocities;  ///< m/s, world frame
   std::vector<char> attached;               ///< one per particle, nonzero where it is held
   double simulated_time = 0.0;              ///< s
-  /// s, of the loop's clock, 0 to some hours, until the next step begins; 0: at once, or not known
+  /// s, of the steady clock, 0 to an hour, until the next step begins; 0: at once, or not known
   double until_next = 0.0;
 };
 
