@@ -2,17 +2,18 @@
 // form as text.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <random>
 #include <string>
 
+#include "haptex/base/repeatable_random.h"
 #include "haptex/cloth/dynamics/step.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::studies {
+
+using base::RepeatableRandom;
 
 /// What disturbs the cloth. It is at rest before.
 enum class ExtremeKind {
@@ -50,23 +51,6 @@ inline constexpr std::array<NamedExtremeKind, 11> kExtremeKinds = {{
 }};
 
 const char* nameOf(ExtremeKind kind);
-
-/// Random numbers that are the same with every standard library: the engine is specified by the
-/// standard, distributions are not.
-class RepeatableRandom {
- public:
-  explicit RepeatableRandom(std::uint64_t seed) : engine_(seed) {}
-
-  double uniform(double low, double high);  ///< in [low, high)
-  /// Uniform in the logarithm, both > 0.
-  double logarithmic(double low, double high);
-  int below(int count);  ///< 0 to count - 1, count > 0
-  bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
-  Eigen::Vector3d direction();  ///< unit, uniform on the sphere
-
- private:
-  std::mt19937_64 engine_;
-};
 
 /// Everything that defines a case. A sheet of square cells, in the plane x = 0, that hangs by its
 /// top edge under gravity, or is held taut at all sides without. What is drawn particle by
