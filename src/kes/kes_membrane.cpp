@@ -3,6 +3,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "haptex/base/require.h"
 #include "haptex/kes/virtual_kes.h"
 #include "haptex/kes/virtual_test.h"
 #include "haptex/material/strain_measures.h"
@@ -125,6 +126,14 @@ void addTensile(const Fabric& fabric, Direction direction, KesResult& result) {
   result.parameters.push_back({"EMT" + of, "%", exact.emt, measured.emt});
 }
 
+/// The next elongation to try of threads that give way to the tension of the shear test.
+double longerThan(double elongation) {
+  if (elongation > 20.0) {
+    throw std::runtime_error("the threads do not bear 10 gf/cm at any strain up to 2000 %");
+  }
+  return 2.0 * elongation;
+}
+
 /// The sample under shear, its jaws pulled apart by the tester's tension.
 class TensionedShear {
  public:
@@ -140,7 +149,7 @@ class TensionedShear {
     };
     // At rest they do not pull. From one angle to the next the elongation hardly changes.
     Sample above{elongation_ > 0.0 ? 1.01 * elongation_ : 1e-3, 0.0};
-    while ((above.value = lacking(above.x)) < 0.0) above.x *= 2.0;
+    while ((above.value = lacking(above.x)) < 0.0) above.x = longerThan(above.x);
     elongation_ = rootOf(lacking, {0.0, -kKesShearTension}, above, 1e-8 * kKesShearTension);
   }
 
@@ -156,20 +165,6 @@ class TensionedShear {
   ShearRig rig_;
   double tangent_ = 0.0, height_ = 1.0, elongation_ = 0.0;
 };
-
-/// The shear strain at an angle (degrees) by the curve of the pulled threads: with the shear a and
-/// the height b, b s((a^2 + b^2 - 1) / 2) is the tension and a / b the tangent of the angle.
-double exactShearStrain(const MembraneCurves& pulled, double angle) {
-  const double tangent = std::tan(angle * kDegree);
-  const auto lacking = [&](double height) {
-    const double strain = 0.5 * (height * height * (1.0 + tangent * tangent) - 1.0);
-    return height * pulled.elastic.evaluate(strain).stress - kKesShearTension;
-  };
-  const double slack = std::cos(angle * kDegree);
-  Sample above{slack + 1e-3, 0.0};
-  while ((above.value = lacking(above.x)) < 0.0) above.x = slack + 2.0 * (above.x - slack);
-  return tangent * rootOf(lacking, {slack, -kKesShearTension}, above, 1e-11 * kKesShearTension);
-}
 
 struct ShearCycle {
   std::vector<double> loading, unloading;  // N/m, by angles
@@ -226,6 +221,23 @@ void addShear(const Fabric& fabric, Direction direction, KesResult& result) {
 }
 
 }  // namespace
+
+double exactShearStrain(const MembraneCurves& pulled, double angle) {
+  constexpr double kMostAngle = 60.0;  // degrees
+  base::require(std::abs(angle) <= kMostAngle, "exactShearStrain", "angle", angle,
+                "within 60 degrees either way");
+  const double slack = std::cos(angle * kDegree);
+  // By how much the threads are longer than slack: at the height slack (1 + elongation).
+  const auto lacking = [&](double elongation) {
+    const double stress = pulled.elastic.evaluate(material::greenStrain(elongation)).stress;
+    return slack * (1.0 + elongation) * stress - kKesShearTension;
+  };
+  Sample above{1e-3, 0.0};
+  while ((above.value = lacking(above.x)) < 0.0) above.x = longerThan(above.x);
+  const double elongation =
+      rootOf(lacking, {0.0, -kKesShearTension}, above, 1e-11 * kKesShearTension);
+  return std::sin(angle * kDegree) * (1.0 + elongation);
+}
 
 KesResult kesTensile(const Fabric& fabric) {
   KesResult result;

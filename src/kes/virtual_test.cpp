@@ -1,7 +1,9 @@
 #include "haptex/kes/virtual_test.h"
 
+#include <cmath>
 #include <random>
 
+#include "haptex/base/require.h"
 #include "haptex/base/workload.h"
 #include "haptex/material/strain_measures.h"
 
@@ -138,13 +140,17 @@ std::vector<Reading> shearTest(const material::Fabric& fabric, const std::vector
 }
 
 double exactTensileForce(const material::Fabric& fabric, Direction direction, double strain) {
+  base::require(std::isfinite(strain) && strain > -1.0, "exactTensileForce", "strain", strain,
+                "finite and > -1");
   const material::MembraneCurves& curves =
       direction == Direction::kWeft ? fabric.weft : fabric.warp;
-  const double green = material::greenStrain(strain);
-  return kSampleWidth * material::forcePerWidth(curves.elastic.evaluate(green).stress, green);
+  // With the stretch itself: near collapse it is lost in the rounding of Green's strain.
+  return kSampleWidth * (1.0 + strain) *
+         curves.elastic.evaluate(material::greenStrain(strain)).stress;
 }
 
 double exactShearForce(const material::Fabric& fabric, double shear) {
+  base::require(std::isfinite(shear), "exactShearForce", "shear", shear, "finite");
   return kSampleWidth * (fabric.shear.elastic.evaluate(shear).stress +
                          shear * fabric.warp.elastic.evaluate(0.5 * shear * shear).stress);
 }

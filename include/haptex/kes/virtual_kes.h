@@ -50,6 +50,14 @@ constexpr double kKesCompressionArea = 2e-4;                     ///< m^2
 constexpr double kKesFrictionLoad = 50 * 9.80665e-3;             ///< N
 constexpr double kKesFrictionSide = 5e-3;                        ///< m, of the square contactor
 
+/// The shear strain U.V of a sample at a shear angle when the tester's tension pulls its threads,
+/// by their curve: with the shear a and the height b, b s((a^2 + b^2 - 1) / 2) is the tension and
+/// a / b the tangent of the angle.
+/// @param pulled whose elastic curve rises @param angle degrees, within 60 either way
+/// @throws std::invalid_argument naming another angle; std::runtime_error if the threads give way
+///   to the tension by more than 2000 %
+double exactShearStrain(const material::MembraneCurves& pulled, double angle);
+
 /// The five tests. Hysteresis is that of the simulated cycle. Bending has the fabric's; the other
 /// curves have none of their own, so what there is comes from viscosity at the rate of the tester.
 /// @throws std::invalid_argument if the fabric lacks what the test is about, naming the key;

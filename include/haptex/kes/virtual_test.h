@@ -92,7 +92,9 @@ std::vector<Reading> tensileTest(const material::Fabric& fabric, Direction direc
 std::vector<Reading> shearTest(const material::Fabric& fabric, const std::vector<double>& shears);
 
 /// The exact forces of the two tests above (N).
+/// @param strain engineering, finite and > -1 @throws std::invalid_argument naming another one
 double exactTensileForce(const material::Fabric& fabric, Direction direction, double strain);
+/// @param shear tangent of the angle, finite @throws std::invalid_argument naming another one
 double exactShearForce(const material::Fabric& fabric, double shear);
 
 }  // namespace haptex::kes

@@ -3,6 +3,7 @@
 
 #include "haptex/oracles/checks/contact_oracles.h"
 #include "haptex/oracles/experiments/contact_scenes.h"
+#include "haptex/oracles/experiments/flat_contact.h"
 #include "haptex/oracles/experiments/pinched_sheet.h"
 
 namespace haptex::oracles {
@@ -54,44 +55,6 @@ void validateSlip(const material::Fabric& fabric, const Sink& sink) {
   }
 }
 
-/// A fine flat sheet that does not move.
-struct FlatSheet {
-  std::vector<Vector3d> positions, velocities;
-  std::vector<double> areas;
-
-  FlatSheet(double half_side, int cells) {
-    const double side = 2.0 * half_side / cells;
-    for (int i = 0; i <= cells; ++i) {
-      for (int j = 0; j <= cells; ++j) {
-        positions.emplace_back(0.0, i * side - half_side, j * side - half_side);
-        areas.push_back(side * side);
-      }
-    }
-    velocities.assign(positions.size(), Vector3d::Zero());
-  }
-  contact::Particles particles() const {
-    return {positions, velocities, areas, static_cast<int>(positions.size())};
-  }
-};
-
-/// Before all slips, each place pulls with its spring or with its share of friction:
-///   force(s) = integral of min(k s, coefficient pressure) over the area of contact,
-/// for displacements s that are small beside it.
-double exactDrag(const contact::ContactLaw& law, double depth, double displacement) {
-  const double centre = kIndexRadius + law.halfThickness() - depth;
-  const double radius =
-      std::sqrt(std::pow(kIndexRadius + law.halfThickness(), 2) - centre * centre);
-  constexpr int kRings = 20000;
-  double sum = 0.0;
-  for (int i = 0; i < kRings; ++i) {
-    const double rho = radius * (i + 0.5) / kRings;
-    const double here = kIndexRadius + law.halfThickness() - std::hypot(rho, centre);
-    const double stick = law.tangentialStiffness() * displacement;
-    sum += 2.0 * M_PI * rho * std::min(stick, law.friction() * law.pressure(here).stress);
-  }
-  return sum * radius / kRings;
-}
-
 /// A fingertip on a sheet that does not yield, drawn sideways: sticks, slips from the rim inwards,
 /// slips.
 void validateStick(const material::Fabric& fabric, const Sink& sink) {
@@ -103,7 +66,7 @@ void validateStick(const material::Fabric& fabric, const Sink& sink) {
   fingertip.radius = kIndexRadius;
   fingertip.position.x() = kIndexRadius + law.halfThickness() - kDepth;
   contact.commit(sheet.particles(), fingertip);
-  const double full = exactDrag(law, kDepth, 1.0);
+  const double full = exactDrag(law, kIndexRadius, kDepth, 1.0);
   // The displacement at which even the middle slips.
   const double slip = law.friction() * law.pressure(kDepth).stress / law.tangentialStiffness();
   for (int i = 1; i <= 6; ++i) {
@@ -113,9 +76,9 @@ void validateStick(const material::Fabric& fabric, const Sink& sink) {
     for (const auto& touched : contact.commit(sheet.particles(), fingertip)) {
       force += touched.friction.y();
     }
-    sink(base::relativeTo(full,
-                          "contact/friction/stick/" + std::to_string(20 * i) + "percent_of_slip",
-                          exactDrag(law, kDepth, displacement), force, kFrictionTolerance));
+    sink(base::relativeTo(
+        full, "contact/friction/stick/" + std::to_string(20 * i) + "percent_of_slip",
+        exactDrag(law, kIndexRadius, kDepth, displacement), force, kFrictionTolerance));
   }
 }
 

@@ -2,83 +2,19 @@
 #include <cmath>
 
 #include "haptex/base/workload.h"
-#include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/kes/static_sample.h"
 #include "haptex/kes/virtual_test.h"
-#include "haptex/material/contraction.h"
-#include "haptex/material/strain_measures.h"
 #include "haptex/oracles/checks/cloth_oracles.h"
+#include "haptex/oracles/experiments/free_strip.h"
 
 namespace haptex::oracles {
 namespace {
 
-using cloth::ClothState;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using material::Fabric;
 
 constexpr double kStripTolerance = 1e-6;
-
-/// A strip pulled along one direction with free sides.
-struct Uniaxial {
-  double strain;             ///< engineering, along
-  double transverse_strain;  ///< engineering
-  double force;              ///< per rest width, N/m
-};
-
-/// Solves fv(ev) + c eu = 0 for the transverse strain by bisection; fv rises.
-Uniaxial exactUniaxial(const Fabric& fabric, kes::Direction direction, double strain) {
-  const bool weft = direction == kes::Direction::kWeft;
-  const auto& along = (weft ? fabric.weft : fabric.warp).elastic;
-  const auto& across = (weft ? fabric.warp : fabric.weft).elastic;
-  const double coupling = material::contractionModulus(fabric);
-  const double green = material::greenStrain(strain);
-  double below = -0.5, above = 0.5;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = 0.5 * (below + above);
-    (across.evaluate(middle).stress + coupling * green < 0.0 ? below : above) = middle;
-  }
-  const double stress = along.evaluate(green).stress + coupling * above;
-  return {strain, material::engineeringStrain(above), material::forcePerWidth(stress, green)};
-}
-
-/// Loads both ends with the exact force and lets everything else be free: the strains that follow.
-Uniaxial simulateUniaxial(const Fabric& fabric, kes::Direction direction, double force) {
-  constexpr double kLength = 0.1, kWidth = 0.02;
-  constexpr int kAlong = 20, kAcross = 4;
-  const bool weft = direction == kes::Direction::kWeft;
-  cloth::ModelledEffects effects;
-  effects.contraction = true;
-  cloth::Cloth cloth(weft ? kes::irregularRectangle(kLength, kWidth, kAlong, kAcross, 2)
-                          : kes::irregularRectangle(kWidth, kLength, kAcross, kAlong, 2),
-                     fabric, effects);
-  const int axis = weft ? 1 : 2;
-  const std::vector<int> begin =
-      sideParticles(cloth.mesh(), weft ? mesh::Side::kLeft : mesh::Side::kBottom);
-  const std::vector<int> end =
-      sideParticles(cloth.mesh(), weft ? mesh::Side::kRight : mesh::Side::kTop);
-  for (int i = 0; i <= kAcross; ++i) {
-    const double share = (i == 0 || i == kAcross ? 0.5 : 1.0) / kAcross;
-    const Vector3d load = force * kWidth * share * Vector3d::Unit(axis);
-    cloth.setExternalForce(begin[i], -load);
-    cloth.setExternalForce(end[i], load);
-  }
-  cloth::StepSettings settings;
-  settings.solver = linear::LinearSolverMethod::kCholesky;
-  settings.tolerance = 1e-9;
-  settings.newton_iterations = 100;
-  settings.newton_tolerance = 1e-13;
-  cloth::Integrator integrator(cloth, settings);
-  ClothState state = cloth.initialState();
-  for (int i = 0; i < 20; ++i) {
-    for (Vector3d& velocity : state.velocities) velocity.setZero();
-    integrator.step(cloth, state, 1.0);
-  }
-  const auto length = [&](int from, int to, double at_rest) {
-    return (state.positions[to] - state.positions[from]).norm() / at_rest - 1.0;
-  };
-  return {length(begin[1], end[1], kLength), length(begin[0], begin[kAcross], kWidth), force};
-}
 
 void validateFreeStrip(const Fabric& fabric, kes::Direction direction, double strain,
                        const Sink& sink) {

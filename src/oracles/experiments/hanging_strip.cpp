@@ -1,9 +1,11 @@
 #include "haptex/oracles/experiments/hanging_strip.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "haptex/base/require.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/linear_fabric.h"
@@ -15,13 +17,25 @@ using cloth::Integrator;
 using material::StrainStressCurve;
 
 double exactElongation(const HangingStrip& strip) {
-  const double load = strip.areal_density * strip.gravity / strip.modulus;
-  const double right = 2.0 * load * strip.length;
-  double q = right / 2.0;  // Newton on 2 q + 3 q^2 + q^3 = right, convex from above
+  constexpr double kMostLoad = 1e12;
+  const auto requirePositive = [](const char* name, double value, bool zero_too) {
+    base::require(std::isfinite(value) && (value > 0.0 || (zero_too && value == 0.0)),
+                  "exactElongation", name, value, zero_too ? "finite and >= 0" : "finite and > 0");
+  };
+  requirePositive("length", strip.length, false);
+  requirePositive("modulus", strip.modulus, false);
+  requirePositive("areal_density", strip.areal_density, false);
+  requirePositive("gravity", strip.gravity, true);
+  const double load = strip.areal_density * strip.gravity / strip.modulus * strip.length;
+  base::require(load <= kMostLoad, "exactElongation", "weight over modulus", load, "<= 1e12");
+  const double right = 2.0 * load;
+  // Newton on 2 q + 3 q^2 + q^3 = right, convex from above.
+  double q = std::min(0.5 * right, std::cbrt(right));
   for (int i = 0; i < 50; ++i) {
     q -= (q * (2.0 + q * (3.0 + q)) - right) / (2.0 + q * (6.0 + 3.0 * q));
   }
-  return q * q * (1.0 + q * (2.0 + 0.75 * q)) / (2.0 * load * strip.length);
+  // q^2 (1 + 2 q + 3/4 q^2) / right, which is 0 / 0 without a load.
+  return q * (1.0 + q * (2.0 + 0.75 * q)) / (2.0 + q * (3.0 + q));
 }
 
 double simulatedElongation(const HangingStrip& strip, int cells, double time_step) {
@@ -59,10 +73,14 @@ double simulatedElongation(const HangingStrip& strip, int cells, double time_ste
 }
 
 double stretchUnder(double load, const StrainStressCurve& curve) {
-  double low = 1.0, high = 2.0;
+  const auto loadAt = [&](double l) { return l * curve.evaluate(0.5 * (l * l - 1.0)).stress; };
+  const double most = loadAt(kLargestStretch);
+  base::require(load >= 0.0 && load <= most, "stretchUnder", "load", load,
+                ">= 0 and <= " + base::shortNumber(most) + " N/m");
+  double low = 1.0, high = kLargestStretch;
   for (int halving = 0; halving < 60; ++halving) {
     const double l = 0.5 * (low + high);
-    (l * curve.evaluate(0.5 * (l * l - 1.0)).stress < load ? low : high) = l;
+    (loadAt(l) < load ? low : high) = l;
   }
   return low;
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "haptex/base/require.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/experiments/known_surfaces.h"
 #include "haptex/tactile/drive_waveform.h"
@@ -16,6 +17,17 @@ namespace {
 
 /// 1 for the smallest.
 std::vector<double> ranks(const std::vector<double>& values) {
+  for (const double value : values) {
+    if (std::isnan(value)) {
+      throw std::invalid_argument("rank correlation of a value that is nan: allowed are numbers");
+    }
+  }
+  if (std::count(values.begin(), values.end(), values.front()) ==
+      static_cast<std::ptrdiff_t>(values.size())) {
+    throw std::invalid_argument("rank correlation of values that are all " +
+                                base::shortNumber(values.front()) +
+                                ": allowed are values that differ");
+  }
   std::vector<double> result;
   for (const double value : values) {
     const auto less =

@@ -2,11 +2,11 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <vector>
 
+#include "haptex/base/require.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/kes/equilibrium.h"
 #include "haptex/material/linear_fabric.h"
@@ -21,8 +21,6 @@ using mesh::ClothMesh;
 
 constexpr double kGravity = 1.0;     // m/s^2
 constexpr double kFirstStep = 0.02;  // s, of a strip that falls
-
-constexpr double kSlack = 5.0 / 3.0;  // length of the hanging strip over its span
 
 // Of strips that lie free.
 constexpr double kFreeLength = 0.1;     // m
@@ -124,25 +122,6 @@ double nearestCircle(const Strip& strip, const ClothState& state) {
   return (-0.5 * found[1] > middle ? 1.0 : -1.0) / radius;
 }
 
-/// The elastica from its tip, where it slopes down by `tip`, to the clamp: slope there, drop,
-/// reach.
-std::array<double, 3> elasticaFromTip(double gamma, double tip) {
-  constexpr int kSteps = 4000;
-  using State = Eigen::Array4d;  // theta, theta', drop, reach from the tip by the arc length r
-  const auto slope = [&](const State& y, double r) {
-    return State(y[1], -gamma * r * std::cos(y[0]), std::sin(y[0]), std::cos(y[0]));
-  };
-  State y(tip, 0.0, 0.0, 0.0);
-  const double h = 1.0 / kSteps;
-  for (int i = 0; i < kSteps; ++i) {
-    const double r = i * h;
-    const State k1 = slope(y, r), k2 = slope(y + 0.5 * h * k1, r + 0.5 * h);
-    const State k3 = slope(y + 0.5 * h * k2, r + 0.5 * h), k4 = slope(y + h * k3, r + h);
-    y += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-  }
-  return {y[0], y[2], y[3]};
-}
-
 /// The Jacobian's part that moves free particles out of the plane x = 0, negated.
 Eigen::MatrixXd sidewaysStiffness(const Cloth& cloth, const ClothState& state) {
   std::vector<int> free, row_of(cloth.particleCount(), -1);
@@ -169,16 +148,6 @@ double root(double low, double high, const std::function<double(double)>& f) {
 }
 
 }  // namespace
-
-double exactDropOverReach(double gamma) {
-  double low = 0.0, high = 0.5 * M_PI;  // of the tip's slope
-  for (int halving = 0; halving < 60; ++halving) {
-    const double tip = 0.5 * (low + high);
-    (elasticaFromTip(gamma, tip)[0] < 0.0 ? low : high) = tip;
-  }
-  const auto [slope, drop, reach] = elasticaFromTip(gamma, low);
-  return drop / reach;
-}
 
 double simulatedDropOverReach(const Cantilever& cantilever) {
   constexpr double kLength = 0.1, kModulus = 300.0;  // m, N/m: stretched by 3e-5
@@ -275,13 +244,15 @@ double simulatedResidualCurvature(StripMesh mesh, kes::Direction along, cloth::B
   return nearestCircle(strip, state);
 }
 
-double exactSagOverSpan() {
+double exactSagOverSpan(double slack) {
+  base::require(slack >= 1.001 && slack <= 1000.0, "exactSagOverSpan", "slack", slack,
+                ">= 1.001 and <= 1000");
   // z = c cosh(x / c) over the span 1, by q = 1 / (2 c): length sinh(q) / q.
-  const double q = root(0.1, 10.0, [](double q) { return std::sinh(q) / q - kSlack; });
+  const double q = root(0.01, 10.0, [&](double q) { return std::sinh(q) / q - slack; });
   return (std::cosh(q) - 1.0) / (2.0 * q);
 }
 
-double simulatedSagOverSpan(StripMesh mesh, int cells) {
+double simulatedSagOverSpan(StripMesh mesh, int cells, double slack) {
   constexpr double kLength = 0.5, kModulus = 1e5;  // m, N/m: stretched by less than 1e-5
   constexpr int kRows = 3;
   const Strip strip = makeStrip(mesh, kes::Direction::kWeft, cells, kRows, kLength / cells);
@@ -289,7 +260,7 @@ double simulatedSagOverSpan(StripMesh mesh, int cells) {
   effects.gravity = {0.0, 0.0, -kGravity};
   Cloth cloth(strip.mesh, material::linearFabric(kModulus), effects);
   // From an arc of the same length and span.
-  const double span = kLength / kSlack;
+  const double span = kLength / slack;
   const double half = root(1e-3, M_PI, [&](double a) { return span / kLength - std::sin(a) / a; });
   const double radius = 0.5 * kLength / half;
   ClothState state = placed(

@@ -1,4 +1,4 @@
-// What an explicit method makes of an oscillation.
+// What the methods of integration make of an oscillation.
 #pragma once
 
 #include "haptex/cloth/dynamics/step.h"
@@ -7,8 +7,16 @@ namespace haptex::oracles {
 
 /// Largest modulus by which a step of an explicit method multiplies an oscillation y' = i omega y,
 /// or x'' = -omega^2 x with two-step Euler.
-/// @param phase omega times the time step
-/// @throws std::invalid_argument if the method is implicit
+/// @param phase omega times the time step, finite and >= 0
+/// @throws std::invalid_argument if the method is implicit, or naming a phase out of this range
 double amplification(cloth::IntegrationMethod method, double phase);
+
+/// By which factor the amplitude of an undamped oscillation grows or shrinks in a step of any
+/// method, the implicit ones solved exactly: the square root of what its energy is multiplied by.
+/// The amplitude of BDF-2 is that after its first steps, when its second root has died away; that
+/// of two-step Euler the mean over a period up to a phase of 2, beyond which it grows.
+/// @param phase omega times the time step, finite and >= 0
+/// @throws std::invalid_argument naming a phase out of this range
+double growthPerStep(cloth::IntegrationMethod method, double phase);
 
 }  // namespace haptex::oracles

@@ -49,7 +49,8 @@ std::vector<RenderedFabric> renderFabrics(const std::string& config_directory);
 std::vector<RenderedFabric> renderWeaves(const std::string& config_directory);
 
 /// Spearman's rank correlation; equal values share their mean rank.
-/// @throws std::invalid_argument unless both have the same number of values, at least 2
+/// @throws std::invalid_argument unless both have the same number of values, at least 2, none of
+///   them NaN and not all of either equal
 double rankCorrelation(const std::vector<double>& a, const std::vector<double>& b);
 
 }  // namespace haptex::oracles

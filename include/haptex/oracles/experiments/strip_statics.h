@@ -19,12 +19,8 @@ struct Cantilever {
   cloth::BendingModel model = cloth::BendingModel::kLinear;
 };
 
-/// Drop of the tip over its horizontal distance from the clamp, of the elastica
-///   theta'' = -gamma (1 - s) cos(theta), theta(0) = theta'(1) = 0,
-/// solved from the tip by shooting.
-/// @param gamma > 0, <= 1000
-double exactDropOverReach(double gamma);
-/// The same of a simulated strip, mean of the tip's particles.
+/// Drop of the tip over its horizontal distance from the clamp, mean of the tip's particles; exact:
+/// exactDropOverReach().
 /// @throws std::runtime_error if the equilibrium is not reached
 double simulatedDropOverReach(const Cantilever& cantilever);
 
@@ -52,10 +48,15 @@ double simulatedRestCurvature(StripMesh mesh, kes::Direction along, cloth::Bendi
 double simulatedResidualCurvature(StripMesh mesh, kes::Direction along, cloth::BendingModel model,
                                   double held);
 
-/// Sag over span of a strip 5/3 as long as its span, which hangs from both ends without bending
-/// rigidity: that of the catenary, and of the simulated strip.
-double exactSagOverSpan();
+constexpr double kSlack = 5.0 / 3.0;  ///< length over span of a hanging strip
+
+/// Sag over span of a strip that hangs from both ends without bending rigidity: that of the
+/// catenary, and of a simulated strip.
+/// @param slack length over span, >= 1.001 and <= 1000
+/// @throws std::invalid_argument naming a slack out of this range
+double exactSagOverSpan(double slack = kSlack);
+/// @param slack as above, at most 5: the strip starts on a circle
 /// @throws std::runtime_error if the equilibrium is not reached
-double simulatedSagOverSpan(StripMesh mesh, int cells);
+double simulatedSagOverSpan(StripMesh mesh, int cells, double slack = kSlack);
 
 }  // namespace haptex::oracles
