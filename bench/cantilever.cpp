@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "haptex/oracles/experiments/elastica.h"
+#include "haptex/oracles/exact/elastica.h"
 #include "haptex/oracles/experiments/strip_statics.h"
 #include "tab_lines.h"
 

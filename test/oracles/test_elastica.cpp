@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "haptex/base/workload.h"
-#include "haptex/oracles/experiments/elastica.h"
+#include "haptex/oracles/exact/elastica.h"
 
 namespace haptex::oracles {
 namespace {

@@ -15,7 +15,7 @@
 #include "haptex/material/linear_fabric.h"
 #include "haptex/oracles/experiments/amplification.h"
 #include "haptex/oracles/experiments/cloth_swing.h"
-#include "haptex/oracles/experiments/flat_contact.h"
+#include "haptex/oracles/exact/flat_contact.h"
 #include "haptex/oracles/experiments/free_strip.h"
 #include "haptex/oracles/experiments/hanging_strip.h"
 #include "haptex/oracles/experiments/pinched_sheet.h"

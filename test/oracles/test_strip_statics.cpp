@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "haptex/oracles/experiments/elastica.h"
+#include "haptex/oracles/exact/elastica.h"
 #include "haptex/oracles/experiments/strip_statics.h"
 
 namespace haptex::oracles {

@@ -6,7 +6,7 @@
 
 #include "haptex/base/workload.h"
 #include "haptex/oracles/checks/cloth_oracles.h"
-#include "haptex/oracles/experiments/elastica.h"
+#include "haptex/oracles/exact/elastica.h"
 #include "haptex/oracles/experiments/strip_statics.h"
 
 namespace haptex::oracles {

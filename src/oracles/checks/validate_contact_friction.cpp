@@ -3,7 +3,7 @@
 
 #include "haptex/oracles/checks/contact_oracles.h"
 #include "haptex/oracles/experiments/contact_scenes.h"
-#include "haptex/oracles/experiments/flat_contact.h"
+#include "haptex/oracles/exact/flat_contact.h"
 #include "haptex/oracles/experiments/pinched_sheet.h"
 
 namespace haptex::oracles {

@@ -49,7 +49,8 @@ struct Strip {
 };
 
 /// The two columns at its beginning are straight, so that it is known where a clamp ends.
-Strip makeStrip(StripMesh mesh, kes::Direction along, int cells, int rows, double cell) {
+Strip makeStrip(StripMesh mesh, kes::Direction along, int cells, int rows, double cell,
+                unsigned seed = 5) {
   const bool weft = along == kes::Direction::kWeft;
   const int cells_u = weft ? cells : rows, cells_v = weft ? rows : cells;
   const double width = cells_u * cell, height = cells_v * cell;
@@ -58,7 +59,7 @@ Strip makeStrip(StripMesh mesh, kes::Direction along, int cells, int rows, doubl
   const ClothMesh regular = mesh::makeRectangle(width, height, cells_u, cells_v, triangulation);
   Strip strip{regular, along, cells, rows};
   if (mesh != StripMesh::kIrregular) return strip;
-  strip.mesh = kes::irregularRectangle(width, height, cells_u, cells_v, 5);
+  strip.mesh = kes::irregularRectangle(width, height, cells_u, cells_v, seed);
   for (std::size_t i = 0; i < regular.rest_coordinates.size(); ++i) {
     if (strip.column(i) == 1) strip.mesh.rest_coordinates[i] = regular.rest_coordinates[i];
   }
@@ -154,10 +155,12 @@ double simulatedDropOverReach(const Cantilever& cantilever) {
   constexpr int kRows = 6;
   // Two columns are held: the clamp is half way between them (docs/mechanics.md).
   const double cell = kLength / (cantilever.cells - 0.5);
-  const Strip strip = makeStrip(cantilever.mesh, cantilever.along, cantilever.cells, kRows, cell);
+  Strip strip = makeStrip(cantilever.mesh, cantilever.along, cantilever.cells, kRows, cell,
+                          cantilever.seed);
+  strip.mesh.panels = {{0, cantilever.grain}};
   material::Fabric fabric = material::linearFabric(kModulus);
   const double rigidity = fabric.areal_density * kGravity * std::pow(kLength, 3) / cantilever.gamma;
-  fabric.bending = {7.0 * rigidity, 7.0 * rigidity};
+  fabric.bending = {cantilever.across * rigidity, cantilever.across * rigidity};
   (cantilever.along == kes::Direction::kWeft ? fabric.bending->weft : fabric.bending->warp) =
       rigidity;
   cloth::ModelledEffects effects;

@@ -10,13 +10,18 @@ namespace haptex::oracles {
 enum class StripMesh { kOneWay, kAlternating, kIrregular };
 
 /// A strip that is clamped level at one end. Gamma = w g L^3 / B with the weight w g per area, the
-/// length L and the bending rigidity B along it; that across it is seven times as much.
+/// length L and the bending rigidity B along it.
 struct Cantilever {
   double gamma;  ///< no unit, > 0
   StripMesh mesh = StripMesh::kAlternating;
   kes::Direction along = kes::Direction::kWeft;
   int cells = 60;  ///< along the strip, >= 4
   cloth::BendingModel model = cloth::BendingModel::kLinear;
+  double across = 7.0;  ///< bending rigidity across the strip over that along it
+  /// rad, of the threads in the strip. Any, where the rigidities are equal: then a sheet bends in
+  /// all directions alike. Otherwise oblique threads twist what they bend.
+  double grain = 0.0;
+  unsigned seed = 5;  ///< of the irregular mesh
 };
 
 /// Drop of the tip over its horizontal distance from the clamp, mean of the tip's particles; exact:

@@ -1,4 +1,4 @@
-#include "haptex/oracles/experiments/flat_contact.h"
+#include "haptex/oracles/exact/flat_contact.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "haptex/oracles/experiments/elastica.h"
+#include "haptex/oracles/exact/elastica.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
