@@ -1,36 +1,115 @@
-// Prints the oracles of one room or of all, one quantity per line.
+// Prints the oracles of one room or of all, one quantity per line, then those at random.
+#include <cstdint>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <limits>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
 
+#include "haptex/oracles/checks/random_checks.h"
 #include "haptex/oracles/checks/validation.h"
 
-int main(int argc, char** argv) {
-  using namespace haptex;
-  if (argc < 2 || argc > 3) {
-    std::cerr << "usage: validate CONFIG_DIRECTORY [ROOM]\n";
-    return EXIT_FAILURE;
+namespace {
+
+using namespace haptex;
+
+struct Arguments {
+  std::string config_directory, room;
+  std::uint64_t seed;
+};
+
+std::uint64_t seedOf(const std::string& text) {
+  constexpr std::size_t kDigits = std::numeric_limits<std::uint64_t>::digits10;
+  if (text.empty() || text.size() > kDigits ||
+      text.find_first_not_of("0123456789") != std::string::npos) {
+    throw std::invalid_argument("--seed is '" + text + "'; it must be a whole number of up to " +
+                                std::to_string(kDigits) + " digits");
   }
-  const std::string asked = argc == 3 ? argv[2] : "";
-  bool found = false, failed = false;
-  try {
-    for (const oracles::Validation& validation : oracles::validations()) {
-      if (!asked.empty() && validation.room != asked) continue;
-      found = true;
-      validation.run(argv[1], [&](const base::Quantity& quantity) {
-        print(std::cout, quantity);
-        failed = failed || !quantity.pass();
-      });
+  return std::stoull(text);
+}
+
+/// Nothing if they are not what usage says.
+std::optional<Arguments> parse(int argc, char** argv) {
+  Arguments arguments{"", "", std::random_device{}()};
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--seed") {
+      if (++i == argc) return std::nullopt;
+      arguments.seed = seedOf(argv[i]);
+    } else if (!argument.empty() && argument.front() == '-') {
+      return std::nullopt;
+    } else if (arguments.config_directory.empty()) {
+      arguments.config_directory = argument;
+    } else if (arguments.room.empty()) {
+      arguments.room = argument;
+    } else {
+      return std::nullopt;
     }
+  }
+  if (arguments.config_directory.empty()) return std::nullopt;
+  return arguments;
+}
+
+bool known(const std::string& room) {
+  for (const oracles::Validation& validation : oracles::validations()) {
+    if (room.empty() || validation.room == room) return true;
+  }
+  std::cerr << "validate: no room '" << room << "'; rooms with oracles:";
+  for (const oracles::Validation& validation : oracles::validations())
+    std::cerr << ' ' << validation.room;
+  std::cerr << '\n';
+  return false;
+}
+
+/// Whether all pass. What fails at random is told as the command that repeats it.
+bool validate(const Arguments& arguments) {
+  bool failed = false;
+  std::cout << "seed\t" << arguments.seed << std::endl;
+  const auto forEachRoom = [&](const auto& run) {
+    for (const oracles::Validation& validation : oracles::validations()) {
+      if (arguments.room.empty() || validation.room == arguments.room) run(validation);
+    }
+  };
+  forEachRoom([&](const oracles::Validation& validation) {
+    validation.run(arguments.config_directory, [&](const base::Quantity& quantity) {
+      print(std::cout, quantity);
+      failed = failed || !quantity.pass();
+    });
+  });
+  forEachRoom([&](const oracles::Validation& validation) {
+    const auto tell = [&](const std::string& what) {
+      failed = true;
+      std::cerr << "validate: " << what << "; again: scripts/validate --seed " << arguments.seed
+                << ' ' << validation.room << '\n';
+    };
+    try {
+      oracles::validateAtRandom(validation.room, arguments.seed, arguments.config_directory,
+                                [&](const base::Quantity& quantity) {
+                                  print(std::cout, quantity);
+                                  if (!quantity.pass()) tell(quantity.name + " fails");
+                                });
+    } catch (const std::exception& error) {
+      tell(error.what());
+    }
+  });
+  return !failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const std::optional<Arguments> arguments = parse(argc, argv);
+    if (!arguments) {
+      std::cerr << "usage: validate CONFIG_DIRECTORY [--seed S] [ROOM]\n";
+      return EXIT_FAILURE;
+    }
+    return known(arguments->room) && validate(*arguments) ? EXIT_SUCCESS : EXIT_FAILURE;
   } catch (const std::exception& error) {
     std::cerr << "validate: " << error.what() << '\n';
     return EXIT_FAILURE;
   }
-  if (!found) {
-    std::cerr << "validate: no room '" << asked << "'; rooms with oracles:";
-    for (const oracles::Validation& validation : oracles::validations())
-      std::cerr << ' ' << validation.room;
-    std::cerr << '\n';
-  }
-  return found && !failed ? EXIT_SUCCESS : EXIT_FAILURE;
 }

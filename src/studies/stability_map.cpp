@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/oracles/experiments/amplification.h"
+#include "haptex/oracles/exact/amplification.h"
 #include "haptex/studies/extreme_cloth.h"
 
 namespace haptex::studies {

@@ -8,7 +8,7 @@
 
 #include "haptex/contact/sphere_contact.h"
 #include "haptex/material/compression.h"
-#include "haptex/oracles/experiments/pinched_sheet.h"
+#include "haptex/oracles/exact/pinched_sheet.h"
 
 namespace haptex::oracles {
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "haptex/oracles/checks/contact_oracles.h"
+#include "haptex/oracles/exact/pinched_sheet.h"
 #include "haptex/oracles/experiments/contact_scenes.h"
-#include "haptex/oracles/experiments/pinched_sheet.h"
 
 namespace haptex::oracles {
 namespace {

@@ -19,7 +19,7 @@ constexpr double kStripTolerance = 1e-6;
 void validateFreeStrip(const Fabric& fabric, kes::Direction direction, double strain,
                        const Sink& sink) {
   const Uniaxial exact = exactUniaxial(fabric, direction, strain);
-  const Uniaxial measured = simulateUniaxial(fabric, direction, exact.force);
+  const Uniaxial measured = simulateUniaxial({fabric, direction}, exact.force);
   const std::string name = "cloth/contraction/strip/" + fabric.name +
                            (direction == kes::Direction::kWeft ? "/weft/" : "/warp/") +
                            std::to_string(strain).substr(0, 5);

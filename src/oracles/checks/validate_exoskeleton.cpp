@@ -15,6 +15,7 @@
 #include "haptex/exoskeleton/control/finger_kinematics.h"
 #include "haptex/exoskeleton/emulator/hand_path.h"
 #include "haptex/oracles/checks/validation.h"
+#include "haptex/oracles/exact/finger_geometry.h"
 #include "haptex/oracles/experiments/pinch.h"
 #include "haptex/oracles/experiments/stalled_hold.h"
 #include "haptex/oracles/experiments/static_force.h"
@@ -44,51 +45,6 @@ constexpr double kKnownDeath = 10.0;       // ms, of a death that the other end 
 constexpr double kSilentDeath = 20.0;      // ms, of one that is seen by silence only
 constexpr double kForceLeft = 0.1;         // N, more than without motors
 constexpr double kForceTolerance = 0.005;  // N, the resolution of the HAPTEX exoskeleton
-
-/// What the URDF's comment says of a finger, typed here anew.
-struct Anthropometry {
-  Vector3d first_joint;     // m, in hand_base
-  Vector3d roll_pitch_yaw;  // rad, of the first joint
-  double lengths[3];        // m: two phalanges, and from the last joint to the tip
-  double multiplier;        // of the coupling
-  double offset;            // rad, of the coupling
-};
-
-Anthropometry anthropometry(Finger finger) {
-  if (finger == Finger::kIndex) {
-    return {{0.034, 0.022, -0.014}, Vector3d::Zero(), {0.0398, 0.0224, 0.0121}, 2.0 / 3.0, 0.0};
-  }
-  return {
-      {-0.012, 0.038, -0.032}, {3.1, 1.0, -0.22}, {0.0462, 0.0316, 0.0184}, 1.0, -20.0 * kDegree};
-}
-
-/// The tip of a finger that turns about z and bends about y, relative to its first joint and in
-/// the frame in which that is not turned.
-Vector3d planarTip(const Anthropometry& finger, const JointVector& angles) {
-  double bent = 0.0, along = 0.0, below = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    bent += angles[i + 1];
-    along += finger.lengths[i] * std::cos(bent);
-    below += finger.lengths[i] * std::sin(bent);
-  }
-  return {along * std::cos(angles[0]), along * std::sin(angles[0]), -below};
-}
-
-Vector3d closedFormTip(const Anthropometry& finger, const JointVector& angles) {
-  const Vector3d& turn = finger.roll_pitch_yaw;
-  return finger.first_joint +
-         Eigen::AngleAxisd(turn.z(), Vector3d::UnitZ()) *
-             (Eigen::AngleAxisd(turn.y(), Vector3d::UnitY()) *
-              (Eigen::AngleAxisd(turn.x(), Vector3d::UnitX()) * planarTip(finger, angles)));
-}
-
-std::string read(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw std::invalid_argument(path + ": cannot be read");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 void forEachConfiguration(const FingerKinematics& finger,
                           const std::function<void(const JointVector&)>& visit) {
@@ -290,7 +246,7 @@ void validateDeaths(const std::string& urdf, const base::PerFinger<Vector3d>& op
 }  // namespace
 
 void validateExoskeleton(const std::string& config_directory, const Sink& sink) {
-  const std::string urdf = read(config_directory + "/../urdf/hand_exoskeleton.urdf");
+  const std::string urdf = shippedUrdf(config_directory);
   for (const Finger finger : kFingers) validateKinematics(urdf, finger, sink);
   validatePinch(urdf, sink);
   validateForces(urdf, sink);

@@ -3,8 +3,9 @@
 
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/oracles/checks/cloth_oracles.h"
-#include "haptex/oracles/experiments/amplification.h"
+#include "haptex/oracles/exact/amplification.h"
 #include "haptex/oracles/experiments/cloth_swing.h"
+#include "haptex/oracles/experiments/oscillator.h"
 
 namespace haptex::oracles {
 namespace {
@@ -41,36 +42,6 @@ int orderOf(IntegrationMethod method) {
     default:
       return 2;
   }
-}
-
-/// Of the energy of a 1 Hz oscillator after a period: a limp cloth on a spring at each particle.
-double oscillatorEnergy(const StepSettings& settings) {
-  constexpr double kAmplitude = 0.02;  // m
-  material::Fabric limp;
-  limp.areal_density = 0.1;
-  cloth::ModelledEffects effects;
-  effects.point_loads = true;
-  cloth::Cloth cloth(mesh::makeRectangle(0.1, 0.1, 1, 1, mesh::Triangulation::kOneWay), limp,
-                     effects);
-  cloth::ClothState state = cloth.initialState();
-  std::vector<cloth::PointLoad> springs(cloth.particleCount());
-  double energy_begin = 0.0;
-  for (std::size_t t = 0; t < cloth.mesh().triangles.size(); ++t) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const int particle = cloth.mesh().triangles[t][corner];
-      const double stiffness = cloth.masses()[particle] * std::pow(kPhase / kTimeStep, 2);
-      springs[particle] = {static_cast<int>(t), Vector3d::Unit(corner), state.positions[particle],
-                           Vector3d::Zero(), stiffness * Eigen::Matrix3d::Identity()};
-    }
-  }
-  cloth.setPointLoads(springs);
-  for (std::size_t i = 0; i < springs.size(); ++i) {
-    state.positions[i].x() += kAmplitude;
-    energy_begin += 0.5 * springs[i].stiffness(0, 0) * kAmplitude * kAmplitude;
-  }
-  cloth::Integrator integrator(cloth, settings);
-  for (int i = 0; i < kStepsPerPeriod; ++i) integrator.step(cloth, state, kTimeStep);
-  return (cloth.potentialEnergy(state) + cloth.kineticEnergy(state)) / energy_begin;
 }
 
 double distance(const cloth::ClothState& a, const cloth::ClothState& b) {
@@ -122,8 +93,10 @@ void validateIntegrators(const material::Fabric& linear, const material::Fabric&
   for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
     const std::string name = std::string("cloth/integrator/") + named.name;
     const double exact = std::pow(growthPerStep(named.method, kPhase), 2 * kStepsPerPeriod);
-    sink(base::relativeTo(1.0, name + "/oscillator_energy", exact,
-                          oscillatorEnergy(settingsOf(named.method, 1)), kEnergyTolerance));
+    sink(base::relativeTo(
+        1.0, name + "/oscillator_energy", exact,
+        simulatedOscillatorEnergy(settingsOf(named.method, 1), kPhase, kTimeStep, kStepsPerPeriod),
+        kEnergyTolerance));
     if (!isImplicit(named.method) || orderOf(named.method) < 2) continue;
     const auto sinkLoss = [&](const std::string& of, const ClothSwing& swing, int solves) {
       const double loss = lossPerPeriod(swing, settingsOf(named.method, solves));

@@ -1,5 +1,6 @@
 #include "haptex/oracles/experiments/free_strip.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "haptex/base/require.h"
@@ -37,22 +38,53 @@ Uniaxial exactUniaxial(const Fabric& fabric, kes::Direction direction, double st
   return {strain, material::engineeringStrain(above), (1.0 + strain) * stress};
 }
 
-Uniaxial simulateUniaxial(const Fabric& fabric, kes::Direction direction, double force) {
+Uniaxial exactObliqueUniaxial(const Fabric& fabric, kes::Direction along, double grain,
+                              double stress) {
+  const double weft = fabric.weft.elastic.evaluate(0.0).slope;
+  const double warp = fabric.warp.elastic.evaluate(0.0).slope;
+  const double shear = fabric.shear.elastic.evaluate(0.0).slope;
+  const double coupling = material::contractionModulus(fabric);
+  const double determinant = weft * warp - coupling * coupling;
+  base::require(determinant > 0.0 && shear > 0.0, "exactObliqueUniaxial", "resistance",
+                std::min(determinant, shear), "> 0");
+  // The strip's length along n, its width along (-n.y, n.x), in the axes of the threads.
+  const bool along_weft = along == kes::Direction::kWeft;
+  const Eigen::Vector2d n = along_weft ? Eigen::Vector2d(std::cos(grain), -std::sin(grain))
+                                       : Eigen::Vector2d(std::sin(grain), std::cos(grain));
+  const Eigen::Vector2d across(-n.y(), n.x());
+  const double suu = stress * n.x() * n.x(), svv = stress * n.y() * n.y();
+  const double euu = (warp * suu - coupling * svv) / determinant;
+  const double evv = (weft * svv - coupling * suu) / determinant;
+  const double euv = stress * n.x() * n.y() / shear;  // U.V
+  const auto squaredStretch = [&](const Eigen::Vector2d& way) {
+    const double squared =
+        1.0 + 2.0 * (euu * way.x() * way.x() + evv * way.y() * way.y() + euv * way.x() * way.y());
+    base::require(squared > 0.0, "exactObliqueUniaxial", "stress", stress,
+                  "so small that no stretch vanishes");
+    return squared;
+  };
+  const double stretch = std::sqrt(squaredStretch(n));
+  return {stretch - 1.0, std::sqrt(squaredStretch(across)) - 1.0, stress * stretch};
+}
+
+Uniaxial simulateUniaxial(const FreeStrip& strip, double force) {
   constexpr double kLength = 0.1, kWidth = 0.02;
-  constexpr int kAlong = 20, kAcross = 4;
-  const bool weft = direction == kes::Direction::kWeft;
+  const int cells_along = strip.cells_along, cells_across = strip.cells_across;
+  const bool weft = strip.along == kes::Direction::kWeft;
   cloth::ModelledEffects effects;
-  effects.contraction = true;
-  cloth::Cloth cloth(weft ? kes::irregularRectangle(kLength, kWidth, kAlong, kAcross, 2)
-                          : kes::irregularRectangle(kWidth, kLength, kAcross, kAlong, 2),
-                     fabric, effects);
+  effects.contraction = strip.fabric.contraction.has_value();
+  mesh::ClothMesh mesh =
+      weft ? kes::irregularRectangle(kLength, kWidth, cells_along, cells_across, strip.seed)
+           : kes::irregularRectangle(kWidth, kLength, cells_across, cells_along, strip.seed);
+  mesh.panels = {{0, strip.grain}};
+  cloth::Cloth cloth(mesh, strip.fabric, effects);
   const int axis = weft ? 1 : 2;
   const std::vector<int> begin =
       sideParticles(cloth.mesh(), weft ? mesh::Side::kLeft : mesh::Side::kBottom);
   const std::vector<int> end =
       sideParticles(cloth.mesh(), weft ? mesh::Side::kRight : mesh::Side::kTop);
-  for (int i = 0; i <= kAcross; ++i) {
-    const double share = (i == 0 || i == kAcross ? 0.5 : 1.0) / kAcross;
+  for (int i = 0; i <= cells_across; ++i) {
+    const double share = (i == 0 || i == cells_across ? 0.5 : 1.0) / cells_across;
     const Vector3d load = force * kWidth * share * Vector3d::Unit(axis);
     cloth.setExternalForce(begin[i], -load);
     cloth.setExternalForce(end[i], load);
@@ -71,7 +103,7 @@ Uniaxial simulateUniaxial(const Fabric& fabric, kes::Direction direction, double
   const auto length = [&](int from, int to, double at_rest) {
     return (state.positions[to] - state.positions[from]).norm() / at_rest - 1.0;
   };
-  return {length(begin[1], end[1], kLength), length(begin[0], begin[kAcross], kWidth), force};
+  return {length(begin[1], end[1], kLength), length(begin[0], begin[cells_across], kWidth), force};
 }
 
 }  // namespace haptex::oracles

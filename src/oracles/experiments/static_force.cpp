@@ -25,8 +25,8 @@ struct Pose {
 /// Draws poses of one finger.
 class Poses {
  public:
-  Poses(const std::string& urdf, Finger finger)
-      : reach_(urdf, finger), kinematics_(urdf, finger), generator_(1) {}
+  Poses(const std::string& urdf, Finger finger, unsigned seed)
+      : reach_(urdf, finger), kinematics_(urdf, finger), generator_(seed) {}
 
   /// @param force N, the largest one
   Pose draw(double force) {
@@ -79,8 +79,8 @@ class Poses {
 }  // namespace
 
 std::vector<StaticForce> staticForces(const std::string& urdf, int poses,
-                                      const std::vector<double>& forces) {
-  PerFinger<Poses> draws{{Poses(urdf, Finger::kIndex), Poses(urdf, Finger::kThumb)}};
+                                      const std::vector<double>& forces, unsigned seed) {
+  PerFinger<Poses> draws{{Poses(urdf, Finger::kIndex, seed), Poses(urdf, Finger::kThumb, seed)}};
   ExoskeletonLoop loop(urdf, 1);
   loop.makeReady();
   std::vector<StaticForce> all;

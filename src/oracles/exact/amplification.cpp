@@ -1,4 +1,4 @@
-#include "haptex/oracles/experiments/amplification.h"
+#include "haptex/oracles/exact/amplification.h"
 
 #include <cmath>
 #include <complex>
@@ -14,6 +14,13 @@ namespace {
 
 void requirePhase(const char* where, double phase) {
   base::require(std::isfinite(phase) && phase >= 0.0, where, "phase", phase, "finite and >= 0");
+}
+
+/// Factor of y' = z y / (time step) in a step.
+std::complex<double> stepOfTrBdf2(const std::complex<double>& z) {
+  const double g = 2.0 - std::sqrt(2.0);
+  const std::complex<double> middle = (1.0 + 0.5 * g * z) / (1.0 - 0.5 * g * z);
+  return (middle - (1.0 - g) * (1.0 - g)) / (g * (2.0 - g - (1.0 - g) * z));
 }
 
 }  // namespace
@@ -37,6 +44,33 @@ double amplification(IntegrationMethod method, double phase) {
   }
 }
 
+double oscillatorEnergy(IntegrationMethod method, double phase, int steps) {
+  requirePhase("oscillatorEnergy", phase);
+  base::require(steps >= 0, "oscillatorEnergy", "steps", steps, ">= 0");
+  using Complex = std::complex<double>;
+  if (method == IntegrationMethod::kBdf2) {
+    // Its real and imaginary part are displacement and velocity, scaled to the same energy.
+    const Complex z(0.0, -phase);
+    Complex before = 1.0, now = stepOfTrBdf2(z);
+    if (steps == 0) return 1.0;
+    for (int i = 1; i < steps; ++i) {
+      const Complex next = (4.0 * now - before) / (3.0 - 2.0 * z);
+      before = now;
+      now = next;
+    }
+    return std::norm(now);
+  }
+  if (method == IntegrationMethod::kTwoStepEuler) {  // velocities, then positions from them
+    double position = 1.0, velocity = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      velocity -= phase * position;
+      position += phase * velocity;
+    }
+    return position * position + velocity * velocity;
+  }
+  return std::pow(growthPerStep(method, phase), 2.0 * steps);
+}
+
 double growthPerStep(IntegrationMethod method, double phase) {
   requirePhase("growthPerStep", phase);
   const std::complex<double> z(0.0, -phase);
@@ -47,11 +81,8 @@ double growthPerStep(IntegrationMethod method, double phase) {
       return 1.0;
     case IntegrationMethod::kBdf2:  // the root near 1; the other dies away
       return std::abs((2.0 + std::sqrt(1.0 + 2.0 * z)) / (3.0 - 2.0 * z));
-    case IntegrationMethod::kTrBdf2: {
-      const double g = 2.0 - std::sqrt(2.0);
-      const std::complex<double> middle = (1.0 + 0.5 * g * z) / (1.0 - 0.5 * g * z);
-      return std::abs((middle - (1.0 - g) * (1.0 - g)) / (g * (2.0 - g - (1.0 - g) * z)));
-    }
+    case IntegrationMethod::kTrBdf2:
+      return std::abs(stepOfTrBdf2(z));
     default:
       return amplification(method, phase);
   }

@@ -1,4 +1,4 @@
-#include "haptex/oracles/experiments/pinched_sheet.h"
+#include "haptex/oracles/exact/pinched_sheet.h"
 
 #include <cmath>
 #include <sstream>

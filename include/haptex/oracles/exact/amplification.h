@@ -19,4 +19,11 @@ double amplification(cloth::IntegrationMethod method, double phase);
 /// @throws std::invalid_argument naming a phase out of this range
 double growthPerStep(cloth::IntegrationMethod method, double phase);
 
+/// What a number of steps leaves of the energy of an undamped oscillator that starts at rest,
+/// displaced: by the recurrence of the method itself, its start included. BDF-2 starts with
+/// TR-BDF2.
+/// @param phase as above @param steps >= 0
+/// @throws std::invalid_argument naming what is out of these ranges
+double oscillatorEnergy(cloth::IntegrationMethod method, double phase, int steps);
+
 }  // namespace haptex::oracles

@@ -1,0 +1,64 @@
+#include "haptex/oracles/checks/random_checks.h"
+
+#include <iomanip>
+#include <sstream>
+
+namespace haptex::oracles {
+namespace {
+
+/// FNV-1a, so that every kind has a sequence of its own whatever else is there.
+std::uint64_t hashOf(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const char letter : text)
+    hash = (hash ^ static_cast<unsigned char>(letter)) * 1099511628211u;
+  return hash;
+}
+
+}  // namespace
+
+const std::vector<RandomCheck>& randomChecks() {
+  static const std::vector<RandomCheck> all = {
+      {"material", "curve", randomCurve},
+      {"cloth", "elastica", randomElastica},
+      {"cloth", "plate", randomPlate},
+      {"cloth", "drape", randomDrape},
+      {"cloth", "tensile", randomTensile},
+      {"cloth", "contraction", randomContraction},
+      {"cloth", "hanging_strip", randomHangingStrip},
+      {"cloth", "oscillator", randomOscillator},
+      {"cloth", "swing", randomSwing},
+      {"cloth", "air", randomAir},
+      {"proximity", "queries", randomQueries},
+      {"contact", "press", randomPress},
+      {"contact", "stick", randomStick},
+      {"contact", "incline", randomIncline},
+      {"exoskeleton", "pose", randomPose},
+      {"exoskeleton", "static_force", randomStaticForce},
+      {"tactile", "grating", randomGrating},
+  };
+  return all;
+}
+
+void validateAtRandom(const std::string& room, std::uint64_t seed,
+                      const std::string& config_directory, const Sink& sink,
+                      const std::string& kind) {
+  for (const RandomCheck& check : randomChecks()) {
+    if (check.room != room || (!kind.empty() && check.kind != kind)) continue;
+    base::RepeatableRandom random(seed ^ hashOf(check.room + "/" + check.kind));
+    check.run(config_directory, random, sink);
+  }
+}
+
+CaseName& CaseName::with(const std::string& name, double value) {
+  std::ostringstream text;
+  text << '/' << name << '=' << std::setprecision(4) << value;
+  text_ += text.str();
+  return *this;
+}
+
+CaseName& CaseName::with(const std::string& word) {
+  text_ += '/' + word;
+  return *this;
+}
+
+}  // namespace haptex::oracles

@@ -1,0 +1,56 @@
+// Free strips along the threads of fabrics whose curves stiffen, with transverse contraction.
+#include "haptex/base/workload.h"
+#include "haptex/material/contraction.h"
+#include "haptex/oracles/checks/random_checks.h"
+#include "haptex/oracles/experiments/free_strip.h"
+
+namespace haptex::oracles {
+namespace {
+
+constexpr double kStretchTolerance = 1e-6;  // as for oblique strips
+
+/// A curve that stiffens: its slope grows from the modulus (N/m).
+material::StrainStressCurve drawCurve(Random& random, double modulus) {
+  double strain = 0.0, stress = 0.0;
+  std::vector<material::CurvePoint> points = {{0.0, 0.0}};
+  for (int i = 0; i < 5; ++i) {
+    const double further = random.uniform(0.02, 0.06);
+    strain += further;
+    stress += modulus * further;
+    points.push_back({strain, stress});
+    modulus *= random.uniform(1.0, 1.6);
+  }
+  return material::StrainStressCurve::fit(points, material::NegativeBranch::kLinear);
+}
+
+}  // namespace
+
+void randomContraction(const std::string&, Random& random, const Sink& sink) {
+  for (int i = 0; i < base::unlessSanitized(4, 1); ++i) {
+    FreeStrip strip;
+    const double weft = random.logarithmic(20.0, 2e3);  // N/m
+    strip.fabric.name = "drawn";
+    strip.fabric.areal_density = random.logarithmic(0.03, 1.0);
+    strip.fabric.weft.elastic = drawCurve(random, weft);
+    strip.fabric.warp.elastic = drawCurve(random, weft * random.logarithmic(0.3, 3.0));
+    strip.fabric.shear.elastic = material::StrainStressCurve::linear(0.2 * weft);
+    strip.fabric.contraction = random.uniform(0.05, 0.5) * largestContraction(strip.fabric);
+    strip.along = random.chance(0.5) ? kes::Direction::kWeft : kes::Direction::kWarp;
+    strip.cells_along = 12 + random.below(13);
+    strip.cells_across = 2 * (1 + random.below(3));
+    strip.seed = 1 + random.below(1000000);
+    const double strain = random.uniform(0.005, 0.15);
+    const Uniaxial exact = exactUniaxial(strip.fabric, strip.along, strain);
+    const Uniaxial measured = simulateUniaxial(strip, exact.force);
+    CaseName text("cloth", "contraction");
+    text.with(strip.along == kes::Direction::kWeft ? "weft" : "warp").with("strain", strain);
+    text.with("contraction", *strip.fabric.contraction).with("force", exact.force);
+    sink(base::relativeTo(1.0 + exact.strain, text.text() + "/stretch", 1.0 + exact.strain,
+                          1.0 + measured.strain, kStretchTolerance));
+    sink(base::relativeTo(1.0 + exact.transverse_strain, text.text() + "/transverse_stretch",
+                          1.0 + exact.transverse_strain, 1.0 + measured.transverse_strain,
+                          kStretchTolerance));
+  }
+}
+
+}  // namespace haptex::oracles

@@ -1,0 +1,46 @@
+// Cantilevers against the elastica: along the threads, and oblique to them.
+#include <array>
+
+#include "haptex/base/workload.h"
+#include "haptex/oracles/checks/random_checks.h"
+#include "haptex/oracles/exact/elastica.h"
+#include "haptex/oracles/experiments/strip_statics.h"
+
+namespace haptex::oracles {
+namespace {
+
+constexpr std::array<const char*, 3> kMeshes = {"one_way", "alternating", "irregular"};
+
+void validate(const char* name, Cantilever cantilever, Random& random, const Sink& sink) {
+  cantilever.gamma = random.logarithmic(0.1, 300.0);
+  cantilever.cells = 50 + random.below(31);
+  const int mesh = random.below(3);
+  cantilever.mesh = static_cast<StripMesh>(mesh);
+  cantilever.seed = 1 + random.below(1000000);
+  const bool weft = random.chance(0.5), linear = random.chance(0.5);
+  cantilever.along = weft ? kes::Direction::kWeft : kes::Direction::kWarp;
+  cantilever.model = linear ? cloth::BendingModel::kLinear : cloth::BendingModel::kQuadratic;
+  const double exact = exactDropOverReach(cantilever.gamma);
+  CaseName text("cloth", name);
+  text.with(linear ? "linear" : "quadratic").with(kMeshes[mesh]).with(weft ? "weft" : "warp");
+  text.with("gamma", cantilever.gamma).with("cells", cantilever.cells);
+  text.with("across", cantilever.across).with("grain", cantilever.grain);
+  sink(base::relativeTo(exact, text.text(), exact, simulatedDropOverReach(cantilever), 0.02));
+}
+
+}  // namespace
+
+void randomElastica(const std::string&, Random& random, const Sink& sink) {
+  for (int i = 0; i < base::unlessSanitized(3, 1); ++i) {
+    Cantilever along;
+    along.across = random.logarithmic(0.2, 10.0);
+    validate("elastica", along, random, sink);
+    if (base::kSanitized) break;
+    Cantilever oblique;
+    oblique.across = 1.0;
+    oblique.grain = random.uniform(-0.5 * M_PI, 0.5 * M_PI);
+    validate("elastica/oblique", oblique, random, sink);
+  }
+}
+
+}  // namespace haptex::oracles
