@@ -11,7 +11,8 @@
 namespace haptex::kes {
 
 /// A rectangle whose interior rest coordinates (and initial positions with them) are moved at
-/// random by up to 0.3 of a cell in u and v, so that no two triangles are alike.
+/// random by up to 0.3 of a cell in u and v, so that no two triangles are alike; by less where a
+/// triangle would be turned over.
 mesh::ClothMesh irregularRectangle(double width, double height, int cells_u, int cells_v,
                                    unsigned seed);
 

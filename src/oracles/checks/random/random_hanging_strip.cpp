@@ -23,8 +23,12 @@ void randomHangingStrip(const std::string&, Random& random, const Sink& sink) {
     CaseName text("cloth", "hanging_strip");
     text.with("load", load).with("length", strip.length).with("cells", cells);
     text.with("step", time_step);
+    // Each row of elements has one stretch, that of the load in its middle: with |d^2 l / d load^2|
+    // <= 3 the midpoint rule errs by at most load / 4 of load / 2 (1 - load + ...) per cells^2.
+    // What diagonals make uneven in a row adds 0.04, the tolerance of the fixed cases.
+    const double tolerance = (0.04 + 0.5 * load) / (cells * cells);
     sink(base::relativeTo(exact, text.text(), exact, simulatedElongation(strip, cells, time_step),
-                          1e-4));
+                          tolerance));
   }
 }
 

@@ -20,7 +20,7 @@ void randomIncline(const std::string&, Random& random, const Sink& sink) {
     slides.with(method.name).with("angle", angle).with("friction", friction);
     slides.with("step", time_step);
     sink(base::relativeTo(exact, slides.text(), exact,
-                          slideDown(angle, friction, method.method, time_step).acceleration, 0.01));
+                          slideDown(angle, friction, method.method, time_step).acceleration, 1e-4));
     const double holding = random.uniform(1.01, 3.0) * std::tan(angle);
     const double way = std::abs(slideDown(angle, holding, method.method, time_step).way);
     CaseName sticks("contact", "incline_sticks_m");

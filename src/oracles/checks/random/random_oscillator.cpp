@@ -19,7 +19,7 @@ void randomOscillator(const std::string&, Random& random, const Sink& sink) {
     text.with(named.name).with("phase", phase).with("step", time_step).with("steps", steps);
     // The equations are linear: what is left is 1e-10 of each of their solutions.
     sink(base::relativeTo(exact, text.text(), exact,
-                          simulatedOscillatorEnergy(settings, phase, time_step, steps), 1e-7));
+                          simulatedOscillatorEnergy(settings, phase, time_step, steps), 1e-9));
   }
 }
 
