@@ -1,6 +1,5 @@
 #include "haptex/kes/virtual_test.h"
 
-#include <array>
 #include <cmath>
 #include <random>
 
@@ -37,21 +36,18 @@ cloth::ModelledEffects effectsOf(cloth::Elasticity elasticity) {
   return effects;
 }
 
-/// Takes half of the shift of triangles that have been turned over, or nearly so, until none is:
-/// one in some ten thousand. @param cell m^2
-void keepUpright(const std::vector<Vector2d>& regular, double cell, mesh::ClothMesh& mesh) {
+/// Takes half of the shifts of triangles that they turn over, or nearly so, until none is: one in
+/// some ten thousand. @param cell m^2
+void keepUpright(const mesh::ClothMesh& regular, double cell, std::vector<Vector2d>& shifts) {
   constexpr double kLeast = 0.02;  // of what it was
   for (bool sound = false; !sound;) {
     sound = true;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const std::array<Vector2d, 3> corners = mesh.restCorners(t);
-      const Vector2d ab = corners[1] - corners[0], ac = corners[2] - corners[0];
+    for (const auto& [a, b, c] : regular.triangles) {
+      const auto place = [&](int i) { return Vector2d(regular.rest_coordinates[i] + shifts[i]); };
+      const Vector2d ab = place(b) - place(a), ac = place(c) - place(a);
       if (ab.x() * ac.y() - ab.y() * ac.x() >= kLeast * cell) continue;
       sound = false;
-      for (const int particle : mesh.triangles[t]) {
-        Vector2d& place = mesh.rest_coordinates[particle];
-        place = 0.5 * (place + regular[particle]);
-      }
+      for (const int particle : {a, b, c}) shifts[particle] *= 0.5;
     }
   }
 }
@@ -62,20 +58,21 @@ mesh::ClothMesh irregularRectangle(double width, double height, int cells_u, int
                                    unsigned seed) {
   mesh::ClothMesh mesh =
       mesh::makeRectangle(width, height, cells_u, cells_v, mesh::Triangulation::kAlternating);
-  const std::vector<Vector2d> regular = mesh.rest_coordinates;
   const double cell_u = width / cells_u, cell_v = height / cells_v;
+  std::vector<Vector2d> shifts(mesh.rest_coordinates.size(), Vector2d::Zero());
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> part(-0.3, 0.3);
   for (int j = 1; j < cells_v; ++j) {
     for (int i = 1; i < cells_u; ++i) {
-      const double shift_u = part(random) * cell_u;
-      mesh.rest_coordinates[j * (cells_u + 1) + i] += Vector2d(shift_u, part(random) * cell_v);
+      const double along_v = part(random) * height / cells_v;
+      const double along_u = part(random) * width / cells_u;
+      shifts[j * (cells_u + 1) + i] = {along_u, along_v};
     }
   }
-  keepUpright(regular, cell_u * cell_v, mesh);
-  for (std::size_t i = 0; i < regular.size(); ++i) {
-    const Vector2d shift = mesh.rest_coordinates[i] - regular[i];
-    mesh.initial_positions[i] += Vector3d(0.0, shift.x(), shift.y());
+  keepUpright(mesh, cell_u * cell_v, shifts);
+  for (std::size_t i = 0; i < shifts.size(); ++i) {
+    mesh.rest_coordinates[i] += shifts[i];
+    mesh.initial_positions[i] += Vector3d(0.0, shifts[i].x(), shifts[i].y());
   }
   return mesh;
 }

@@ -76,7 +76,7 @@ void validateFall(Random& random, const Sink& sink) {
   text.with("density", fabric.areal_density).with("gravity", gravity).with("step", time_step);
   base::Quantity worst{"", 0.0, 0.0, -1.0, 0.0};
   for (const Vector3d& velocity : state.velocities) {
-    base::keepWorse(worst, base::relativeTo(exact, text.text(), exact, -velocity.x(), 1e-3));
+    base::keepWorse(worst, base::relativeTo(exact, text.text(), exact, -velocity.x(), 1e-4));
   }
   sink(worst);
 }

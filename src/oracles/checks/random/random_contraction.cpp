@@ -7,7 +7,7 @@
 namespace haptex::oracles {
 namespace {
 
-constexpr double kStretchTolerance = 1e-6;  // as for oblique strips
+constexpr double kStretchTolerance = 1e-9;  // as for oblique strips
 
 /// A curve that stiffens: its slope grows from the modulus (N/m).
 material::StrainStressCurve drawCurve(Random& random, double modulus) {

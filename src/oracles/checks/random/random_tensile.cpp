@@ -7,7 +7,7 @@ namespace haptex::oracles {
 namespace {
 
 // Uniform strains are exact on any mesh: what is left is where the equations count as solved.
-constexpr double kStretchTolerance = 1e-6;
+constexpr double kStretchTolerance = 1e-9;
 
 }  // namespace
 
