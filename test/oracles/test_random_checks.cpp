@@ -57,6 +57,19 @@ TEST(RandomChecks, DrawTheSameAloneAsBesideOthers) {
   }
 }
 
+TEST(RandomChecks, TellTheCommandThatRepeatsWhatFails) {
+  std::ostringstream out, errors;
+  EXPECT_FALSE(printAtRandom("exoskeleton", 77, "/nowhere", out, errors));
+  EXPECT_EQ(out.str(), "");
+  EXPECT_EQ(errors.str().substr(0, errors.str().find('\n')),
+            "validate: exoskeleton/random/pose: /nowhere/../urdf/hand_exoskeleton.urdf: cannot be "
+            "read; again: scripts/validate --seed 77 exoskeleton");
+  std::ostringstream sound, none;
+  EXPECT_TRUE(printAtRandom("tactile", 77, HAPTEX_CONFIG_DIRECTORY, sound, none));
+  EXPECT_EQ(sound.str(), linesOf("tactile", 77));
+  EXPECT_EQ(none.str(), "");
+}
+
 TEST(RandomChecks, AreThereForEveryRoom) {
   std::set<std::string> rooms, kinds;
   for (const RandomCheck& check : randomChecks()) {

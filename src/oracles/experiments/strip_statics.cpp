@@ -155,8 +155,8 @@ double simulatedDropOverReach(const Cantilever& cantilever) {
   constexpr int kRows = 6;
   // Two columns are held: the clamp is half way between them (docs/mechanics.md).
   const double cell = kLength / (cantilever.cells - 0.5);
-  Strip strip = makeStrip(cantilever.mesh, cantilever.along, cantilever.cells, kRows, cell,
-                          cantilever.seed);
+  Strip strip =
+      makeStrip(cantilever.mesh, cantilever.along, cantilever.cells, kRows, cell, cantilever.seed);
   strip.mesh.panels = {{0, cantilever.grain}};
   material::Fabric fabric = material::linearFabric(kModulus);
   const double rigidity = fabric.areal_density * kGravity * std::pow(kLength, 3) / cantilever.gamma;

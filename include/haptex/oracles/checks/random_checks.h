@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ const std::vector<RandomCheck>& randomChecks();
 void validateAtRandom(const std::string& room, std::uint64_t seed,
                       const std::string& config_directory, const Sink& sink,
                       const std::string& kind = "");
+
+/// The same, printed. What fails or throws is told with the command that repeats it,
+/// "scripts/validate --seed S ROOM".
+/// @returns whether all pass
+bool printAtRandom(const std::string& room, std::uint64_t seed, const std::string& config_directory,
+                   std::ostream& out, std::ostream& errors);
 
 /// Parts of a quantity's name: room/random/kind and then "/name=value" with four digits.
 class CaseName {

@@ -1,6 +1,8 @@
 #include "haptex/oracles/checks/random_checks.h"
 
+#include <exception>
 #include <iomanip>
+#include <ostream>
 #include <sstream>
 
 namespace haptex::oracles {
@@ -47,6 +49,31 @@ void validateAtRandom(const std::string& room, std::uint64_t seed,
     base::RepeatableRandom random(seed ^ hashOf(check.room + "/" + check.kind));
     check.run(config_directory, random, sink);
   }
+}
+
+bool printAtRandom(const std::string& room, std::uint64_t seed, const std::string& config_directory,
+                   std::ostream& out, std::ostream& errors) {
+  bool all_pass = true;
+  const auto tell = [&](const std::string& what) {
+    all_pass = false;
+    errors << "validate: " << what << "; again: scripts/validate --seed " << seed << ' ' << room
+           << std::endl;
+  };
+  for (const RandomCheck& check : randomChecks()) {
+    if (check.room != room) continue;
+    try {
+      validateAtRandom(
+          room, seed, config_directory,
+          [&](const base::Quantity& quantity) {
+            print(out, quantity);
+            if (!quantity.pass()) tell(quantity.name + " fails");
+          },
+          check.kind);
+    } catch (const std::exception& error) {
+      tell(room + "/random/" + check.kind + ": " + error.what());
+    }
+  }
+  return all_pass;
 }
 
 CaseName& CaseName::with(const std::string& name, double value) {
