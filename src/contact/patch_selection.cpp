@@ -12,13 +12,19 @@ SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
           static_cast<std::size_t>(2 * settings.most_elements)};
 }
 
-void PatchSelection::begin() { std::fill(wanted_.begin(), wanted_.end(), 0); }
+void PatchSelection::begin() {
+  std::fill(wanted_.begin(), wanted_.end(), 0);
+  for (int& rounds : apart_) rounds = std::min(rounds + 1, kRests);
+}
 
 void PatchSelection::add(int element, double distance, int rank, const HapticSettings& settings) {
   const bool stays = chosen_[element];
   const double reach = settings.margin + (stays ? kHysteresis : 0.0);
   const int most = settings.most_elements + (stays ? settings.most_elements / 4 : 0);
-  if (distance <= reach && (rank < most || (stays && distance <= kTouching))) wanted_[element] = 1;
+  if (distance <= kTouching) apart_[element] = 0;
+  if (distance <= reach && (rank < most || (stays && apart_[element] < kRests))) {
+    wanted_[element] = 1;
+  }
 }
 
 bool PatchSelection::finish() {

@@ -59,6 +59,17 @@ TEST_F(PatchSelectionTest, KeepsAQuarterMoreThanTheNearestAndAllThatTouches) {
   EXPECT_EQ(selection_.elements(), Elements({1, 2}));
 }
 
+TEST_F(PatchSelectionTest, KeepsForSomeRoundsWhatHasTouched) {
+  settings_.most_elements = 4;
+  const double near = PatchSelection::kTouching + 1e-6;
+  round({PatchSelection::kTouching});
+  for (int i = 1; i < PatchSelection::kRests; ++i) EXPECT_FALSE(round({near}, 6)) << i;
+  EXPECT_FALSE(round({PatchSelection::kTouching}, 6)) << "it touches again";
+  for (int i = 1; i < PatchSelection::kRests; ++i) EXPECT_FALSE(round({near}, 6)) << i;
+  EXPECT_TRUE(round({near}, 6));
+  EXPECT_TRUE(selection_.elements().empty());
+}
+
 TEST_F(PatchSelectionTest, UnitesWhatBothFingertipsAreNearTo) {
   selection_.begin();
   selection_.add(7, 0.001, 0, settings_);

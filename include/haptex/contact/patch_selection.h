@@ -24,16 +24,19 @@ SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
 
 /// An element comes in when it is within the margin of a fingertip and one of the most_elements
 /// nearest. It goes out when it is farther from both fingertips than the margin and kHysteresis, or
-/// there are a quarter more elements that are nearer and it does not touch: a fingertip at rest, or
-/// cloth that folds around it, does not make the patch change to and fro. At twice most_elements
-/// that are nearer it goes out in any case.
+/// there are a quarter more elements that are nearer and it has not touched for kRests rounds: a
+/// fingertip at rest, or cloth that folds around it, does not make the patch change to and fro.
+/// What a fingertip pushes off needs so long to fall back. At twice most_elements that are nearer
+/// it goes out in any case.
 class PatchSelection {
  public:
   static constexpr double kHysteresis = 4e-3;  ///< m
   static constexpr double kTouching = 2e-3;    ///< m, less is taken for contact
+  static constexpr int kRests = 32;            ///< 0.4 s at 80 Hz
 
   /// @param elements of the large-scale mesh
-  explicit PatchSelection(std::size_t elements) : chosen_(elements, 0), wanted_(elements, 0) {}
+  explicit PatchSelection(std::size_t elements)
+      : chosen_(elements, 0), wanted_(elements, 0), apart_(elements, kRests) {}
 
   // One round: begin(), add() for everything that a query of searchVolume() found, finish().
   void begin();
@@ -50,6 +53,7 @@ class PatchSelection {
  private:
   std::vector<char> chosen_;
   std::vector<char> wanted_;
+  std::vector<int> apart_;  // rounds since an element touched, kRests at most
   std::vector<int> elements_;
 };
 
