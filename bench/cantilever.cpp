@@ -11,13 +11,10 @@
 
 int main() {
   using namespace haptex;
-  using oracles::StripMesh;
   for (const auto& [model, model_name] :
        {std::pair(cloth::BendingModel::kLinear, "linear"),
         std::pair(cloth::BendingModel::kQuadratic, "quadratic")}) {
-    for (const auto& [mesh, mesh_name] : {std::pair(StripMesh::kOneWay, "one_way"),
-                                          std::pair(StripMesh::kAlternating, "alternating"),
-                                          std::pair(StripMesh::kIrregular, "irregular")}) {
+    for (const auto& [mesh_name, mesh] : oracles::kStripMeshes) {
       for (const auto& [gamma, gamma_name] : {std::pair(0.1, "0.1"), std::pair(1.0, "1"),
                                               std::pair(10.0, "10"), std::pair(100.0, "100")}) {
         const double exact = oracles::exactDropOverReach(gamma);

@@ -18,12 +18,12 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "haptex/exoskeleton/emulator/hand_path.h"
+#include "haptex/oracles/exact/finger_geometry.h"
 #include "haptex/oracles/experiments/exoskeleton_loop.h"
 #include "real_exoskeleton.h"
 #include "tab_lines.h"
@@ -43,12 +43,7 @@ constexpr double kMiddle = 1.0, kAmplitude = 0.2;  // N, of the sweep
 constexpr double kSettled = 0.05;                  // of the step
 const std::string kConfig = HAPTEX_CONFIG_DIRECTORY;
 
-std::string urdf() {
-  std::ifstream file(kConfig + "/../urdf/hand_exoskeleton.urdf");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+std::string urdf() { return oracles::shippedUrdf(kConfig); }
 
 /// A loop that is ready, and in which direction each finger is pushed.
 struct Bench {

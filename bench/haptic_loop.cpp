@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "haptex/contact/haptic_layer.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/oracles/exact/finger_geometry.h"
 #include "haptex/oracles/experiments/touch_loop.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "tab_lines.h"
@@ -108,15 +107,6 @@ void printComputation() {
   printLine(prefix + "/max", 1e3 * times.back(), "ms");
 }
 
-std::string robotDescription() {
-  const std::string path = kConfig + "/../urdf/hand_exoskeleton.urdf";
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error(path + ": cannot be read");
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 struct Variant {
   const char* name;
   double large_scale_step;  // s
@@ -128,7 +118,8 @@ struct Variant {
 // What is told of a person who holds, lifts and lowers the sample.
 class Feel {
  public:
-  explicit Feel(const Variant& variant) : loop_(robotDescription(), {}, settings(variant)) {
+  explicit Feel(const Variant& variant)
+      : loop_(oracles::shippedUrdf(kConfig), {}, settings(variant)) {
     loop_.observe([this](const oracles::TouchLoop&) { watch(); });
   }
 

@@ -83,7 +83,7 @@ class BendingRig {
 };
 
 void addBending(const material::Fabric& fabric, Direction direction, KesResult& result) {
-  const std::string name = direction == Direction::kWeft ? "weft" : "warp";
+  const std::string name = nameOf(direction);
   const double rigidity =
       direction == Direction::kWeft ? fabric.bending->weft : fabric.bending->warp;
   double hysteresis = 0.0;

@@ -22,8 +22,6 @@ const MembraneCurves& curvesOf(const Fabric& fabric, Direction direction) {
   return direction == Direction::kWeft ? fabric.weft : fabric.warp;
 }
 
-const char* nameOf(Direction direction) { return direction == Direction::kWeft ? "weft" : "warp"; }
-
 struct Sample {
   double x, value;
 };

@@ -58,7 +58,6 @@ mesh::ClothMesh irregularRectangle(double width, double height, int cells_u, int
                                    unsigned seed) {
   mesh::ClothMesh mesh =
       mesh::makeRectangle(width, height, cells_u, cells_v, mesh::Triangulation::kAlternating);
-  const double cell_u = width / cells_u, cell_v = height / cells_v;
   std::vector<Vector2d> shifts(mesh.rest_coordinates.size(), Vector2d::Zero());
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> part(-0.3, 0.3);
@@ -69,7 +68,7 @@ mesh::ClothMesh irregularRectangle(double width, double height, int cells_u, int
       shifts[j * (cells_u + 1) + i] = {along_u, along_v};
     }
   }
-  keepUpright(mesh, cell_u * cell_v, shifts);
+  keepUpright(mesh, width / cells_u * (height / cells_v), shifts);
   for (std::size_t i = 0; i < shifts.size(); ++i) {
     mesh.rest_coordinates[i] += shifts[i];
     mesh.initial_positions[i] += Vector3d(0.0, shifts[i].x(), shifts[i].y());

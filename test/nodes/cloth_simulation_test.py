@@ -245,11 +245,17 @@ class ClothSimulation(unittest.TestCase):
         return publisher
 
     def push(self, publisher, contact, seconds):
+        """For so long by the clock of the simulation, which may be slower than that of the wall."""
+        states = []
+        subscriber = rospy.Subscriber('cloth/state', ClothState, states.append)
+        deadline = rospy.Time.now() + rospy.Duration(WAIT)
         rate = rospy.Rate(80)
-        for _ in range(int(80 * seconds)):
+        while not states or states[-1].simulated_time < states[0].simulated_time + seconds:
+            self.assertLess(rospy.Time.now(), deadline)
             contact.header.stamp = rospy.Time.now()
             publisher.publish(contact)
             rate.sleep()
+        subscriber.unregister()
 
     def test_contact_forces_move_the_cloth_until_they_fall_silent(self):
         publisher = self.contact_publisher()

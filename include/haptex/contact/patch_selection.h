@@ -32,7 +32,7 @@ class PatchSelection {
  public:
   static constexpr double kHysteresis = 4e-3;  ///< m
   static constexpr double kTouching = 2e-3;    ///< m, less is taken for contact
-  static constexpr int kRests = 32;            ///< 0.4 s at 80 Hz
+  static constexpr int kRests = 32;            ///< rounds: 0.4 s of states at 80 Hz
 
   /// @param elements of the large-scale mesh
   explicit PatchSelection(std::size_t elements)

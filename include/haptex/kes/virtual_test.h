@@ -23,6 +23,10 @@ struct Reading {
 };
 
 enum class Direction { kWeft, kWarp };
+/// In what the programs print.
+constexpr const char* nameOf(Direction direction) {
+  return direction == Direction::kWeft ? "weft" : "warp";
+}
 
 /// Sample of the virtual tests: 200 mm wide, 100 mm between the jaws, 2500 elements on an irregular
 /// mesh.

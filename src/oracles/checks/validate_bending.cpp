@@ -21,14 +21,6 @@ constexpr double kCircleTolerance = 0.02;
 constexpr std::array<std::pair<cloth::BendingModel, const char*>, 2> kModels = {
     {{cloth::BendingModel::kLinear, "linear"}, {cloth::BendingModel::kQuadratic, "quadratic"}}};
 
-struct NamedMesh {
-  const char* name;
-  StripMesh mesh;
-};
-constexpr std::array<NamedMesh, 3> kMeshes = {{{"one_way", StripMesh::kOneWay},
-                                               {"alternating", StripMesh::kAlternating},
-                                               {"irregular", StripMesh::kIrregular}}};
-
 /// Gamma and drop over reach of the elastica, solved as a boundary value problem; within 0.15 % of
 /// the published master curve of Romero et al. 2021 (doi 10.1145/3450626.3459939).
 constexpr std::array<std::array<double, 2>, 4> kElastica = {
@@ -43,15 +35,14 @@ void validateCantilevers(const Sink& sink) {
     if (base::kSanitized && gamma > kElastica.front()[0]) break;
     sink(base::relativeTo(exact, "cloth/elastica/" + gammaName(gamma), exact,
                           exactDropOverReach(gamma), kElasticaTolerance));
-    for (const NamedMesh& mesh : kMeshes) {
+    for (const NamedStripMesh& mesh : kStripMeshes) {
       for (const auto& [model, model_name] : kModels) {
         for (kes::Direction along : {kes::Direction::kWeft, kes::Direction::kWarp}) {
           Cantilever cantilever{gamma, mesh.mesh, along};
           cantilever.model = model;
-          const bool weft = along == kes::Direction::kWeft;
           sink(base::relativeTo(exact,
                                 std::string("cloth/cantilever/") + model_name + "/" + mesh.name +
-                                    (weft ? "/weft/" : "/warp/") + gammaName(gamma),
+                                    "/" + nameOf(along) + "/" + gammaName(gamma),
                                 exact, simulatedDropOverReach(cantilever), kDropTolerance));
         }
       }
@@ -60,27 +51,26 @@ void validateCantilevers(const Sink& sink) {
 }
 
 /// The circle of 1 / curvature on which a free strip settles, both ways.
-void validateRestCurvature(const NamedMesh& mesh, const Sink& sink) {
+void validateRestCurvature(const NamedStripMesh& mesh, const Sink& sink) {
   for (const auto& [model, model_name] : kModels) {
     for (const auto& [along, curvature] :
          {std::pair(kes::Direction::kWeft, 20.0), std::pair(kes::Direction::kWarp, -40.0)}) {
-      sink(base::relativeTo(curvature,
-                            std::string("cloth/rest_curvature/") + model_name + "/" + mesh.name +
-                                (along == kes::Direction::kWeft ? "/weft" : "/warp"),
-                            curvature, simulatedRestCurvature(mesh.mesh, along, model, curvature),
-                            kCircleTolerance));
+      sink(base::relativeTo(
+          curvature,
+          std::string("cloth/rest_curvature/") + model_name + "/" + mesh.name + "/" + nameOf(along),
+          curvature, simulatedRestCurvature(mesh.mesh, along, model, curvature), kCircleTolerance));
     }
   }
 }
 
 /// What is left of the curvature of a free strip that was bent further than friction holds.
-void validateResidualCurvature(const NamedMesh& mesh, const Sink& sink) {
+void validateResidualCurvature(const NamedStripMesh& mesh, const Sink& sink) {
   for (const auto& [model, model_name] : kModels) {
     for (const auto& [along, held] :
          {std::pair(kes::Direction::kWeft, 20.0), std::pair(kes::Direction::kWarp, 10.0)}) {
       sink(base::relativeTo(held,
                             std::string("cloth/residual_curvature/") + model_name + "/" +
-                                mesh.name + (along == kes::Direction::kWeft ? "/weft" : "/warp"),
+                                mesh.name + "/" + nameOf(along),
                             held, simulatedResidualCurvature(mesh.mesh, along, model, held),
                             kCircleTolerance));
     }
@@ -91,7 +81,7 @@ void validateResidualCurvature(const NamedMesh& mesh, const Sink& sink) {
 
 void validateBending(const Sink& sink) {
   validateCantilevers(sink);
-  for (const NamedMesh& mesh : kMeshes) {
+  for (const NamedStripMesh& mesh : kStripMeshes) {
     if (base::kSanitized && mesh.mesh != StripMesh::kIrregular)
       continue;  // the cantilevers had all
     validateRestCurvature(mesh, sink);

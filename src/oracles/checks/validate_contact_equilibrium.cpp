@@ -101,7 +101,7 @@ std::vector<double> referenceForces(const HapticLoopSettings& sample, Hand hand,
 // @param first, further m, of the extensions @param skipped how many are on the way
 void validateStretch(const material::Fabric& fabric, kes::Direction direction, double first,
                      double further, std::size_t skipped, const Sink& sink) {
-  const std::string name = direction == kes::Direction::kWeft ? "weft" : "warp";
+  const std::string name = nameOf(direction);
   const HapticLoopSettings sample = hangingSample(fabric, direction, 80.0);
   constexpr double kClosing = 8e-3;  // m: a pinch of about 1 N, which holds 0.4 N
   std::vector<double> extensions;

@@ -50,7 +50,7 @@ class CaseName {
   std::string text_;
 };
 
-// The kinds, one file each.
+// The kinds: draw from `random`, hand what came out to `sink`.
 using Random = base::RepeatableRandom;
 void randomElastica(const std::string&, Random& random, const Sink& sink);
 void randomPlate(const std::string&, Random& random, const Sink& sink);

@@ -1,6 +1,8 @@
 // Strips of cloth under their own weight, at rest: exact and simulated.
 #pragma once
 
+#include <array>
+
 #include "haptex/cloth/forces/bending/bending.h"
 #include "haptex/kes/virtual_test.h"
 #include "haptex/mesh/mesh.h"
@@ -8,6 +10,16 @@
 namespace haptex::oracles {
 
 enum class StripMesh { kOneWay, kAlternating, kIrregular };
+
+struct NamedStripMesh {
+  const char* name;  ///< in what the programs print
+  StripMesh mesh;
+};
+/// Every mesh once.
+inline constexpr std::array<NamedStripMesh, 3> kStripMeshes = {
+    {{"one_way", StripMesh::kOneWay},
+     {"alternating", StripMesh::kAlternating},
+     {"irregular", StripMesh::kIrregular}}};
 
 /// A strip that is clamped level at one end. Gamma = w g L^3 / B with the weight w g per area, the
 /// length L and the bending rigidity B along it.

@@ -1,23 +1,20 @@
 // A limp strip that drapes between its ends: the catenary.
-#include <array>
-
 #include "haptex/oracles/checks/random_checks.h"
 #include "haptex/oracles/experiments/strip_statics.h"
 
 namespace haptex::oracles {
 
 void randomDrape(const std::string&, Random& random, const Sink& sink) {
-  constexpr std::array<const char*, 3> kMeshes = {"one_way", "alternating", "irregular"};
   const double slack = random.uniform(1.2, 4.0);
-  const int cells = 2 * (30 + random.below(21)), mesh = random.below(3);
+  const int cells = 2 * (30 + random.below(21));
+  const NamedStripMesh& mesh = kStripMeshes[random.below(3)];
   const double exact = exactSagOverSpan(slack);
   CaseName text("cloth", "drape/catenary");
-  text.with(kMeshes[mesh]).with("slack", slack).with("cells", cells);
+  text.with(mesh.name).with("slack", slack).with("cells", cells);
   // A chain of links sags by their number to the power -2 otherwise; what diagonals make uneven
   // between them is of the same order.
   const double tolerance = 5.0 / (cells * cells);
-  sink(base::relativeTo(exact, text.text(), exact,
-                        simulatedSagOverSpan(static_cast<StripMesh>(mesh), cells, slack),
+  sink(base::relativeTo(exact, text.text(), exact, simulatedSagOverSpan(mesh.mesh, cells, slack),
                         tolerance));
 }
 

@@ -1,6 +1,5 @@
 // Cantilevers against the elastica: along the threads, and oblique to them.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "haptex/base/workload.h"
@@ -11,20 +10,18 @@
 namespace haptex::oracles {
 namespace {
 
-constexpr std::array<const char*, 3> kMeshes = {"one_way", "alternating", "irregular"};
-
 void validate(const char* name, Cantilever cantilever, Random& random, const Sink& sink) {
   cantilever.gamma = random.logarithmic(0.1, 300.0);
   cantilever.cells = 60 + random.below(31);
-  const int mesh = random.below(3);
-  cantilever.mesh = static_cast<StripMesh>(mesh);
+  const NamedStripMesh& mesh = kStripMeshes[random.below(3)];
+  cantilever.mesh = mesh.mesh;
   cantilever.seed = 1 + random.below(1000000);
-  const bool weft = random.chance(0.5), linear = random.chance(0.5);
-  cantilever.along = weft ? kes::Direction::kWeft : kes::Direction::kWarp;
+  cantilever.along = random.chance(0.5) ? kes::Direction::kWeft : kes::Direction::kWarp;
+  const bool linear = random.chance(0.5);
   cantilever.model = linear ? cloth::BendingModel::kLinear : cloth::BendingModel::kQuadratic;
   const double exact = exactDropOverReach(cantilever.gamma);
   CaseName text("cloth", name);
-  text.with(linear ? "linear" : "quadratic").with(kMeshes[mesh]).with(weft ? "weft" : "warp");
+  text.with(linear ? "linear" : "quadratic").with(mesh.name).with(nameOf(cantilever.along));
   text.with("gamma", cantilever.gamma).with("cells", cantilever.cells);
   text.with("across", cantilever.across).with("grain", cantilever.grain);
   // Of second order in the cell over the length 1 / sqrt(gamma) of the bend at the clamp, and at
