@@ -226,14 +226,14 @@ TEST(Faults, TheMotorsAreOffWithinTenMillisecondsAfterTheCommandersDeath) {
 
 TEST(Faults, TheDriverDoesNotWaitForTheAnswersOfADeadCommander) {
   const PerFinger<Vector3d> open = openHand();
-  const auto motorsOn = [&](oracles::DyingPart part) {
+  const auto motors_until = [&](oracles::DyingPart part) {
     return oracles::dieInAHold(shippedUrdf(), open, kCommanded, part).motors_on;
   };
   // Within the tick after the death, to the quarter of a period in which that was looked for, as
   // when the driver itself dies; DriverLoop::kAnswerPatience would come on top.
   const double period = 1e3 * base::seconds(DriverLoop::kPeriod);
-  EXPECT_LT(motorsOn(oracles::DyingPart::kCommander),
-            motorsOn(oracles::DyingPart::kDriver) + 1.25 * period);
+  EXPECT_LT(motors_until(oracles::DyingPart::kCommander),
+            motors_until(oracles::DyingPart::kDriver) + 1.25 * period);
 }
 
 TEST(Faults, TheMotorsAreOffTwentyMillisecondsAfterCommanderOrDriverFellSilent) {
