@@ -59,8 +59,8 @@ class FaultyLoop {
  public:
   explicit FaultyLoop(unsigned seed = 1) : loop(shippedUrdf(), seed) {
     const PerFinger<Vector3d> open = openHand();
-    const Vector3d index = open[Finger::kIndex];
-    const Vector3d thumb = open[Finger::kThumb];
+    const Vector3d& index = open[Finger::kIndex];
+    const Vector3d& thumb = open[Finger::kThumb];
     apart_ = (index - thumb).normalized();
     loop.device().setTarget(Finger::kIndex, index);
     loop.device().setTarget(Finger::kThumb, thumb);
