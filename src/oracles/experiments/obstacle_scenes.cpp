@@ -46,7 +46,7 @@ ClothMesh flatSheet(const Eigen::Vector2d& size, int cells_u, int cells_v, const
   return mesh;
 }
 
-CollidingCloth::CollidingCloth(ClothMesh mesh, material::Fabric fabric, double gravity,
+CollidingCloth::CollidingCloth(ClothMesh mesh, const material::Fabric& fabric, double gravity,
                                const cloth::StepSettings& settings, std::vector<Obstacle> obstacles)
     : cloth(std::move(mesh), fabric, effectsOf(fabric, gravity)),
       state(cloth.initialState()),
@@ -119,7 +119,7 @@ double pullOverCapsule(double friction) {
       place = Vector3d(std::copysign(radius, s), place.y(), quarter - std::abs(s));
     }
   }
-  constexpr double h = 1e-3;  // s
+  const double h = 1e-3;  // s
   cloth::StepSettings settings;
   settings.tolerance = 1e-8;
   CollidingCloth scene(std::move(mesh), material::linearFabric(1000.0, 0.1), 0.0, settings,
