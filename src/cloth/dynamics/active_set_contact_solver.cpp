@@ -27,7 +27,9 @@ namespace {
 constexpr double kPenetration = 1e-9;     // m, not worth another round
 constexpr double kLoadTolerance = 1e-7;   // of the loads of all contacts together
 constexpr double kBeyond = 1e-7;          // of the limit of friction, of all contacts together
-constexpr int kSearchRounds = 10;
+constexpr double kLeastSmoothing = 1e-7;  // m/s
+constexpr double kSmoothing = 0.1;        // of the mean slip
+constexpr int kSearchRounds = 15;
 constexpr int kRatioRounds = 6;
 
 }  // namespace
@@ -37,6 +39,8 @@ ActiveSetContactSolver::ActiveSetContactSolver(const linear::SymmetricBlockMatri
       free_matrix_(pattern),
       free_rhs_(3, pattern.size()),
       residual_(3, pattern.size()),
+      accepted_(3, pattern.size()),
+      product_(3, pattern.size()),
       attached_(pattern.size(), 0),
       confined_(pattern.size(), 0),
       normals_(3, pattern.size()),
@@ -71,6 +75,7 @@ void ActiveSetContactSolver::begin(const Cloth& cloth, const Stage& stage, const
     const Vector3d relative = guess[entry.particle] - entry.target;
     const double gap = entry.normal.dot(relative);
     if (gap < 0.0) close(gap, relative - gap * entry.normal, entry);
+    entry.fresh = false;
   }
 }
 
@@ -90,13 +95,8 @@ ActiveSetContactSolver::Entry ActiveSetContactSolver::entryOf(const Cloth& cloth
   entry.target = stage.share / stage.a * (place - stage.base.positions[contact.particle]);
   entry.friction = contact.friction;
   entry.mass = cloth.masses()[contact.particle];
-  entry.force = entry.ratio = entry.before = Vector3d::Zero();
-  // The plane may have turned.
-  if (entry.state == State::kSlips && entry.friction > 0.0) {
-    const Vector3d along =
-        entry.direction - entry.normal * entry.normal.dot(entry.direction);
-    if (along.norm() > 0.0) entry.direction = along.normalized();
-  }
+  entry.force = entry.ratio = entry.before = entry.change = Vector3d::Zero();
+  entry.slip -= entry.normal * entry.normal.dot(entry.slip);  // the plane may have turned
   return entry;
 }
 
@@ -110,8 +110,36 @@ void ActiveSetContactSolver::beginSystem(const Velocities& velocities,
   rounds_ = 0;
   for (Entry& entry : entries_) {
     entry.before = entry.force;
-    entry.changes = 0;
+    entry.fresh = false;
   }
+  accepted_.setZero();
+  last_ = false;
+  smoothing_ = std::max(kLeastSmoothing, kSmoothing * meanSlip());
+}
+
+double ActiveSetContactSolver::meanSlip() const {
+  double sum = 0.0;
+  int count = 0;
+  for (const Entry& entry : entries_) {
+    if (entry.state != State::kSlips) continue;
+    sum += entry.slip.norm();
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+/// What friction does at a slip: its limit beyond smoothing_, and in proportion up to there.
+Vector3d ActiveSetContactSolver::frictionAt(const Entry& entry, const Vector3d& slip,
+                                            double load) const {
+  return -entry.friction * load / std::max(slip.norm(), smoothing_) * slip;
+}
+
+/// The second derivative of its potential by the slip (N.s/m).
+Matrix3d ActiveSetContactSolver::resistance(const Entry& entry) const {
+  const double speed = entry.slip.norm();
+  Matrix3d tangential = Matrix3d::Identity() - entry.normal * entry.normal.transpose();
+  if (speed > smoothing_) tangential -= entry.slip * entry.slip.transpose() / (speed * speed);
+  return entry.friction * entry.load / std::max(speed, smoothing_) * tangential;
 }
 
 bool ActiveSetContactSolver::prepareRound(linear::SymmetricBlockMatrix& matrix,
@@ -129,7 +157,7 @@ bool ActiveSetContactSolver::prepareRound(linear::SymmetricBlockMatrix& matrix,
       rhs.col(entry.particle) += a_ * entry.force;
       continue;
     }
-    if (phase_ == Phase::kSearch) entry.ratio = entry.friction * entry.direction;
+    if (phase_ == Phase::kSearch) entry.ratio = frictionAt(entry, entry.slip, 1.0);
     if (entry.state == State::kSlips) loads_[k] = entry.load;
     constrain(entry, matrix, rhs, fixed, prescribed);
   }
@@ -155,26 +183,9 @@ void ActiveSetContactSolver::constrain(const Entry& entry, linear::SymmetricBloc
   if (entry.friction == 0.0) return;
   rhs.col(i) += a_ * entry.load * entry.ratio;
   if (phase_ != Phase::kSearch) return;
-  const double resistance = lateralResistance(entry);
-  const Vector3d& d = entry.direction;
-  rhs.col(i) -= a_ * resistance * lateralSlip(entry, velocity);
-  matrix.diagonal(i) +=
-      a_ * resistance * (Matrix3d::Identity() - n * n.transpose() - d * d.transpose());
-}
-
-/// How much the friction of what slips resists a turn of the slip (N.s/m): the second derivative of
-/// mu N |s| across s. Slips that friction changes within the stage are no measure of it.
-double ActiveSetContactSolver::lateralResistance(const Entry& entry) const {
-  const double limit = entry.friction * entry.load;
-  if (!(limit > 0.0)) return 0.0;
-  return limit / std::max(entry.speed, a_ * limit / entry.mass);
-}
-
-/// Across the normal and the slip of the round before (m/s).
-Vector3d ActiveSetContactSolver::lateralSlip(const Entry& entry, const Vector3d& velocity) const {
-  const Vector3d slip = velocity - entry.target;
-  return slip - entry.normal * entry.normal.dot(slip) -
-         entry.direction * entry.direction.dot(slip);
+  const Matrix3d resisted = resistance(entry);
+  rhs.col(i) -= a_ * resisted * (velocity - entry.target - entry.slip);
+  matrix.diagonal(i) += a_ * resisted;
 }
 
 void ActiveSetContactSolver::confine(linear::SymmetricBlockMatrix& matrix,
@@ -234,7 +245,7 @@ void ActiveSetContactSolver::addLoads(linear::BlockVector& change, linear::Block
   friction_.add(results_, change_numbers, loads_, numbers);
 }
 
-bool ActiveSetContactSolver::update(const linear::BlockVector& solution) {
+bool ActiveSetContactSolver::update(linear::BlockVector& solution) {
   if (phase_ == Phase::kForces) {
     finish();
     return false;
@@ -250,51 +261,110 @@ bool ActiveSetContactSolver::update(const linear::BlockVector& solution) {
   return again;
 }
 
-bool ActiveSetContactSolver::search(const linear::BlockVector& solution) {
-  constexpr double kTurnTolerance = 1e-3;  // of the friction of all contacts together
-  bool changed = false;
-  double limit = 0.0, turned = 0.0, beyond = 0.0;
-  int opened = 0, closed = 0, slipped = 0, stuck = 0;
+/// How far from the accepted solution towards the new one the potential of the new loads falls.
+double ActiveSetContactSolver::searchLine(const linear::BlockVector& solution) {
+  constexpr int kBisections = 30;
+  bool comparable = rounds_ > 1;
   for (Entry& entry : entries_) {
-    const Vector3d velocity = guess_.col(entry.particle) + solution.col(entry.particle);
-    const State before = entry.state;
-    const Memory old = entry;
-    const Vector3d exerted = entry.force - entry.normal * entry.normal.dot(entry.force);
-    judge(velocity, entry);
-    if (entry.state != before) {
-      ++entry.changes;
-      opened += entry.state == State::kOpen;
-      closed += before == State::kOpen;
-      slipped += before == State::kSticks && entry.state == State::kSlips;
-      stuck += before == State::kSlips && entry.state == State::kSticks;
+    if (entry.state == State::kOpen) continue;
+    const Vector3d relative =
+        guess_.col(entry.particle) + solution.col(entry.particle) - entry.target;
+    entry.change = relative - entry.normal * entry.normal.dot(relative) - entry.slip;
+    comparable = comparable && !entry.fresh;
+  }
+  if (!comparable) return 1.0;
+  accepted_ = solution - accepted_;
+  free_matrix_.multiply(accepted_, product_);
+  const double curvature = product_.cwiseProduct(accepted_).sum();
+  const double slope = residual_.cwiseProduct(accepted_).sum() - curvature;
+  accepted_ = solution - accepted_;
+  const auto slopeAt = [&](double share) {
+    double sum = slope + share * curvature;
+    for (const Entry& entry : entries_) {
+      if (entry.state != State::kSlips) continue;
+      const double load = std::max(0.0, entry.normal.dot(entry.force));
+      const Vector3d slip = entry.slip + share * entry.change;
+      sum -= a_ * frictionAt(entry, slip, load).dot(entry.change);
     }
+    return sum;
+  };
+  if (slopeAt(1.0) <= 0.0) return 1.0;
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    (slopeAt(middle) > 0.0 ? high : low) = middle;
+  }
+  return std::max(low, 1e-3);
+}
+
+bool ActiveSetContactSolver::search(linear::BlockVector& solution) {
+  constexpr double kTolerance = 1e-3;  // of the friction of all contacts together
+  const double share = searchLine(solution);
+  bool changed = false, smooth = false;
+  double limit = 0.0, off = 0.0, beyond = 0.0;
+  int opened = 0, closed = 0, slipped = 0, inside = 0;
+  accepted_ += share * (solution - accepted_);
+  for (Entry& entry : entries_) {
+    const State before = entry.state;
+    const Vector3d exerted = entry.force - entry.normal * entry.normal.dot(entry.force);
+    entry.fresh = false;
+    if (before == State::kSlips) entry.slip += share * entry.change;
+    judge(guess_.col(entry.particle) + accepted_.col(entry.particle), entry);
+    entry.fresh = before == State::kOpen && entry.state != State::kOpen;
+    opened += entry.state == State::kOpen && before != State::kOpen;
+    closed += entry.fresh;
+    slipped += before == State::kSticks && entry.state == State::kSlips;
     changed = changed || entry.state != before;
     if (entry.state == State::kOpen || entry.friction == 0.0 || before == State::kOpen) continue;
     limit += entry.friction * entry.load;
     beyond += std::max(0.0, exerted.norm() - entry.friction * entry.load);
-    if (entry.state == State::kSlips) {
-      turned += (entry.friction * entry.load * entry.direction - exerted).norm();
-    }
-    (void)old;
+    if (entry.state != State::kSlips) continue;
+    off += (frictionAt(entry, entry.slip, entry.load) - exerted).norm();
+    if (entry.slip.norm() <= smoothing_) ++inside;
   }
+  smooth = inside > 0;
   static const bool debug = std::getenv("HAPTEX_CONTACTS") != nullptr;
   if (debug)
-    std::fprintf(stderr, "  round %d: opened %d closed %d slipped %d stuck %d limit %g turned %g beyond %g\n",
-                 rounds_, opened, closed, slipped, stuck, limit, turned, beyond);
-  const bool again = changed || turned > kTurnTolerance * limit;
-  if (again && rounds_ < kSearchRounds) return true;
-  if (!again && beyond <= kBeyond * limit) return false;
-  takeRatios();
+    std::fprintf(stderr,
+                 "  round %d: share %.3g opened %d closed %d slipped %d inside %d eps %g mean slip %g limit %g off %g "
+                 "beyond %g\n",
+                 rounds_, share, opened, closed, slipped, inside, smoothing_, meanSlip(), limit, off, beyond);
+  const bool again = changed || share < 1.0 || off > kTolerance * limit;
+  if (last_) {
+    if (!changed && beyond <= kBeyond * limit) return false;
+    takeRatios();
+    return true;
+  }
+  if (!again && !smooth && beyond <= kBeyond * limit) return false;
+  if (again && rounds_ < kSearchRounds) {
+    if (rounds_ <= 2) smoothing_ = std::max(smoothing_, kSmoothing * meanSlip());
+    return true;
+  }
+  if (!again && smooth && rounds_ < kSearchRounds &&
+      smoothing_ > std::max(kLeastSmoothing, 1e-4 * meanSlip())) {
+    smoothing_ = std::max(kLeastSmoothing, 0.1 * smoothing_);
+    return true;
+  }
+  if (again) {
+    takeRatios();
+    return true;
+  }
+  // What creeps sticks.
+  last_ = true;
+  for (Entry& entry : entries_) {
+    if (entry.state == State::kSlips && entry.friction > 0.0 && entry.slip.norm() <= smoothing_) {
+      entry.state = State::kSticks;
+    }
+  }
   return true;
 }
 
 /// What the contact does in the next round.
 void ActiveSetContactSolver::judge(const Vector3d& velocity, Entry& entry) const {
-  const Vector3d relative = velocity - entry.target;
-  const double gap = entry.normal.dot(relative);
-  const Vector3d slip = relative - gap * entry.normal;
   if (entry.state == State::kOpen) {
-    if (a_ * gap < -kPenetration) close(gap, slip, entry);
+    const Vector3d relative = velocity - entry.target;
+    const double gap = entry.normal.dot(relative);
+    if (a_ * gap < -kPenetration) close(gap, relative - gap * entry.normal, entry);
     return;
   }
   entry.load = entry.normal.dot(entry.force);
@@ -302,31 +372,20 @@ void ActiveSetContactSolver::judge(const Vector3d& velocity, Entry& entry) const
     static_cast<Memory&>(entry) = Memory{};
     return;
   }
-  if (entry.friction == 0.0) return;
+  if (entry.friction == 0.0 || entry.state == State::kSlips) return;
   const Vector3d tangential = entry.force - entry.load * entry.normal;
-  if (entry.state == State::kSticks) {
-    if (tangential.norm() <= entry.friction * entry.load) return;
-    entry.state = State::kSlips;
-    entry.direction = tangential.normalized();
-    entry.speed = 0.0;
-    return;
-  }
-  entry.speed = slip.norm();
-  if (slip.dot(entry.direction) <= 0.0) {
-    if (entry.speed > 0.0) entry.direction = -slip / entry.speed;
-  } else {
-    entry.state = State::kSticks;
-  }
+  const double size = tangential.norm();
+  if (size <= (1.0 + 1e-9) * entry.friction * entry.load) return;
+  entry.state = State::kSlips;
+  entry.slip = -1.001 * smoothing_ / size * tangential;
 }
 
 /// A contact that is passed: the projection of -(slip, gap) onto the cone sticks inside of it.
 void ActiveSetContactSolver::close(double gap, const Vector3d& slip, Entry& entry) const {
   entry.load = 0.0;
-  entry.speed = slip.norm();
-  const bool sticks = entry.friction > 0.0 && entry.speed <= entry.friction * -gap;
+  const bool sticks = entry.friction > 0.0 && slip.norm() <= entry.friction * -gap;
   entry.state = sticks ? State::kSticks : State::kSlips;
-  entry.direction.setZero();
-  if (entry.speed > 0.0) entry.direction = -slip / entry.speed;
+  entry.slip = slip;
 }
 
 /// From here on all that push slip with the ratios that the last round found.
@@ -339,7 +398,7 @@ void ActiveSetContactSolver::takeRatios() {
     const Vector3d tangential = entry.force - load * entry.normal;
     const double limit = entry.friction * load;
     if (!(load > 0.0)) {  // it has just closed
-      entry.ratio = entry.friction * entry.direction;
+      entry.ratio = frictionAt(entry, entry.slip, 1.0);
       entry.load = 0.0;
     } else {
       entry.ratio = tangential / load;
@@ -361,7 +420,7 @@ bool ActiveSetContactSolver::holdRatios(const linear::BlockVector& solution) {
       const double gap = entry.normal.dot(relative);
       if (a_ * gap >= -kPenetration || rounds_ > kRatioRounds / 2) continue;
       close(gap, relative - gap * entry.normal, entry);
-      entry.ratio = entry.friction * entry.direction;
+      entry.ratio = frictionAt(entry, entry.slip, 1.0);
       entry.state = State::kSlips;
       again = true;
       ++closed;

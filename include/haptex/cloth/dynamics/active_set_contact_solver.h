@@ -63,7 +63,7 @@ class ActiveSetContactSolver {
 
   /// Judges the solution of a round.
   /// @returns whether another round is needed
-  bool update(const linear::BlockVector& solution);
+  bool update(linear::BlockVector& solution);
 
   /// What friction and bodies resist (J), with the normal forces of the last system, beyond the
   /// incremental potential without contacts.
@@ -98,10 +98,9 @@ class ActiveSetContactSolver {
   /// What the next stage starts from, of a contact that is there again.
   struct Memory {
     State state = State::kOpen;
-    double load = 0.0;                                    // N, normal
-    Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit, of the friction of what slips
-    double speed = 0.0;                                   // m/s, of the slip
-    long stage = -1;                                      // in which it was
+    double load = 0.0;                               // N, normal
+    Eigen::Vector3d slip = Eigen::Vector3d::Zero();  // m/s, that friction is linearised at
+    long stage = -1;                                 // in which it was
   };
   struct Entry : Memory {
     int contact;             // of the cloth
@@ -111,34 +110,41 @@ class ActiveSetContactSolver {
     Eigen::Vector3d target;  // m/s, of a particle that goes with the body and closes the gap
     double friction;
     double mass;               // kg
-    int changes = 0;           // of the state, in this system
+    bool fresh = false;        // was open in the round before
     Eigen::Vector3d force;     // N, of the last round
     Eigen::Vector3d ratio;     // friction over normal force of what slips
     Eigen::Vector3d before;    // N, of the system before
+    Eigen::Vector3d change;    // m/s, of the slip, in the last round
   };
 
   Entry entryOf(const Cloth& cloth, const Stage& stage, int contact) const;
+  Eigen::Vector3d relativeTo(const Entry& entry, const Eigen::Vector3d& velocity) const;
   void close(double gap, const Eigen::Vector3d& slip, Entry& entry) const;
   void judge(const Eigen::Vector3d& velocity, Entry& entry) const;
-  double turn(const Eigen::Vector3d& velocity, const Entry& entry) const;
-  bool search(const linear::BlockVector& solution);
+  Eigen::Vector3d frictionAt(const Entry& entry, const Eigen::Vector3d& slip, double load) const;
+  Eigen::Matrix3d resistance(const Entry& entry) const;
+  double meanSlip() const;
+  double searchLine(const linear::BlockVector& solution);
+  bool search(linear::BlockVector& solution);
   bool holdRatios(const linear::BlockVector& solution);
   void takeRatios();
   void clip();
   void finish();
-  double lateralResistance(const Entry& entry) const;
-  Eigen::Vector3d lateralSlip(const Entry& entry, const Eigen::Vector3d& velocity) const;
   void constrain(const Entry& entry, linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs,
                  std::vector<char>& fixed, linear::BlockVector& prescribed);
 
   double a_ = 0.0;   // s, of the stage
   long stages_ = 0;  // so far
   Phase phase_ = Phase::kSearch;
-  int rounds_ = 0;             // of this phase
+  int rounds_ = 0;           // of this phase
+  double smoothing_ = 0.0;   // m/s, of slips up to which friction grows with them
+  bool last_ = false;        // round of the search
   linear::BlockVector guess_;  // m/s
   linear::SymmetricBlockMatrix free_matrix_;
   linear::BlockVector free_rhs_;
   linear::BlockVector residual_;
+  linear::BlockVector accepted_;  // solution of the rounds so far
+  linear::BlockVector product_;
   std::vector<char> attached_;
   std::vector<char> confined_;
   linear::BlockVector normals_;
