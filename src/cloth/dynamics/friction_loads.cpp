@@ -24,6 +24,7 @@ bool FrictionLoads::wantsDirection(double tolerance) const {
 void FrictionLoads::add(const Eigen::VectorXd& results, Eigen::Ref<Eigen::VectorXd> change,
                         Eigen::VectorXd& loads, Eigen::Ref<Eigen::VectorXd> solution) {
   constexpr double kStalled = 0.99;  // of the residual before
+  constexpr int kSlow = 4;           // directions after which alone it may stall
   const int k = directions_++;
   auto step = steps_.col(k);
   auto image = images_.col(k);
@@ -48,7 +49,7 @@ void FrictionLoads::add(const Eigen::VectorXd& results, Eigen::Ref<Eigen::Vector
   loads += share * step;
   solution += share * solutions_.col(k);
   residual_ += share * image;
-  stalled_ = residual_.norm() > kStalled * before;
+  stalled_ = k >= kSlow && residual_.norm() > kStalled * before;
 }
 
 }  // namespace haptex::cloth

@@ -156,10 +156,14 @@ void StageSolver::eliminate() {
 bool StageSolver::solveFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                              StepReport& report) {
   if (contacts_) contacts_->begin(cloth, stage, guess.velocities, fixed_);
-  if (touching()) return solveTouching(guess.velocities, report);
-  eliminate();
-  linearised_norm_ = rhs_.norm();
-  return solveLinear(report);
+  if (!touching()) {
+    eliminate();
+    linearised_norm_ = rhs_.norm();
+    return solveLinear(report);
+  }
+  const bool solved = solveTouching(guess.velocities, report);
+  linearised_norm_ = round_norm_;
+  return solved;
 }
 
 /// Solves matrix_ solution_ = rhs_, before anything is eliminated, under the conditions of the
@@ -167,12 +171,11 @@ bool StageSolver::solveFirst(const Cloth& cloth, const Stage& stage, const Stage
 bool StageSolver::solveTouching(const Velocities& velocities, StepReport& report,
                                 linear::LinearSolver::Definiteness definiteness) {
   contacts_->beginSystem(velocities, matrix_, rhs_);
-  const bool first = report.newton_iterations == 0;
   bool solved = false;
   do {
     any_fixed_ = contacts_->prepareRound(matrix_, rhs_, fixed_, prescribed_);
     eliminate();
-    if (first) linearised_norm_ = rhs_.norm();
+    round_norm_ = rhs_.norm();
     solved = solveLinear(report, definiteness);
     ++report.contact_rounds;
     if (!solved && definiteness == linear::LinearSolver::Definiteness::kUnknown) return false;
@@ -288,8 +291,8 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
   constexpr double kSufficientDecrease = 1e-4;
   constexpr double kRounding = 1e-14;
   constexpr int kMaxHalvings = 40;
-  const double descent = touching() ? contacts_->descent(solution_)
-                                    : rhs_.cwiseProduct(solution_).sum();
+  const double descent =
+      touching() ? contacts_->descent(solution_) : rhs_.cwiseProduct(solution_).sum();
   const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
   if (!(descent > 0.0)) return below_rounding ? Descent::kBelowRounding : Descent::kNone;
   double step = 1.0;
@@ -300,8 +303,7 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
       trial_.positions[i] = result.positions[i] + stage.a * change;
     }
     const double trial = incrementalPotential(cloth, stage, trial_);
-    if (trial <= potential - kSufficientDecrease * step * descent ||
-        below_rounding) {
+    if (trial <= potential - kSufficientDecrease * step * descent || below_rounding) {
       std::swap(result.positions, trial_.positions);
       std::swap(result.velocities, trial_.velocities);
       potential = trial;

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "haptex/material/fabric_file.h"
+#include "haptex/material/linear_fabric.h"
 #include "haptex/oracles/experiments/obstacle_scenes.h"
 
 namespace haptex::oracles {
@@ -17,9 +21,7 @@ struct Track {
 
   double length() const { return radius * wrap; }
   double angle(double way) const { return std::clamp(way / radius, 0.0, wrap) - 0.5 * wrap; }
-  Vector3d tangent(double way) const {
-    return {std::cos(angle(way)), 0.0, -std::sin(angle(way))};
-  }
+  Vector3d tangent(double way) const { return {std::cos(angle(way)), 0.0, -std::sin(angle(way))}; }
   /// @param way m, from where the strip comes to the cylinder
   Vector3d place(double way) const {
     const double a = angle(way), beyond = way - std::clamp(way, 0.0, length());
@@ -32,7 +34,8 @@ double elongationAt(const material::Fabric& fabric, double tension) {
   double low = 0.0, high = 1.0;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high), stretch = 1.0 + middle;
-    const double pull = stretch * fabric.weft.elastic.evaluate(0.5 * (stretch * stretch - 1.0)).stress;
+    const double pull =
+        stretch * fabric.weft.elastic.evaluate(0.5 * (stretch * stretch - 1.0)).stress;
     (pull < tension ? low : high) = middle;
   }
   return low;
@@ -70,8 +73,8 @@ Strip makeStrip(const CapstanCase& capstan, const Track& track) {
   }
   for (std::size_t i = 0; i < strip.mesh.initial_positions.size(); ++i) {
     Vector3d& place = strip.mesh.initial_positions[i];
-    const int column = static_cast<int>(std::lround(strip.mesh.rest_coordinates[i].x() /
-                                                    capstan.cell));
+    const int column =
+        static_cast<int>(std::lround(strip.mesh.rest_coordinates[i].x() / capstan.cell));
     place = track.place(ways[column]) + Vector3d(0.0, place.y(), 0.0);
   }
   return strip;
@@ -92,14 +95,41 @@ void lookAtContacts(const CollidingCloth& scene, double friction, CapstanOutcome
     outcome.pull = std::max(outcome.pull, -load);
     constexpr double kRounding = 1e-12;  // N
     if (friction_force > kRounding) {
-      outcome.particle = std::max(outcome.particle, load > 0.0 ? friction_force / (friction * load)
-                                                               : 1e9);
+      outcome.particle =
+          std::max(outcome.particle, load > 0.0 ? friction_force / (friction * load) : 1e9);
     }
   }
   if (normal > 0.0) outcome.total = std::max(outcome.total, tangential / (friction * normal));
 }
 
+material::Fabric drawFabric(const std::string& config_directory, base::RepeatableRandom& random) {
+  constexpr double kSoftest = 100.0, kStiffest = 16448.0;  // N/m
+  const int kind = random.below(4);
+  const double modulus = random.logarithmic(kSoftest, kStiffest);
+  if (kind < 2) {
+    material::Fabric fabric = material::linearFabric(modulus, 1e-3 * modulus);
+    fabric.name = "linear_" + std::to_string(std::lround(modulus));
+    return fabric;
+  }
+  material::Fabric wool = material::loadFabric(config_directory + "/fabrics/wool.yaml");
+  wool.name = kind == 2 ? "wool_weft" : "wool_warp";
+  if (kind == 3) std::swap(wool.weft, wool.warp);
+  return wool;
+}
+
 }  // namespace
+
+CapstanCase drawCapstan(const std::string& config_directory, base::RepeatableRandom& random) {
+  CapstanCase capstan;
+  capstan.fabric = drawFabric(config_directory, random);
+  capstan.friction = random.uniform(0.1, 0.7);
+  capstan.wrap = random.uniform(0.5 * M_PI, 2.0 * M_PI);
+  capstan.time_step = random.logarithmic(1e-3, 12.5e-3);
+  capstan.speed = random.logarithmic(1e-3, 0.1);
+  capstan.cell = random.logarithmic(1e-3, 1e-2);
+  capstan.radius = capstanRadius(capstan.cell);
+  return capstan;
+}
 
 double capstanRadius(double cell) { return std::max(0.02, 12.0 * cell); }
 
@@ -107,10 +137,10 @@ CapstanOutcome pullOverCapstan(const CapstanCase& capstan) {
   const Track track{capstan.radius, capstan.wrap};
   Strip strip = makeStrip(capstan, track);
   const double width = 2.0 * capstan.cell;
-  mesh::Obstacle capsule{"capsule",
-                         mesh::ObstacleCapsule{
-                             capstan.radius - contact::ObstacleCollision::kOffset, 4.0 * width},
-                         Eigen::Isometry3d(Eigen::AngleAxisd(M_PI / 2.0, Vector3d::UnitX()))};
+  mesh::Obstacle capsule{
+      "capsule",
+      mesh::ObstacleCapsule{capstan.radius - contact::ObstacleCollision::kOffset, 4.0 * width},
+      Eigen::Isometry3d(Eigen::AngleAxisd(M_PI / 2.0, Vector3d::UnitX()))};
   capsule.friction = capstan.friction;
   cloth::StepSettings settings;
   settings.method = capstan.method;
@@ -125,8 +155,7 @@ CapstanOutcome pullOverCapstan(const CapstanCase& capstan) {
   for (const int particle : loaded) {
     const double y = scene.state.positions[particle].y();
     const double share = std::abs(y) > 0.5 * capstan.cell ? 0.25 : 0.5;
-    scene.cloth.setExternalForce(particle,
-                                 -share * width * strip.load * track.tangent(-1.0));
+    scene.cloth.setExternalForce(particle, -share * width * strip.load * track.tangent(-1.0));
   }
   // The middle of a path so long that its speed is constant there.
   const double duration = 100.0 * 1.5 * capstan.steps * capstan.time_step;
@@ -151,8 +180,7 @@ CapstanOutcome pullOverCapstan(const CapstanCase& capstan) {
     for (const int particle : drawn) pull -= forces[particle].dot(along);
   }
   const double inertia = fabric.areal_density * capstan.speed * capstan.speed;  // N/m
-  outcome.ratio =
-      (pull / capstan.steps / width - inertia) / (strip.load - inertia);
+  outcome.ratio = (pull / capstan.steps / width - inertia) / (strip.load - inertia);
   const double all = before + capstan.steps;
   outcome.rounds /= all;
   outcome.seconds /= all;

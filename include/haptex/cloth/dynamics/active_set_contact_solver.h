@@ -6,6 +6,7 @@
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/friction_loads.h"
+#include "haptex/cloth/dynamics/held_contact.h"
 #include "haptex/cloth/dynamics/particle_contact.h"
 #include "haptex/cloth/dynamics/stage.h"
 #include "haptex/linear/block_matrix.h"
@@ -13,18 +14,23 @@
 namespace haptex::cloth {
 
 /// Solves linear systems of a stage under the conditions of Signorini and Coulomb,
-///   gap >= 0, N >= 0, gap N = 0;  |T| <= mu N, and T opposite to the slip where there is any,
-/// by the active-set form of Newton's method for the augmented Lagrangian of Alart and Curnier
-/// (Comput. Methods Appl. Mech. Eng. 92, 1991). Each round solves the system with those contacts
-/// that hold as exact linear constraints: what sticks has its velocity prescribed, what slips the
-/// component along the normal, and friction mu N along its direction with the N of the same solve
-/// (FrictionLoads) and the resistance mu N / |s| against slips s across it. Then what would pull
-/// opens, what is penetrated closes, friction beyond mu N slips, and what friction would push
-/// backwards sticks. What closes slips if it comes flatter than the cone, and sticks otherwise.
+///   gap >= 0, N >= 0, gap N = 0;  |T| <= mu N, and T opposite to the slip where there is any.
+/// Each round solves the system with those contacts that hold as exact linear constraints: what
+/// sticks has its velocity prescribed, what slips the component along the normal. Friction of what
+/// slips is that of the normal forces of the same solve (FrictionLoads), linearised by slips that
+/// are slower than a threshold, at first a tenth of the mean slip, as if it grew with them. With
+/// these loads it has a convex potential, and so has the stage: a round goes on from the one before
+/// as far as that potential falls (exact line search), which Newton's method needs to converge.
+/// Then what would pull opens, what is entered closes (as the map of Alart and Curnier says,
+/// Comput. Methods Appl. Mech. Eng. 92, 1991), and what sticks with more than mu N slips. Smoothed
+/// friction that has converged becomes Coulomb's: what creeps below the threshold sticks from then
+/// on, or slips again if that takes more than mu N, with a lower threshold. If that does not
+/// converge in the rounds that are left, the smoothed friction acts.
 ///
 /// Whatever has been found when the rounds are spent, the force that acts lies in the cone: last
 /// rounds let all contacts that push slip, with friction of the ratio T / N that they had, mu at
-/// most. What had not converged shows as slip, not as force.
+/// most, until none of them pulls; and if one still does, the forces themselves act, without those
+/// that pull. What had not converged shows as slip, not as force.
 ///
 /// One contact per particle. Allocates nothing after construction.
 class ActiveSetContactSolver {
@@ -63,7 +69,7 @@ class ActiveSetContactSolver {
 
   /// Judges the solution of a round.
   /// @returns whether another round is needed
-  bool update(linear::BlockVector& solution);
+  bool update(const linear::BlockVector& solution);
 
   /// What friction and bodies resist (J), with the normal forces of the last system, beyond the
   /// incremental potential without contacts.
@@ -90,45 +96,21 @@ class ActiveSetContactSolver {
  private:
   using State = ContactReaction::State;
   enum class Phase {
-    kSearch,   // for what holds
-    kRatios,   // all that push slip with the ratios T / N that were found
-    kForces,   // the forces themselves act, and constrain nothing
+    kSearch,  // for what holds
+    kRatios,  // all that push slip with the ratios T / N that were found
+    kForces,  // the forces themselves act, and constrain nothing
     kFinished
   };
-  /// What the next stage starts from, of a contact that is there again.
-  struct Memory {
-    State state = State::kOpen;
-    double load = 0.0;                               // N, normal
-    Eigen::Vector3d slip = Eigen::Vector3d::Zero();  // m/s, that friction is linearised at
-    long stage = -1;                                 // in which it was
-  };
-  struct Entry : Memory {
-    int contact;             // of the cloth
-    int particle;            // of that contact
-    Eigen::Vector3d normal;  // of that contact
-    Eigen::Vector3d body;    // m/s, its velocity
-    Eigen::Vector3d target;  // m/s, of a particle that goes with the body and closes the gap
-    double friction;
-    double mass;               // kg
-    bool fresh = false;        // was open in the round before
-    Eigen::Vector3d force;     // N, of the last round
-    Eigen::Vector3d ratio;     // friction over normal force of what slips
-    Eigen::Vector3d before;    // N, of the system before
-    Eigen::Vector3d change;    // m/s, of the slip, in the last round
-  };
+  using Entry = HeldContact;
 
   Entry entryOf(const Cloth& cloth, const Stage& stage, int contact) const;
-  Eigen::Vector3d relativeTo(const Entry& entry, const Eigen::Vector3d& velocity) const;
-  void close(double gap, const Eigen::Vector3d& slip, Entry& entry) const;
-  void judge(const Eigen::Vector3d& velocity, Entry& entry) const;
-  Eigen::Vector3d frictionAt(const Entry& entry, const Eigen::Vector3d& slip, double load) const;
-  Eigen::Matrix3d resistance(const Entry& entry) const;
-  double meanSlip() const;
+  double potentialOf(const Entry& entry, const Eigen::Vector3d& velocity) const;
+  double smoothingOfSlips() const;
   double searchLine(const linear::BlockVector& solution);
-  bool search(linear::BlockVector& solution);
+  bool search(const linear::BlockVector& solution);
+  bool goBack();
   bool holdRatios(const linear::BlockVector& solution);
   void takeRatios();
-  void clip();
   void finish();
   void constrain(const Entry& entry, linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs,
                  std::vector<char>& fixed, linear::BlockVector& prescribed);
@@ -136,10 +118,11 @@ class ActiveSetContactSolver {
   double a_ = 0.0;   // s, of the stage
   long stages_ = 0;  // so far
   Phase phase_ = Phase::kSearch;
-  int rounds_ = 0;           // of this phase
-  double smoothing_ = 0.0;   // m/s, of slips up to which friction grows with them
-  bool last_ = false;        // round of the search
-  linear::BlockVector guess_;  // m/s
+  int rounds_ = 0;               // of this phase
+  double smoothing_ = 0.0;       // m/s, of slips up to which friction grows with them
+  bool last_ = false;            // round of the search
+  double kept_smoothing_ = 0.0;  // m/s, of kept_; 0: nothing has been kept
+  linear::BlockVector guess_;    // m/s
   linear::SymmetricBlockMatrix free_matrix_;
   linear::BlockVector free_rhs_;
   linear::BlockVector residual_;
@@ -150,10 +133,11 @@ class ActiveSetContactSolver {
   linear::BlockVector normals_;
   linear::BlockVector values_;
   std::vector<Entry> entries_;
+  std::vector<Entry> kept_;  // that friction had converged with, smoothed
   Eigen::VectorXd loads_;    // N, that friction is taken from, by entry
   Eigen::VectorXd results_;  // N
   FrictionLoads friction_;
-  std::vector<Memory> memory_;  // per particle
+  std::vector<ContactMemory> memory_;  // per particle
   std::vector<ContactReaction> reactions_;
 };
 

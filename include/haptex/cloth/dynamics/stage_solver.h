@@ -101,6 +101,7 @@ class StageSolver {
   linear::BlockVector solution_;    // of the last linear system, with the prescribed values
   linear::BlockVector prescribed_;  // velocity changes of the attached particles
   double linearised_norm_ = 0.0;    // N s, of the right-hand side of the linearised stage
+  double round_norm_ = 0.0;         // N s, likewise of the last round of contacts
   std::vector<char> fixed_;
   bool any_fixed_ = false;
   std::optional<ActiveSetContactSolver> contacts_;

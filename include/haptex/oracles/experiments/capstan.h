@@ -1,6 +1,9 @@
 // A strip that is pulled over a fixed cylinder, and what friction on it does to its tension.
 #pragma once
 
+#include <string>
+
+#include "haptex/base/repeatable_random.h"
 #include "haptex/cloth/dynamics/step.h"
 #include "haptex/material/fabric.h"
 
@@ -18,9 +21,9 @@ struct CapstanCase {
   double radius = 0.02;      ///< m, of the middle of the fabric around the capsule
   double strain = 0.01;      ///< along weft at the end that is drawn off, if mechanics is right
   double time_step = 0.0125;
-  int steps = 500;   ///< that are measured, after half as many that are not
-  int threads = 1;   ///< of 1 to 64
-  int solves = 2;    ///< StepSettings::newton_iterations
+  int steps = 500;  ///< that are measured, after half as many that are not
+  int threads = 1;  ///< of 1 to 64
+  int solves = 2;   ///< StepSettings::newton_iterations
   cloth::IntegrationMethod method = cloth::IntegrationMethod::kBackwardEuler;
 };
 
@@ -39,8 +42,14 @@ struct CapstanOutcome {
 /// @throws std::runtime_error if a step was not accepted
 CapstanOutcome pullOverCapstan(const CapstanCase& capstan);
 
-/// A strip of which the cells are small against the radius, at most a twelfth: polygons of such
-/// sides differ from circles by less than 0.4 % of the ratio for mu <= 0.7 and two half turns.
+/// A radius (m) against which the cells are small, a twelfth at most: polygons of such sides differ
+/// from circles by less than 0.4 % of the ratio for mu <= 0.7 and two half turns.
 double capstanRadius(double cell);
+
+/// Friction 0.1 to 0.7, wrap 90 to 360 degrees, steps of 1 to 12.5 ms, 1 to 100 mm/s, cells of 1 to
+/// 10 mm; fabrics linear with 100 to 16 448 N/m, which is wool's initial slope along warp, or wool
+/// drawn along weft or warp.
+/// @param config_directory with fabrics/wool.yaml
+CapstanCase drawCapstan(const std::string& config_directory, base::RepeatableRandom& random);
 
 }  // namespace haptex::oracles
