@@ -67,7 +67,7 @@ void ActiveSetContactSolver::begin(const Cloth& cloth, const Stage& stage, const
     if (entry.stage == stages_ - 1) continue;
     static_cast<ContactMemory&>(entry) = ContactMemory{};
     const RelativeMotion motion = relativeMotion(entry, guess[entry.particle]);
-    if (motion.gap < 0.0) close(motion, entry);
+    if (a_ * motion.gap < -kContactPenetration) close(motion, entry);
   }
 }
 
