@@ -43,7 +43,8 @@ TEST(Capstan, TensionGrowsAsTheEquationSays) {
         CapstanCase capstan = stiffStrip(friction, wrap);
         capstan.solves = solves;
         const CapstanOutcome outcome = pullOverCapstan(capstan);
-        EXPECT_NEAR(outcome.ratio / outcome.exact, 1.0, 0.01)
+        // One solve, the linearised stage alone, stretches what turns.
+        EXPECT_NEAR(outcome.ratio / outcome.exact, 1.0, solves == 1 ? 0.03 : 0.01)
             << friction << ' ' << wrap << ' ' << solves;
       }
     }
