@@ -113,7 +113,8 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
     most_taken = std::min(1.0, 2.0 * most_taken);
     return small;
   };
-  if (!isSmall()) {
+  const bool enters = touches() && stages_->contacts()->enter(end_.velocities);
+  if (!isSmall() || enters) {
     report.taken_anew = true;
     const Stage stage{begin, h, end_.time, 1.0, Stage::Rates::kSinceBase};
     if (settings_.method != IntegrationMethod::kBackwardEuler) {
