@@ -268,10 +268,9 @@ double ActiveSetContactSolver::residualNorm(const linear::BlockVector& rhs) cons
   return std::sqrt(std::max(0.0, squared));
 }
 
-bool ActiveSetContactSolver::enter(const Velocities& velocities) const {
+bool ActiveSetContactSolver::enter(const Velocities& velocities, double depth) const {
   return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-    return !(a_ * relativeMotion(entry, velocities[entry.particle]).gap >=
-             -2.0 * kContactPenetration);
+    return !(a_ * relativeMotion(entry, velocities[entry.particle]).gap >= -depth);
   });
 }
 

@@ -269,7 +269,8 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     const Descent descent =
         solved || !exact ? searchLine(cloth, stage, result, potential) : Descent::kNone;
     if (descent == Descent::kFound) {
-      const bool enters = touching() && contacts_->enter(result.velocities);
+      const bool enters =
+          touching() && contacts_->enter(result.velocities, 2.0 * kContactPenetration);
       is_enough = enough && !enters && enough();
       if (is_enough) break;
       hessian = norm <= near ? Hessian::kExact : Hessian::kProjected;

@@ -82,8 +82,8 @@ class ActiveSetContactSolver {
   /// |b + a f| of a system for the change from velocities at which the forces f act.
   double residualNorm(const linear::BlockVector& rhs) const;
 
-  /// Whether any particle would enter a body with these velocities.
-  bool enter(const Velocities& velocities) const;
+  /// Whether any particle would enter a body with these velocities, farther than `depth` (m).
+  bool enter(const Velocities& velocities, double depth) const;
 
   /// What the last stage did: the velocities of particles whose contact holds become the body's,
   /// along the normal or altogether. Impacts are inelastic.
