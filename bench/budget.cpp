@@ -284,17 +284,17 @@ void print(const std::string& fabric, const Record& record) {
     bench::printLine(name + which + "mean_rung", record.quality[loaded] / cycles, "");
   }
   bench::printLine(name + "changes", static_cast<double>(record.changes), "");
-  const auto printError = [&](const std::string& of, double expected, double error, double scale,
-                              const char* unit) {
+  const auto print_error = [&](const std::string& of, double expected, double error, double scale,
+                               const char* unit) {
     expected = std::sqrt(expected / record.cycles);
     error = std::sqrt(error / record.cycles);
     bench::printLine(name + "expected_" + of + "_error", scale * expected, unit);
     bench::printLine(name + of + "_error", scale * error, unit);
     bench::printLine(name + of + "_error_over_expected", error / expected, "");
   };
-  printError("position", record.expected.position, record.error.position, 1e3, "mm");
-  printError("force", record.expected.force, record.error.force, 1e3, "mN");
-  printError("energy", record.expected.energy, record.error.energy, 1e3, "mJ");
+  print_error("position", record.expected.position, record.error.position, 1e3, "mm");
+  print_error("force", record.expected.force, record.error.force, 1e3, "mN");
+  print_error("energy", record.expected.energy, record.error.energy, 1e3, "mJ");
 }
 
 void runBench(const std::string& name) {

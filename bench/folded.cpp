@@ -61,7 +61,7 @@ struct Phase {
 };
 
 const std::vector<Phase>& phases() {
-  static const std::vector<Phase> kPhases = {
+  static const std::vector<Phase> all_phases = {
       {"lifted", {{{0.0, 0.0, 0.03}, 40, 0.4}}},
       {"held", {{Vector3d::Zero(), 60, 0.0}}},
       {"shaken",
@@ -75,7 +75,7 @@ const std::vector<Phase>& phases() {
       {"pulled", {{{0.06, 0.0, -0.02}, 40, 0.4}, {Vector3d::Zero(), 20, 0.0}}},
       {"let_go", {{Vector3d::Zero(), 80, 0.0}}},
   };
-  return kPhases;
+  return all_phases;
 }
 
 /// Of one step.
@@ -198,26 +198,26 @@ class Comparison {
 };
 
 void runBench(const std::string& name, const std::string& file) {
-  static const std::vector<Grip> kGrips = {{"edge", block(2, 2, 15, 3)},
-                                           {"corner", block(0, 2, 0, 3)}};
+  static const std::vector<Grip> grips = {{"edge", block(2, 2, 15, 3)},
+                                          {"corner", block(0, 2, 0, 3)}};
   const material::Fabric fabric =
       material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + file + ".yaml");
   const std::string prefix = "folded/" + name + "/";
   std::vector<Sample> folded, hanging;
-  for (const Grip& grip : kGrips) {
+  for (const Grip& grip : grips) {
     Comparison comparison(fabric, grip);
     for (int run = 0; run < kRuns; ++run) comparison.run();
     comparison.print(prefix);
     append(folded, comparison.gripped());
     append(hanging, comparison.hanging());
   }
-  const auto printSheet = [&](const std::string& of, const std::vector<Sample>& samples) {
+  const auto print_sheet = [&](const std::string& of, const std::vector<Sample>& samples) {
     bench::printLine(prefix + of + "_mean", 1e3 * meanSeconds(samples), "ms");
     bench::printLine(prefix + of + "_p99", 1e3 * p99Seconds(samples), "ms");
     bench::printLine(prefix + of + "_solves", meanSolves(samples), "per_step");
   };
-  printSheet("hanging", hanging);
-  printSheet("folded", folded);
+  print_sheet("hanging", hanging);
+  print_sheet("folded", folded);
   bench::printLine(prefix + "mean_ratio", meanSeconds(folded) / meanSeconds(hanging), "ratio");
   bench::printLine(prefix + "p99_ratio", p99Seconds(folded) / p99Seconds(hanging), "ratio");
 }

@@ -52,7 +52,7 @@ class Computation {
     const std::vector<char> attached(settings_.mesh.initial_positions.size(), 0);
     for (std::size_t elements = 1; layer_.particleCount() < 2u * particles_per_patch; ++elements) {
       std::vector<int> chosen;
-      for (const Vector3d& place : kPlaces.values) {
+      for (const Vector3d& place : places_.values) {
         hierarchy.query(proximity::Cursor::point(place), {1.0, elements}, near_);
         for (const proximity::NearElement& element : near_) chosen.push_back(element.triangle);
       }
@@ -70,7 +70,7 @@ class Computation {
         fingertip.radius = 0.008;
         const double depth = 1e-3 + 1e-3 * std::sin(0.01 * i);
         fingertip.position =
-            kPlaces[finger] + Vector3d(fingertip.radius - depth, 0.0, 2e-3 * std::sin(0.02 * i));
+            places_[finger] + Vector3d(fingertip.radius - depth, 0.0, 2e-3 * std::sin(0.02 * i));
       }
       const auto start = std::chrono::steady_clock::now();
       layer_.step(fingertips);
@@ -85,7 +85,7 @@ class Computation {
   std::size_t particles() const { return layer_.particleCount(); }
 
  private:
-  const base::PerFinger<Vector3d> kPlaces{
+  const base::PerFinger<Vector3d> places_{
       {Vector3d(0.0, -0.045, -0.1), Vector3d(0.0, 0.045, -0.1)}};
   oracles::HapticLoopSettings settings_;
   contact::HapticLayer layer_;

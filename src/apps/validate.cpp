@@ -36,14 +36,13 @@ std::optional<Arguments> parse(int argc, char** argv) {
   Arguments arguments{"", "", std::random_device{}()};
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
+    const bool option = !argument.empty() && argument.front() == '-';
     if (argument == "--seed") {
       if (++i == argc) return std::nullopt;
       arguments.seed = seedOf(argv[i]);
-    } else if (!argument.empty() && argument.front() == '-') {
-      return std::nullopt;
-    } else if (arguments.config_directory.empty()) {
+    } else if (!option && arguments.config_directory.empty()) {
       arguments.config_directory = argument;
-    } else if (arguments.room.empty()) {
+    } else if (!option && arguments.room.empty()) {
       arguments.room = argument;
     } else {
       return std::nullopt;
@@ -68,12 +67,12 @@ bool known(const std::string& room) {
 bool validate(const Arguments& arguments) {
   bool failed = false;
   std::cout << "seed\t" << arguments.seed << std::endl;
-  const auto forEachRoom = [&](const auto& run) {
+  const auto for_each_room = [&](const auto& run) {
     for (const oracles::Validation& validation : oracles::validations()) {
       if (arguments.room.empty() || validation.room == arguments.room) run(validation);
     }
   };
-  forEachRoom([&](const oracles::Validation& validation) {
+  for_each_room([&](const oracles::Validation& validation) {
     int failures = 0;
     validation.run(arguments.config_directory, [&](const base::Quantity& quantity) {
       print(std::cout, quantity);
@@ -85,7 +84,7 @@ bool validate(const Arguments& arguments) {
               << " fail; again: scripts/validate --seed " << arguments.seed << ' '
               << validation.room << std::endl;
   });
-  forEachRoom([&](const oracles::Validation& validation) {
+  for_each_room([&](const oracles::Validation& validation) {
     failed = !oracles::printAtRandom(validation.room, arguments.seed, arguments.config_directory,
                                      std::cout, std::cerr) ||
              failed;

@@ -40,13 +40,16 @@ void CondensedStiffness::update(Patch& patch, double h) {
     condensed_[finger].setZero();
     known_direct_[finger].setZero();
   }
-  // The next direction of a fingertip that touches.
-  for (int tried = 0; tried < kColumns; ++tried) {
-    next_ = (next_ + 1) % kColumns;
-    if (!patch.linearised(kFingers[next_ / 3]).empty()) {
-      computeColumn(patch, h);
-      return;
-    }
+  // The next direction of a fingertip that touches. Where one is known already it can wait until a
+  // step leaves time.
+  for (int tried = 1; tried <= kColumns; ++tried) {
+    const int next = (next_ + tried) % kColumns;
+    const Finger finger = kFingers[next / 3];
+    if (patch.linearised(finger).empty()) continue;
+    if (known_direct_[finger][next % 3] > 0.0 && !patch.stepWasShort()) return;
+    next_ = next;
+    computeColumn(patch, h);
+    return;
   }
 }
 

@@ -25,14 +25,14 @@ constexpr double kNarrowest = 1e-6;      // of the range of strain: no finer int
 constexpr double kTangentialByNormal = 2.0 / 3.0;
 
 void requireContactProperties(const material::Fabric& fabric) {
-  const auto requireProperty = [&](bool present, const std::string& property) {
+  const auto require_property = [&](bool present, const std::string& property) {
     if (!present) {
       throw std::invalid_argument("fabric " + fabric.name + ": contact needs the property '" +
                                   property + "'");
     }
   };
-  requireProperty(fabric.compression.has_value(), "compression");
-  requireProperty(fabric.friction.has_value(), "friction");
+  require_property(fabric.compression.has_value(), "compression");
+  require_property(fabric.friction.has_value(), "friction");
 }
 
 void requirePositive(const std::string& name, double value) {

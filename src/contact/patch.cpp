@@ -11,7 +11,6 @@ namespace {
 
 using base::Finger;
 using base::kFingers;
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 // How the difference between two patches fades. What becomes rim had a place of its own, off the

@@ -107,7 +107,7 @@ void addTensile(const Fabric& fabric, Direction direction, KesResult& result) {
 
   const double exact_emt =
       strainAtLoad([&](double strain) { return curveForce(curves, strain, kKesStrainRate); });
-  const auto exactWork = [&](double rate) {
+  const auto exact_work = [&](double rate) {
     constexpr int kParts = 20000;
     std::vector<double> forces;
     for (int i = 0; i <= kParts; ++i) {
@@ -116,7 +116,7 @@ void addTensile(const Fabric& fabric, Direction direction, KesResult& result) {
     return simpson(forces, exact_emt);
   };
   const TensileParameters exact =
-      parametersOf(exact_emt, exactWork(kKesStrainRate), exactWork(-kKesStrainRate));
+      parametersOf(exact_emt, exact_work(kKesStrainRate), exact_work(-kKesStrainRate));
   const std::string of = std::string("/") + nameOf(direction);
   result.parameters.push_back({"LT" + of, "-", exact.lt, measured.lt});
   result.parameters.push_back({"WT" + of, "gf.cm/cm2", exact.wt, measured.wt});

@@ -13,7 +13,7 @@ cloth::ModelledEffects withViscosity(cloth::ModelledEffects effects, bool viscos
 }  // namespace
 
 StaticSample::StaticSample(mesh::ClothMesh mesh, const material::Fabric& fabric,
-                           cloth::ModelledEffects effects)
+                           const cloth::ModelledEffects& effects)
     : cloth_(mesh, fabric, withViscosity(effects, false)),
       moving_(std::move(mesh), fabric, withViscosity(effects, true)),
       state_(cloth_.initialState()),

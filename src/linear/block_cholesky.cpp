@@ -129,14 +129,14 @@ void BasicBlockCholesky<T>::cutTree() {
 template <typename T>
 void BasicBlockCholesky<T>::makeEntries(const SymmetricBlockMatrix& pattern) {
   std::vector<std::vector<Entry>> entries_of(elimination_.supernodes.size());
-  const auto addEntry = [&](int row, int column, int slot) {
+  const auto add_entry = [&](int row, int column, int slot) {
     const int first = std::min(elimination_.position[row], elimination_.position[column]);
     entries_of[elimination_.supernode_of[first]].push_back(entryOf(row, column, slot));
   };
   for (int i = 0; i < pattern.size(); ++i) {
-    addEntry(i, i, -1 - i);
+    add_entry(i, i, -1 - i);
     for (int s = pattern.rowBegin(i); s < pattern.rowBegin(i + 1); ++s) {
-      addEntry(i, pattern.column(s), s);
+      add_entry(i, pattern.column(s), s);
     }
   }
   for (std::size_t s = 0; s < entries_of.size(); ++s) {
@@ -186,17 +186,17 @@ void BasicBlockCholesky<T>::load(const SymmetricBlockMatrix& matrix, int target,
   T* const base = panels_.data() + panel.offset;
   const int columns = 3 * elimination_.supernodes[target].width();
   std::fill_n(base, static_cast<std::size_t>(panel.leading) * columns, T(0));
-  const auto blockOf = [&matrix](const Entry& entry) -> const Eigen::Matrix3d& {
+  const auto block_of = [&matrix](const Entry& entry) -> const Eigen::Matrix3d& {
     return entry.slot < 0 ? matrix.diagonal(-1 - entry.slot) : matrix.lower(entry.slot);
   };
   const int last = static_cast<int>(entries_.size()) - 1;
   for (int e = panel.first_entry; e < panel.end_entry; ++e) {
     const Entry& entry = entries_[e];
     // The blocks lie in the order of the particles, anywhere in memory.
-    const double* const ahead = blockOf(entries_[std::min(last, e + kFetchAhead)]).data();
+    const double* const ahead = block_of(entries_[std::min(last, e + kFetchAhead)]).data();
     __builtin_prefetch(ahead);
     __builtin_prefetch(ahead + 8);
-    Eigen::Matrix3d block = blockOf(entry);
+    Eigen::Matrix3d block = block_of(entry);
     if constexpr (std::is_same_v<T, float>) {
       for (int c = 0; c < 3; ++c) {
         for (int r = 0; r < 3; ++r) {

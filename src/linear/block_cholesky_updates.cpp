@@ -33,14 +33,14 @@ void BasicBlockCholesky<T>::applyDescendant(int descendant, int target, int firs
   const Panel& to = panel_of_[target];
   const int begin = next_row_[descendant];
   const int total = static_cast<int>(source.rows.size());
-  const auto rowAt = [&](int place) {  // the first source row from this place on
+  const auto row_at = [&](int place) {  // the first source row from this place on
     const auto found = std::partition_point(source.rows.begin() + begin, source.rows.end(),
                                             [&](int row) { return panel_row[row] < place; });
     return static_cast<int>(found - source.rows.begin());
   };
   const bool whole = first_row == 0 && 3 * end_row == to.leading;
-  const int first = whole ? begin : rowAt(first_row);
-  const int last = whole ? total : rowAt(end_row);
+  const int first = whole ? begin : row_at(first_row);
+  const int last = whole ? total : row_at(end_row);
   if (source.width() >= kDirectWidth) {
     return applyDirectly(descendant, target, first, last, panel_row);
   }
@@ -96,7 +96,7 @@ void BasicBlockCholesky<T>::applyDirectly(int descendant, int target, int first,
   const T* const rows = panels_.data() + from.offset + depth;
   T* const panel = panels_.data() + to.offset;
   const auto place = [&](int row) { return panel_row[source.rows[row]]; };
-  const auto runEnd = [&](int begin, int most) {
+  const auto run_end = [&](int begin, int most) {
     int end = begin + 1;
     while (end < most && place(end) == place(end - 1) + 1) ++end;
     return end;
@@ -104,10 +104,10 @@ void BasicBlockCholesky<T>::applyDirectly(int descendant, int target, int first,
   int columns_last = next_row_[descendant];
   while (columns_last < last && source.rows[columns_last] < sink.end) ++columns_last;
   for (int b = next_row_[descendant]; b < columns_last;) {
-    const int columns_end = runEnd(b, std::min(columns_last, b + kUpdateColumns));
+    const int columns_end = run_end(b, std::min(columns_last, b + kUpdateColumns));
     T* const column = panel + static_cast<std::size_t>(to.leading) * 3 * place(b);
     for (int a = std::max(first, b); a < last;) {
-      const int end = runEnd(a, last);
+      const int end = run_end(a, last);
       subtractProduct(3 * (end - a), 3 * (columns_end - b), depth, rows + 3 * a, from.leading,
                       rows + 3 * b, from.leading, column + 3 * place(a), to.leading);
       a = end;

@@ -57,7 +57,7 @@ SolveResult ConjugateGradient::iterate(const SymmetricBlockMatrix& matrix,
     result.converged = result.residual <= tolerance;
   };
 
-  const auto startFromZero = [&] {
+  const auto start_from_zero = [&] {
     x.setZero();
     residual_ = rhs;
     result.residual = 1.0;
@@ -65,10 +65,10 @@ SolveResult ConjugateGradient::iterate(const SymmetricBlockMatrix& matrix,
   };
 
   if (x.isZero(0.0)) {
-    startFromZero();
+    start_from_zero();
   } else {
     restart();
-    if (!(result.residual <= 1.0)) startFromZero();  // worse than none, or not a number
+    if (!(result.residual <= 1.0)) start_from_zero();  // worse than none, or not a number
   }
   while (!result.converged && result.iterations < max_iterations) {
     const double before = result.residual;

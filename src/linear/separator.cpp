@@ -52,7 +52,7 @@ void SeparatorFinder::measureFromFarNodes(const std::vector<int>& part, int star
   const auto nearer = [&](int node) { return std::min(distance_[0][node], distance_[1][node]); };
   int most = 0;
   for (int node : part) most = std::max(most, nearer(node));
-  const auto farthestInTheMiddle = [&](const std::vector<int>& distance) {
+  const auto farthest_in_the_middle = [&](const std::vector<int>& distance) {
     int found = -1;
     for (int node : part) {
       if (nearer(node) < most - 1) continue;
@@ -61,10 +61,10 @@ void SeparatorFinder::measureFromFarNodes(const std::vector<int>& part, int star
     return found;
   };
   std::fill(distance_[2].begin(), distance_[2].end(), 0);
-  measure(part, farthestInTheMiddle(distance_[2]), distance_[2]);
-  const int third = farthestInTheMiddle(distance_[2]);
+  measure(part, farthest_in_the_middle(distance_[2]), distance_[2]);
+  const int third = farthest_in_the_middle(distance_[2]);
   measure(part, third, distance_[2]);
-  measure(part, farthestInTheMiddle(distance_[2]), distance_[3]);
+  measure(part, farthest_in_the_middle(distance_[2]), distance_[3]);
 }
 
 int SeparatorFinder::level(int node, const Candidate& candidate) const {

@@ -162,6 +162,7 @@ ClothMesh makeDisc(double radius, int rings) {
       const bool by_outer = inner_count == 1 || inner == inner_count ||
                             (outer < count && phase + (outer + 0.5) * step <=
                                                   inner_phase + (inner + 0.5) * inner_step);
+      // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): a ring has five particles or more.
       const int a = inner_begin + inner % inner_count, b = begin + outer % count;
       if (by_outer) {
         mesh.triangles.push_back({a, b, begin + ++outer % count});

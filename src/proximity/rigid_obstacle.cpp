@@ -83,14 +83,14 @@ class NearestTriangle : public fcl::detail::BVHShapeDistanceTraversalNode<fcl::A
 SurfaceDistance distanceToBox(const Vector3d& half_sides, const Vector3d& place) {
   const Vector3d beyond = place.cwiseAbs() - half_sides;
   const Vector3d outside = beyond.cwiseMax(0.0);
-  const auto withSigns = [&](const Vector3d& direction) {
+  const auto with_signs = [&](const Vector3d& direction) {
     return Vector3d(direction.array() * (place.array() < 0.0).select(-1.0, Eigen::Array3d::Ones()));
   };
   const double distance = outside.norm();
-  if (distance > 0.0) return {distance, withSigns(outside / distance)};
+  if (distance > 0.0) return {distance, with_signs(outside / distance)};
   int axis = 0;
   const double depth = beyond.maxCoeff(&axis);
-  return {depth, withSigns(Vector3d::Unit(axis))};
+  return {depth, with_signs(Vector3d::Unit(axis))};
 }
 
 class ObstacleBody : public Body {

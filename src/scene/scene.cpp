@@ -200,27 +200,27 @@ Listed readModel(const YamlValue& scene) {
                     "wind", "obstacles", "fingers", "tactile", "recording"});
     if (!listed.insert(name).second) item.refuse("is listed twice");
   }
-  const auto requireBoth = [&](const std::string& effect, const std::string& base) {
+  const auto require_both = [&](const std::string& effect, const std::string& base) {
     if (listed.count(effect) == 0 || listed.count(base) > 0) return;
     scene.at("model").refuseBecause("lists " + effect + ", which needs " + base + " listed, too");
   };
-  requireBoth("bending_hysteresis", "bending");
-  requireBoth("wind", "air");
-  requireBoth("tactile", "fingers");
+  require_both("bending_hysteresis", "bending");
+  require_both("wind", "air");
+  require_both("tactile", "fingers");
   return listed;
 }
 
 /// A key that says how something is modelled is a contradiction where it is not modelled.
 void requireListedKeys(const YamlValue& scene, const Listed& listed) {
-  const auto requireListed = [&](const char* key, const std::string& effect) {
+  const auto require_listed = [&](const char* key, const std::string& effect) {
     if (!scene.has(key) || listed.count(effect) > 0) return;
     scene.at(key).refuseBecause("is allowed only if model lists " + effect + ", which it does not");
   };
-  requireListed("gravity", "gravity");
-  requireListed("air", "air");
-  requireListed("wind", "wind");
-  requireListed("bending", "bending");
-  requireListed("haptics", "fingers");
+  require_listed("gravity", "gravity");
+  require_listed("air", "air");
+  require_listed("wind", "wind");
+  require_listed("bending", "bending");
+  require_listed("haptics", "fingers");
   if (listed.count("wind") > 0 && !scene.has("wind")) {
     scene.at("model").refuseBecause("lists wind, so the key wind is required");
   }

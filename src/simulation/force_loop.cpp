@@ -7,7 +7,6 @@ namespace {
 
 using base::Finger;
 using base::kFingers;
-using base::seconds;
 using base::Time;
 
 constexpr double kUsualPeriod = 0.0125;   // s, of simulated time, until two states have come
@@ -225,11 +224,11 @@ void ForceLoop::step() {
       liveness_.restart();
     }
   }
-  static const contact::FingertipContact kNoContact;
+  static const contact::FingertipContact no_contact;
   for (const Finger finger : kFingers) {
     Rendered& rendered = rendered_[finger];
     const std::optional<contact::Fingertip>& fingertip = fingertips_[finger];
-    rendered.contact = layer_ && fingertip ? layer_->contacts()[finger] : kNoContact;
+    rendered.contact = layer_ && fingertip ? layer_->contacts()[finger] : no_contact;
     rendered.gain = liveness_.gain(finger);
     rendered.measured = inputs_[finger].pose.value().measured;
     rendered.contactor_forces.fill(0.0);

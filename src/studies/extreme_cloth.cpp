@@ -62,7 +62,7 @@ double unbalancedOf(const cloth::Cloth& cloth, const cloth::ClothState& state, d
   if (single <= 0.1 * kBalanced) return single;
   std::vector<std::size_t> next(forces.size());  // in the group, or the particle that stands for it
   std::iota(next.begin(), next.end(), 0);
-  const auto groupOf = [&](std::size_t i) {
+  const auto group_of = [&](std::size_t i) {
     while (next[i] != i) i = next[i];
     return i;
   };
@@ -70,7 +70,7 @@ double unbalancedOf(const cloth::Cloth& cloth, const cloth::ClothState& state, d
     for (std::size_t j = 0; j < i; ++j) {
       const double apart = (state.positions[i] - state.positions[j]).norm();
       if (apart > kReturnTolerance * extent || cloth.isAttached(i) != cloth.isAttached(j)) continue;
-      const std::size_t group = groupOf(i), other = groupOf(j);
+      const std::size_t group = group_of(i), other = group_of(j);
       if (group == other) continue;
       next[other] = group;
       forces[group] += forces[other];
@@ -235,7 +235,7 @@ void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
                     const cloth::ClothState& rest, cloth::ClothState& state,
                     ExtremeOutcome& outcome) {
   Settling settling;
-  const auto comesToRestElsewhere = [&] {
+  const auto comes_to_rest_elsewhere = [&] {
     settling = settle(extreme, cloth, rest, state);
     outcome.growth = base::largerOrNaN(outcome.growth, settling.growth);
     outcome.rejected += settling.rejected;
@@ -243,11 +243,11 @@ void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
     outcome.slow = outcome.slow || settling.slow;
     return settling.error > kReturnTolerance && settling.unbalanced <= kBalanced;
   };
-  bool elsewhere = comesToRestElsewhere();
+  bool elsewhere = comes_to_rest_elsewhere();
   if (elsewhere && extreme.taut) {
     const cloth::ClothState before = state;
     push(extreme, cloth, state);
-    elsewhere = comesToRestElsewhere() && distanceBetween(state, before) <= kReturnTolerance;
+    elsewhere = comes_to_rest_elsewhere() && distanceBetween(state, before) <= kReturnTolerance;
   }
   outcome.return_error = settling.error;
   if (!isFinite(state)) {

@@ -10,8 +10,6 @@
 namespace haptex::studies {
 namespace {
 
-using Eigen::Vector3d;
-
 constexpr double kHold = 0.025;  // s, of each place of the fingertips
 
 oracles::HapticLoopSettings loopSettings(const ExtremeCase& extreme, const mesh::ClothMesh& mesh,

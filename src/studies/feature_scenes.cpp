@@ -111,7 +111,7 @@ FeatureScene bareScene(const material::Fabric& fabric, int cells) {
 }
 
 const std::vector<Feature>& features() {
-  static const std::vector<Feature> kFeatures = {
+  static const std::vector<Feature> all = {
       {"gravity", describeNothing, listGravity},
       {"viscosity", describeViscosity, listViscosity},
       {"bending_linear", describeBending, listBending},
@@ -125,7 +125,7 @@ const std::vector<Feature>& features() {
       {"fingers_far", describeFingers, listFingers},
       {"fingers_touching", describeFingers, listTouchingFingers},
   };
-  return kFeatures;
+  return all;
 }
 
 }  // namespace haptex::studies

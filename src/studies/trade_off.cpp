@@ -201,10 +201,10 @@ class MotionRun {
 
   /// Of column i in row j of the points that are compared.
   Vector3d placeOf(const ClothState& state, int i, int j) const {
-    const auto cellAt = [&](int k) {
+    const auto cell_at = [&](int k) {
       return std::min(k * cells() / kComparedIntervals, cells() - 1);
     };
-    const int column = cellAt(i), row = cellAt(j);
+    const int column = cell_at(i), row = cell_at(j);
     const auto share = [&](int k, int cell) {
       return static_cast<double>(k * cells()) / kComparedIntervals - cell;
     };

@@ -16,7 +16,6 @@ namespace haptex::studies {
 namespace {
 
 using cloth::IntegrationMethod;
-using Eigen::Vector3d;
 
 Trajectory followed(const TradeOffCase& of, const TradeOffPoint& point) {
   Trajectory trajectory = follow(of.motion, of.fabric, point);

@@ -107,7 +107,7 @@ TEST(BendingCloth, ACylinderOfTheRestCurvatureIsAtRest) {
     ModelledEffects effects = bendingAnd(Vector3d::Zero());
     effects.bending_settings = {model, {kCurvature, 0.0}};
     const Cloth cloth(square(8), stiffFabric(), effects);
-    const auto energyOf = [&](double curvature) {
+    const auto energy_of = [&](double curvature) {
       ClothState state = cloth.initialState();
       for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
         const Eigen::Vector2d& rest = cloth.mesh().rest_coordinates[i];
@@ -117,13 +117,13 @@ TEST(BendingCloth, ACylinderOfTheRestCurvatureIsAtRest) {
       }
       return cloth.forces().find<Bending>()->energy(state.ofForces());
     };
-    const double flat = energyOf(1e-9);
+    const double flat = energy_of(1e-9);
     // Across a free edge nothing is resisted: half a cell along both has no energy.
     EXPECT_NEAR(flat, 0.5 * kRigidity * kCurvature * kCurvature * 0.1 * 0.1 * 7.0 / 8.0,
                 1e-6 * flat);
     // Second order in that angle: a normal that is turned by half of it against the bending vector.
-    EXPECT_LT(energyOf(kCurvature), 1e-3 * flat);
-    EXPECT_NEAR(energyOf(-kCurvature), 4.0 * flat, 0.01 * flat);
+    EXPECT_LT(energy_of(kCurvature), 1e-3 * flat);
+    EXPECT_NEAR(energy_of(-kCurvature), 4.0 * flat, 0.01 * flat);
   }
 }
 

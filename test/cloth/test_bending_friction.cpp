@@ -91,11 +91,11 @@ TEST(BendingFriction, CylindersMeetHalfOfTheHysteresisOnEveryMesh) {
       const Bending bending(on.mesh, kRigidity, {model, {0.0, 0.0}});
       const BendingFriction friction(on.mesh, bending.hinges(), bending.corners(), kRigidity,
                                      kHysteresis);
-      const auto areaOf = [&](const Vector3d& w, double rigidity) {
+      const auto area_of = [&](const Vector3d& w, double rigidity) {
         return 2.0 * bending.energy(resting(bent(on.mesh, w))) / rigidity;
       };
-      const double weft = 0.5 * kHysteresis.weft * areaOf(Vector3d::UnitX(), kRigidity.weft);
-      const double warp = 0.5 * kHysteresis.warp * areaOf(Vector3d::UnitY(), kRigidity.warp);
+      const double weft = 0.5 * kHysteresis.weft * area_of(Vector3d::UnitX(), kRigidity.weft);
+      const double warp = 0.5 * kHysteresis.warp * area_of(Vector3d::UnitY(), kRigidity.warp);
       EXPECT_NEAR(yieldMoment(on.mesh, friction, Vector3d::UnitX()), weft, 1e-6 * weft) << on.name;
       EXPECT_NEAR(yieldMoment(on.mesh, friction, Vector3d::UnitY()), warp, 1e-6 * warp) << on.name;
       // In between: cos^2 of the one and sin^2 of the other, and twist meets nothing.

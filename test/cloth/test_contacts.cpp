@@ -10,7 +10,6 @@
 namespace haptex::cloth {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 ModelledEffects withContacts(const Vector3d& gravity = Vector3d::Zero()) {

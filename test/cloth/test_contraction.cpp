@@ -186,7 +186,7 @@ TEST(Contraction, EnergyOfASwingInItIsKept) {
 
 TEST(Contraction, IsRefusedWhereTheFabricHasNone) {
   try {
-    Cloth(square(2), linearFabric(), contracting());
+    const Cloth refused(square(2), linearFabric(), contracting());
     FAIL() << "not refused";
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),

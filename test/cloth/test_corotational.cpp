@@ -9,7 +9,6 @@
 namespace haptex::cloth {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 

@@ -220,13 +220,13 @@ TEST_P(EveryElasticity, NewtonsGradientAndHessianAreThoseOfTheIncrementalPotenti
   const double h = 0.01;
   const auto begin = heldBefore(cloth.forces(), state.ofForces(), h);
   for (Vector3d& position : state.positions) position += 1e-4 * Vector3d(0.3, position.y() * 20, 1);
-  const auto systemAt = [&](const ClothState& at) {
+  const auto system_at = [&](const ClothState& at) {
     System system(cloth);
     cloth.forces().assembleNewton(at.ofForces(), begin.data(), h, Hessian::kExact, system.matrix,
                                   system.rhs);
     return system;
   };
-  const System system = systemAt(state);
+  const System system = system_at(state);
   const Eigen::MatrixXd hessian = dense(system.matrix);
   constexpr double kStep = 1e-7;  // m
   for (int particle : {0, 5, 6, 15}) {
@@ -240,7 +240,7 @@ TEST_P(EveryElasticity, NewtonsGradientAndHessianAreThoseOfTheIncrementalPotenti
       const double slope = (potential(above) - potential(below)) / (2.0 * kStep);
       EXPECT_NEAR(system.rhs(axis, particle), -h * slope, 1e-6 * system.rhs.norm());
       const Eigen::VectorXd column =
-          -h * (stacked(systemAt(above).rhs) - stacked(systemAt(below).rhs)) / (2.0 * kStep);
+          -h * (stacked(system_at(above).rhs) - stacked(system_at(below).rhs)) / (2.0 * kStep);
       EXPECT_LT((hessian.col(3 * particle + axis) - column).norm(), 1e-6 * hessian.norm());
     }
   }

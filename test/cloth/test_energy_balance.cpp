@@ -156,7 +156,7 @@ TEST(EnergyBalance, LetsAStepGainWhatThoseBeforeItHaveLost) {
   const Cloth cloth(square(1), material::linearFabric(100.0), {});
   ClothState state = cloth.initialState();
   EnergyBalance balance(cloth);
-  const auto excessOf = [&](double speed, bool keeps) {
+  const auto excess_of = [&](double speed, bool keeps) {
     ClothState next = state;
     next.velocities[0].x() = speed;
     balance.begin(cloth, state);
@@ -168,17 +168,17 @@ TEST(EnergyBalance, LetsAStepGainWhatThoseBeforeItHaveLost) {
   };
   const auto energy = [&](double speed) { return 0.5 * cloth.masses()[0] * speed * speed; };
   state.velocities[0].x() = 2.0;
-  EXPECT_LT(excessOf(1.0, true), 0.0);  // loses
+  EXPECT_LT(excess_of(1.0, true), 0.0);  // loses
   for (int step = 1; step < EnergyBalance::kRemembered; ++step) {
-    EXPECT_LE(excessOf(2.0, false), 0.0) << step;
-    EXPECT_NEAR(excessOf(3.0, false), energy(3.0) - energy(2.0), 1e-9 * energy(3.0)) << step;
-    EXPECT_LE(excessOf(1.0, true), 0.0) << step;
+    EXPECT_LE(excess_of(2.0, false), 0.0) << step;
+    EXPECT_NEAR(excess_of(3.0, false), energy(3.0) - energy(2.0), 1e-9 * energy(3.0)) << step;
+    EXPECT_LE(excess_of(1.0, true), 0.0) << step;
   }
-  EXPECT_LE(excessOf(1.5, true), 0.0);
-  EXPECT_NEAR(excessOf(2.0, false), energy(2.0) - energy(1.5), 1e-9 * energy(2.0));  // too late
-  excessOf(0.5, true);
+  EXPECT_LE(excess_of(1.5, true), 0.0);
+  EXPECT_NEAR(excess_of(2.0, false), energy(2.0) - energy(1.5), 1e-9 * energy(2.0));  // too late
+  excess_of(0.5, true);
   for (Vector3d& position : state.positions) position.x() += 0.5;  // goes on elsewhere
-  EXPECT_GT(excessOf(1.0, false), 0.0);
+  EXPECT_GT(excess_of(1.0, false), 0.0);
 }
 
 TEST(EnergyBalance, TakesWhatIsNotFiniteForExcess) {

@@ -265,7 +265,7 @@ TEST(Bdf2, StartsAnewFromAStateThatItDidNotLeave) {
   Cloth cloth(square(3), linearFabric(), effects);
   attachTop(cloth);
   const StepSettings settings = settingsOf(Method::kBdf2);
-  const auto stepAnew = [&](ClothState from) {
+  const auto step_anew = [&](ClothState from) {
     Integrator(cloth, settings).step(cloth, from, 0.01);
     return from;
   };
@@ -276,7 +276,7 @@ TEST(Bdf2, StartsAnewFromAStateThatItDidNotLeave) {
     if (change == 1) other.positions[0].x() += 1e-6;
     if (change == 2) other.velocities[0].x() += 1e-6;
     if (change == 3) other.time += 1.0;
-    const ClothState anew = stepAnew(other);
+    const ClothState anew = step_anew(other);
     integrator.step(cloth, other, 0.01);
     EXPECT_EQ(other.positions == anew.positions, change != 0) << change;
     EXPECT_EQ(other.velocities == anew.velocities, change != 0) << change;

@@ -95,10 +95,10 @@ TEST(PointLoads, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce) {
   // so that central differences are exact but for rounding.
   const std::vector<JacobianBlock> bare = cloth.jacobian(state, all);
   std::vector<Vector3d> bare_forces, forces, beyond, before;
-  const auto loadEnergy = [&](const ClothState& at) {
+  const auto load_energy = [&](const ClothState& at) {
     return cloth.forces().find<PointLoads>()->energy(at.ofForces());
   };
-  const auto loadForces = [&](const ClothState& at, std::vector<Vector3d>& result) {
+  const auto load_forces = [&](const ClothState& at, std::vector<Vector3d>& result) {
     result.assign(cloth.particleCount(), Vector3d::Zero());
     cloth.forces().find<PointLoads>()->addForces(at.ofForces(), result);
   };
@@ -106,11 +106,11 @@ TEST(PointLoads, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce) {
   const double bare_energy = cloth.potentialEnergy(state);
   cloth.setPointLoads({load(0), load(1), load(11, 50.0)});
   cloth.computeForces(state, forces);
-  loadForces(state, beyond);
+  load_forces(state, beyond);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_LT((forces[i] - bare_forces[i] - beyond[i]).norm(), 1e-12);
   }
-  EXPECT_NEAR(cloth.potentialEnergy(state) - bare_energy, loadEnergy(state), 1e-12);
+  EXPECT_NEAR(cloth.potentialEnergy(state) - bare_energy, load_energy(state), 1e-12);
 
   const std::vector<JacobianBlock> loaded = cloth.jacobian(state, all);
   ASSERT_EQ(loaded.size(), bare.size());
@@ -127,11 +127,11 @@ TEST(PointLoads, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce) {
     for (int axis = 0; axis < 3; ++axis) {
       ClothState moved = state;
       moved.positions[particle][axis] += step;
-      loadForces(moved, beyond);
-      const double energy_beyond = loadEnergy(moved);
+      load_forces(moved, beyond);
+      const double energy_beyond = load_energy(moved);
       moved.positions[particle][axis] -= 2.0 * step;
-      loadForces(moved, before);
-      const double slope = (energy_beyond - loadEnergy(moved)) / (2.0 * step);
+      load_forces(moved, before);
+      const double slope = (energy_beyond - load_energy(moved)) / (2.0 * step);
       EXPECT_NEAR(here[particle][axis], -slope, 1e-10);
       for (std::size_t i = 0; i < all.size(); ++i) {
         const Vector3d column = (beyond[i] - before[i]) / (2.0 * step);
@@ -277,14 +277,14 @@ std::string refusal(Cloth& cloth, const std::vector<PointLoad>& loads) {
 TEST(PointLoads, AreRefusedByIndexAndReasonAndThenTheOldOnesStay) {
   Cloth cloth(square(2), linearFabric(), loadedEffects());
   cloth.setPointLoads({load(3)});
-  const auto expectRefused = [&](const PointLoad& bad, const std::string& expected) {
+  const auto expect_refused = [&](const PointLoad& bad, const std::string& expected) {
     const std::string message = refusal(cloth, {load(0), bad});
     EXPECT_NE(message.find("point load 1: " + expected), std::string::npos) << message;
     ASSERT_EQ(loadsOf(cloth).size(), 1u);
     EXPECT_EQ(loadsOf(cloth)[0].triangle, 3);
   };
-  expectRefused(load(8), "triangle 8 does not exist; the cloth has triangles 0 to 7");
-  expectRefused(load(-1), "triangle -1 does not exist");
+  expect_refused(load(8), "triangle 8 does not exist; the cloth has triangles 0 to 7");
+  expect_refused(load(-1), "triangle -1 does not exist");
   for (double number : {kNaN, std::numeric_limits<double>::infinity()}) {
     for (int what = 0; what < 4; ++what) {
       PointLoad bad = load(0);
@@ -292,21 +292,21 @@ TEST(PointLoads, AreRefusedByIndexAndReasonAndThenTheOldOnesStay) {
        : what == 1 ? bad.position[2]
        : what == 2 ? bad.force[0]
                    : bad.stiffness(2, 1)) = number;
-      expectRefused(bad, "a number of its weights");
+      expect_refused(bad, "a number of its weights");
     }
   }
   PointLoad bad = load(0);
   bad.weights[0] += 2e-6;
-  expectRefused(bad, "the weights sum to 1");
+  expect_refused(bad, "the weights sum to 1");
   bad = load(0);
   bad.stiffness(0, 1) += 1.0;
-  expectRefused(bad, "the stiffness differs from its transpose");
+  expect_refused(bad, "the stiffness differs from its transpose");
   bad = load(0);
   bad.stiffness = Vector3d(100.0, -0.1, 0.0).asDiagonal();
-  expectRefused(bad, "the stiffness has the eigenvalue -0.1");
+  expect_refused(bad, "the stiffness has the eigenvalue -0.1");
   bad.stiffness = Vector3d(100.0, 100.0, 0.0).asDiagonal();
   bad.stiffness(0, 1) = bad.stiffness(1, 0) = 101.0;  // no negative diagonal, but indefinite
-  expectRefused(bad, "the stiffness has the eigenvalue -1");
+  expect_refused(bad, "the stiffness has the eigenvalue -1");
   const std::string message = refusal(cloth, std::vector<PointLoad>(PointLoads::kMax + 1, load(0)));
   EXPECT_EQ(message, "there are 4097 point loads; allowed are 4096");
   EXPECT_EQ(loadsOf(cloth).size(), 1u);

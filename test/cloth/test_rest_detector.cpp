@@ -68,13 +68,13 @@ TEST(RestDetector, SeesADampedSwingOnlyWhereItHasDiedAway) {
 }
 
 TEST(RestDetector, NeverRestsWhereSomethingGoesOnMoving) {
-  const auto restsAt = [](const std::function<double(double)>& motion) {
+  const auto rests_at = [](const std::function<double(double)>& motion) {
     return Watched(motion).restsAt(300.0);
   };
-  EXPECT_EQ(restsAt([](double time) { return 1e-8 * time; }), HUGE_VAL) << "a steady creep";
-  EXPECT_EQ(restsAt([](double time) { return 1e-5 * std::sin(6.0 * time); }), HUGE_VAL);
-  EXPECT_EQ(restsAt([](double time) { return 1e-5 * std::sin(time); }), HUGE_VAL);
-  EXPECT_EQ(restsAt([](double time) { return 1e-6 * std::exp(0.01 * time); }), HUGE_VAL);
+  EXPECT_EQ(rests_at([](double time) { return 1e-8 * time; }), HUGE_VAL) << "a steady creep";
+  EXPECT_EQ(rests_at([](double time) { return 1e-5 * std::sin(6.0 * time); }), HUGE_VAL);
+  EXPECT_EQ(rests_at([](double time) { return 1e-5 * std::sin(time); }), HUGE_VAL);
+  EXPECT_EQ(rests_at([](double time) { return 1e-6 * std::exp(0.01 * time); }), HUGE_VAL);
 }
 
 TEST(RestDetector, RestsAfterItsWindowsWhereNothingMovesButRounding) {

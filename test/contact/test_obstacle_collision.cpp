@@ -14,7 +14,6 @@ namespace {
 using cloth::ClothState;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-using mesh::ClothMesh;
 using mesh::Obstacle;
 
 Isometry3d at(const Vector3d& place) { return Isometry3d(Eigen::Translation3d(place)); }

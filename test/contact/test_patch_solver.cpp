@@ -103,6 +103,32 @@ TEST_F(PatchSolverTest, AKeptFactorGivesTheSolutionOfTheMatrixOfNow) {
   }
 }
 
+TEST_F(PatchSolverTest, WhatGoesOnEvenlyTakesNoIteration) {
+  fill(mesh_, 0.3, 5, matrix_);
+  PatchSolver solver(matrix_);
+  BlockVector solution = rhs_;
+  const BlockVector first = rhs_;
+  for (int i = 0; i < 10; ++i) {
+    rhs_ = (1.0 + 0.1 * i) * first;
+    ASSERT_TRUE(solver.solve(matrix_, rhs_, Vector3d::Zero(), solution));
+    EXPECT_EQ(solver.iterations() > 0, i < 2) << i;
+    EXPECT_LT(errorOf(solution), 1e-3) << i;
+  }
+}
+
+TEST_F(PatchSolverTest, ALeapAfterWhatWentOnEvenlyIsSolvedAsWell) {
+  fill(mesh_, 0.3, 5, matrix_);
+  PatchSolver solver(matrix_);
+  BlockVector solution = rhs_;
+  const BlockVector first = rhs_;
+  for (const double factor : {1.0, 1.1, 1.2, -50.0, 1e-2, 1e3}) {
+    rhs_ = factor * first;
+    rhs_.col(3) = factor * Vector3d(1.0, 2.0, factor);
+    ASSERT_TRUE(solver.solve(matrix_, rhs_, Vector3d::Zero(), solution));
+    EXPECT_LT(errorOf(solution), 1e-3) << factor;
+  }
+}
+
 TEST_F(PatchSolverTest, AnImprovementNeverMakesASolutionWorse) {
   PatchSolver solver(matrix_);
   BlockVector solution = rhs_;

@@ -55,8 +55,8 @@ TEST(CommandCheck, TakesAPassiveTouchInEveryDirection) {
 }
 
 TEST(CommandCheck, TakesNumbersAtTheirBoundsAndNoneBeyond) {
-  const auto expectBound = [](double largest, const char* name, const char* unit,
-                              const std::function<void(ForceCommand&, double)>& set) {
+  const auto expect_bound = [](double largest, const char* name, const char* unit,
+                               const std::function<void(ForceCommand&, double)>& set) {
     ForceCommand command = touch();
     set(command, largest);
     EXPECT_EQ(findFlaw(command), CommandFlaw::kNone) << name;
@@ -66,13 +66,13 @@ TEST(CommandCheck, TakesNumbersAtTheirBoundsAndNoneBeyond) {
                  {name, "allowed are numbers of a norm up to", unit});
     }
   };
-  expectBound(1000.0, "force = ", " N", [](auto& c, double x) { c.force = {0.0, -x, 0.0}; });
-  expectBound(10.0, "position = ", " m", [](auto& c, double x) { c.position = {0.0, 0.0, x}; });
-  expectBound(100.0, "velocity = ", " m/s", [](auto& c, double x) { c.velocity = {x, 0.0, 0.0}; });
-  expectBound(1e5, "stiffness = ", " N/m", [](auto& c, double x) {
+  expect_bound(1000.0, "force = ", " N", [](auto& c, double x) { c.force = {0.0, -x, 0.0}; });
+  expect_bound(10.0, "position = ", " m", [](auto& c, double x) { c.position = {0.0, 0.0, x}; });
+  expect_bound(100.0, "velocity = ", " m/s", [](auto& c, double x) { c.velocity = {x, 0.0, 0.0}; });
+  expect_bound(1e5, "stiffness = ", " N/m", [](auto& c, double x) {
     c.stiffness = x * Matrix3d::Identity().row(1).transpose() * Matrix3d::Identity().row(1);
   });
-  expectBound(1e3, "damping = ", " N s/m", [](auto& c, double x) {
+  expect_bound(1e3, "damping = ", " N s/m", [](auto& c, double x) {
     c.damping.setZero();
     c.damping(2, 2) = x;
   });

@@ -204,12 +204,12 @@ TEST(DeviceLink, SpeaksWithADevice) {
   FirmwareModel device(kDevice);
   for (int i = 0; i < 1000; ++i) {
     const Time now = milliseconds(i);
-    const auto toDevice = [&](Bytes bytes) { device.receive(bytes.data, bytes.size, now); };
-    const auto toLink = [&](Bytes bytes) { link.receive(bytes.data, bytes.size, now); };
-    toDevice(link.poll(now));
-    toDevice(link.send(commandOf(DriveMode::kForce, 700)));
-    toLink(device.answer());
-    toLink(device.report(stateAt(static_cast<std::uint32_t>(i)), now));
+    const auto to_device = [&](Bytes bytes) { device.receive(bytes.data, bytes.size, now); };
+    const auto to_link = [&](Bytes bytes) { link.receive(bytes.data, bytes.size, now); };
+    to_device(link.poll(now));
+    to_device(link.send(commandOf(DriveMode::kForce, 700)));
+    to_link(device.answer());
+    to_link(device.report(stateAt(static_cast<std::uint32_t>(i)), now));
     const DeviceState* state = link.takeState();
     ASSERT_NE(state, nullptr) << i;
     EXPECT_EQ(state->time, static_cast<std::uint32_t>(i));

@@ -225,7 +225,7 @@ TEST_P(EmulatedFingerOf, StaysFiniteUnderAnyTorques) {
 
 // kg along the principal directions, ascending: Khatib's operational space inertia.
 Vector3d apparentMasses(const EmulatedFinger& finger) {
-  const Matrix3d jacobian = finger.motorJacobian();
+  const Matrix3d& jacobian = finger.motorJacobian();
   const Matrix3d mobility = jacobian * finger.massMatrix().inverse() * jacobian.transpose();
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(mobility).eigenvalues().cwiseInverse().reverse();
 }

@@ -59,8 +59,8 @@ class FaultyLoop {
  public:
   explicit FaultyLoop(unsigned seed = 1) : loop(shippedUrdf(), seed) {
     const PerFinger<Vector3d> open = openHand();
-    const Vector3d index = open[Finger::kIndex];
-    const Vector3d thumb = open[Finger::kThumb];
+    const Vector3d& index = open[Finger::kIndex];
+    const Vector3d& thumb = open[Finger::kThumb];
     apart_ = (index - thumb).normalized();
     loop.device().setTarget(Finger::kIndex, index);
     loop.device().setTarget(Finger::kThumb, thumb);
@@ -226,14 +226,14 @@ TEST(Faults, TheMotorsAreOffWithinTenMillisecondsAfterTheCommandersDeath) {
 
 TEST(Faults, TheDriverDoesNotWaitForTheAnswersOfADeadCommander) {
   const PerFinger<Vector3d> open = openHand();
-  const auto motorsOn = [&](oracles::DyingPart part) {
+  const auto motors_until = [&](oracles::DyingPart part) {
     return oracles::dieInAHold(shippedUrdf(), open, kCommanded, part).motors_on;
   };
   // Within the tick after the death, to the quarter of a period in which that was looked for, as
   // when the driver itself dies; DriverLoop::kAnswerPatience would come on top.
   const double period = 1e3 * base::seconds(DriverLoop::kPeriod);
-  EXPECT_LT(motorsOn(oracles::DyingPart::kCommander),
-            motorsOn(oracles::DyingPart::kDriver) + 1.25 * period);
+  EXPECT_LT(motors_until(oracles::DyingPart::kCommander),
+            motors_until(oracles::DyingPart::kDriver) + 1.25 * period);
 }
 
 TEST(Faults, TheMotorsAreOffTwentyMillisecondsAfterCommanderOrDriverFellSilent) {

@@ -62,11 +62,11 @@ TEST(ForceController, FeedForwardIsTheTransposeOfTheJacobian) {
 TEST(ForceController, CorrectsWhatTheSensorMisses) {
   const Vector3d desired(1.0, 0.0, 0.0), missing(0.0, 0.2, -0.1);
   ForceController controller;
-  Vector3d lost = missing, force = kZero;
+  Vector3d force = kZero;
   for (int i = 0; i < 1000; ++i) {
-    force = forceOf(controller.tick(input(desired, force - lost)));
+    force = forceOf(controller.tick(input(desired, force - missing)));
   }
-  EXPECT_LT((force - lost - desired).norm(), 0.001);
+  EXPECT_LT((force - missing - desired).norm(), 0.001);
   EXPECT_LT((controller.correction() - missing).norm(), 0.001);
 }
 

@@ -27,16 +27,16 @@ struct Transition {
 };
 
 TEST(OperatingState, EveryRequestInEveryMode) {
-  const Mode D = Mode::kDisabled, E = Mode::kEnabled, P = Mode::kPaused, F = Mode::kFault;
+  const Mode d = Mode::kDisabled, e = Mode::kEnabled, p = Mode::kPaused, f = Mode::kFault;
   const Transition table[] = {
-      {"enable", D, true, E},  {"enable", E, false, E}, {"enable", P, true, E},
-      {"enable", F, false, F}, {"pause", D, false, D},  {"pause", E, true, P},
-      {"pause", P, false, P},  {"pause", F, false, F},  {"disable", D, true, D},
-      {"disable", E, true, D}, {"disable", P, true, D}, {"disable", F, false, F},
-      {"home", D, true, D},    {"home", E, false, E},   {"home", P, false, P},
-      {"home", F, false, F},   {"clear", D, false, D},  {"clear", E, false, E},
-      {"clear", P, false, P},  {"clear", F, true, D},   {"fault", D, true, F},
-      {"fault", E, true, F},   {"fault", P, true, F},   {"fault", F, true, F},
+      {"enable", d, true, e},  {"enable", e, false, e}, {"enable", p, true, e},
+      {"enable", f, false, f}, {"pause", d, false, d},  {"pause", e, true, p},
+      {"pause", p, false, p},  {"pause", f, false, f},  {"disable", d, true, d},
+      {"disable", e, true, d}, {"disable", p, true, d}, {"disable", f, false, f},
+      {"home", d, true, d},    {"home", e, false, e},   {"home", p, false, p},
+      {"home", f, false, f},   {"clear", d, false, d},  {"clear", e, false, e},
+      {"clear", p, false, p},  {"clear", f, true, d},   {"fault", d, true, f},
+      {"fault", e, true, f},   {"fault", p, true, f},   {"fault", f, true, f},
   };
   for (const Transition& row : table) {
     OperatingStateMachine machine = in(row.from);

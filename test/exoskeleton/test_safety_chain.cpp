@@ -296,8 +296,8 @@ class Chaos {
   explicit Chaos(unsigned seed) : generator_(seed) {}
 
   double number() {
-    static const double kOdd[] = {kNan,  kInfinity, -kInfinity, 1e300, -1e300,
-                                  1e308, 5.0,       5e-324,     0.0,   -0.0};
+    static constexpr double kOdd[] = {kNan,  kInfinity, -kInfinity, 1e300, -1e300,
+                                      1e308, 5.0,       5e-324,     0.0,   -0.0};
     if (chance(0.02)) return kOdd[generator_() % 10];
     return chance(0.1) ? 1000.0 * normal_(generator_) : 4.0 * normal_(generator_);
   }

@@ -26,14 +26,14 @@ class Listener {
   explicit Listener(LineEnd end) : parser_(end) {}
 
   template <typename OnFrame>
-  void hear(const ByteVector& bytes, std::mt19937& generator, OnFrame onFrame) {
+  void hear(const ByteVector& bytes, std::mt19937& generator, OnFrame on_frame) {
     for (std::size_t at = 0; at < bytes.size();) {
       const std::size_t piece = std::min<std::size_t>(1 + generator() % 97, bytes.size() - at);
       Bytes rest{bytes.data() + at, piece};
       while (const Frame* frame = parser_.next(rest)) {
         good_bytes_ += frame->bytes.size;
         decoded_ += decodes(*frame);
-        onFrame(*frame);
+        on_frame(*frame);
       }
       at += piece;
     }

@@ -80,14 +80,14 @@ TEST(SurfaceFile, ReadsEveryNumberOfAFileOfHeights) {
 }
 
 TEST(SurfaceFile, FindsTheHeightsFromTheDirectoryOfTheFabricFile) {
-  const auto pathOf = [](const std::string& file) {
+  const auto path_of = [](const std::string& file) {
     const Surface surface = surfaceOf(replaced(kScanned, "twill.png", file));
     return std::filesystem::path(std::get<HeightFile>(surface.relief).path);
   };
   const std::filesystem::path directory(testing::TempDir());
-  EXPECT_EQ(pathOf("twill.png"), directory / "twill.png");
-  EXPECT_EQ(pathOf("scans/twill.raw"), directory / "scans/twill.raw");
-  EXPECT_EQ(pathOf("/scans/twill.png"), "/scans/twill.png");
+  EXPECT_EQ(path_of("twill.png"), directory / "twill.png");
+  EXPECT_EQ(path_of("scans/twill.raw"), directory / "scans/twill.raw");
+  EXPECT_EQ(path_of("/scans/twill.png"), "/scans/twill.png");
 }
 
 TEST(SurfaceFile, KeepsTheProvenanceOfKesValuesAndRelief) {

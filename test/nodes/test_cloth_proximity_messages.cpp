@@ -72,23 +72,23 @@ TEST_F(ClothProximityTest, DropsStatesThatCannotBe) {
 
 TEST_F(ClothProximityTest, DropsMeshesThatCannotBe) {
   setCloth();
-  const auto expectMeshDropped = [&](const std::function<void(haptex::ClothMesh&)>& spoil,
-                                     const std::string& says) {
+  const auto expect_mesh_dropped = [&](const std::function<void(haptex::ClothMesh&)>& spoil,
+                                       const std::string& says) {
     haptex::ClothMesh message = testMeshMessage(mesh_);
     spoil(message);
     expectDropped([&] { proximity_.setMesh(message); }, "cloth/mesh: " + says);
   };
   using Mesh = haptex::ClothMesh;
-  expectMeshDropped([](Mesh& m) { m.triangles.clear(); }, "triangles has 0 elements");
-  expectMeshDropped([](Mesh& m) { m.triangles.pop_back(); }, "triangles has 383 elements");
-  expectMeshDropped([](Mesh& m) { m.triangles[7] = 81; }, "triangles[7] = 81: there are 81");
-  expectMeshDropped([](Mesh& m) { m.triangles[7] = 4294967295u; }, "triangles[7] = 4294967295");
-  expectMeshDropped([](Mesh& m) { m.rest_weft_coordinates.pop_back(); },
-                    "rest_weft_coordinates has 80 elements and rest_warp_coordinates 81");
-  expectMeshDropped([](Mesh& m) { m.rest_weft_coordinates[3] = kNaN; },
-                    "rest coordinates of particle 3 = (nan");
-  expectMeshDropped([](Mesh& m) { m.rest_warp_coordinates[4] = -1e10; },
-                    "rest coordinates of particle 4 = (");
+  expect_mesh_dropped([](Mesh& m) { m.triangles.clear(); }, "triangles has 0 elements");
+  expect_mesh_dropped([](Mesh& m) { m.triangles.pop_back(); }, "triangles has 383 elements");
+  expect_mesh_dropped([](Mesh& m) { m.triangles[7] = 81; }, "triangles[7] = 81: there are 81");
+  expect_mesh_dropped([](Mesh& m) { m.triangles[7] = 4294967295u; }, "triangles[7] = 4294967295");
+  expect_mesh_dropped([](Mesh& m) { m.rest_weft_coordinates.pop_back(); },
+                      "rest_weft_coordinates has 80 elements and rest_warp_coordinates 81");
+  expect_mesh_dropped([](Mesh& m) { m.rest_weft_coordinates[3] = kNaN; },
+                      "rest coordinates of particle 3 = (nan");
+  expect_mesh_dropped([](Mesh& m) { m.rest_warp_coordinates[4] = -1e10; },
+                      "rest coordinates of particle 4 = (");
 }
 
 TEST_F(ClothProximityTest, BuildsOnceForAMeshThatComesAgain) {

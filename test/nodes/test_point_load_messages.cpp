@@ -48,8 +48,8 @@ TEST(PointLoadMessages, KeepEveryNumberInItsPlace) {
 TEST(PointLoadMessages, AreRefusedForWhatIsWrongWithThem) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   using Message = haptex::ContactForces;
-  const auto expectRefused = [](const std::function<void(Message&)>& spoil,
-                                const std::string& expected) {
+  const auto expect_refused = [](const std::function<void(Message&)>& spoil,
+                                 const std::string& expected) {
     Message message = twoForces();
     spoil(message);
     try {
@@ -59,31 +59,31 @@ TEST(PointLoadMessages, AreRefusedForWhatIsWrongWithThem) {
       EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
     }
   };
-  expectRefused([](Message& m) { m.header.frame_id = "map"; }, "header.frame_id = 'map'");
-  expectRefused([](Message& m) { m.barycentric.pop_back(); }, "barycentric has 5 elements");
-  expectRefused([](Message& m) { m.positions.clear(); }, "positions has 0 elements");
-  expectRefused([](Message& m) { m.forces.resize(3); }, "forces has 3 elements");
-  expectRefused([](Message& m) { m.stiffness.resize(9); }, "stiffness has 9 elements");
-  expectRefused([](Message& m) { m.triangles.pop_back(); }, "barycentric has 6 elements");
-  expectRefused([](Message& m) { m.triangles.resize(4097); }, "4097 elements: allowed are 4096");
-  expectRefused([](Message& m) { m.triangles[1] = 32; }, "triangles[1] = 32 does not exist");
-  expectRefused([](Message& m) { m.triangles[1] = 4294967295u; }, "4294967295 does not exist");
-  expectRefused([=](Message& m) { m.forces[1].y = nan; }, "point load 1");
-  expectRefused([=](Message& m) { m.positions[0].y = nan; }, "point load 0");
-  expectRefused([=](Message& m) { m.stiffness[17] = nan; }, "not finite");
-  expectRefused([=](Message& m) { m.barycentric[0] = nan; }, "not finite");
-  expectRefused([](Message& m) { m.barycentric[0] = 0.3; }, "the weights sum to 1.1");
-  expectRefused([](Message& m) { m.stiffness[1] = 2.5; }, "differs from its transpose");
-  expectRefused([](Message& m) { m.stiffness[0] = -1.0; }, "positive semidefinite");
-  expectRefused(
+  expect_refused([](Message& m) { m.header.frame_id = "map"; }, "header.frame_id = 'map'");
+  expect_refused([](Message& m) { m.barycentric.pop_back(); }, "barycentric has 5 elements");
+  expect_refused([](Message& m) { m.positions.clear(); }, "positions has 0 elements");
+  expect_refused([](Message& m) { m.forces.resize(3); }, "forces has 3 elements");
+  expect_refused([](Message& m) { m.stiffness.resize(9); }, "stiffness has 9 elements");
+  expect_refused([](Message& m) { m.triangles.pop_back(); }, "barycentric has 6 elements");
+  expect_refused([](Message& m) { m.triangles.resize(4097); }, "4097 elements: allowed are 4096");
+  expect_refused([](Message& m) { m.triangles[1] = 32; }, "triangles[1] = 32 does not exist");
+  expect_refused([](Message& m) { m.triangles[1] = 4294967295u; }, "4294967295 does not exist");
+  expect_refused([=](Message& m) { m.forces[1].y = nan; }, "point load 1");
+  expect_refused([=](Message& m) { m.positions[0].y = nan; }, "point load 0");
+  expect_refused([=](Message& m) { m.stiffness[17] = nan; }, "not finite");
+  expect_refused([=](Message& m) { m.barycentric[0] = nan; }, "not finite");
+  expect_refused([](Message& m) { m.barycentric[0] = 0.3; }, "the weights sum to 1.1");
+  expect_refused([](Message& m) { m.stiffness[1] = 2.5; }, "differs from its transpose");
+  expect_refused([](Message& m) { m.stiffness[0] = -1.0; }, "positive semidefinite");
+  expect_refused(
       [](Message& m) { m.forces[1].y = -1e308; },
       "force of point 1 = (      0 -1e+308   -0.02): allowed are numbers of a norm up to 1000");
-  expectRefused([](Message& m) { m.forces[0].y = 1001.0; }, "up to 1000 N");
-  expectRefused([](Message& m) { m.stiffness[0] = 1e308; }, "stiffness of point 0");
-  expectRefused([](Message& m) { m.stiffness[0] = -1e6; }, "up to 100000 N/m");
-  expectRefused([](Message& m) { m.positions[1].x = 1e300; }, "position of point 1");
-  expectRefused([](Message& m) { m.barycentric = {1e9, -1e9, 1.0, 1.0, 0.0, 0.0}; },
-                "weights of point 0");
+  expect_refused([](Message& m) { m.forces[0].y = 1001.0; }, "up to 1000 N");
+  expect_refused([](Message& m) { m.stiffness[0] = 1e308; }, "stiffness of point 0");
+  expect_refused([](Message& m) { m.stiffness[0] = -1e6; }, "up to 100000 N/m");
+  expect_refused([](Message& m) { m.positions[1].x = 1e300; }, "position of point 1");
+  expect_refused([](Message& m) { m.barycentric = {1e9, -1e9, 1.0, 1.0, 0.0, 0.0}; },
+                 "weights of point 0");
 }
 
 TEST(PointLoadMessages, WhatIsAcceptedTheClothAccepts) {

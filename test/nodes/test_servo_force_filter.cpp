@@ -8,7 +8,6 @@ namespace haptex::nodes {
 namespace {
 
 using base::Time;
-using exoskeleton::ForceCommand;
 using namespace std::chrono_literals;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -95,7 +95,7 @@ TEST(PinchedSheet, IsWhatParticleContactConvergesTo) {
   contact::Fingertip fingertip;
   fingertip.position = {0.13e-3, -0.29e-3, -z};  // not on a particle
   fingertip.radius = kRadius;
-  const auto errorAt = [&](double spacing) {
+  const auto error_at = [&](double spacing) {
     std::vector<Eigen::Vector3d> positions;
     const int half = static_cast<int>(0.008 / spacing);
     for (int i = -half; i <= half; ++i) {
@@ -111,9 +111,9 @@ TEST(PinchedSheet, IsWhatParticleContactConvergesTo) {
     }
     return std::abs(force - expected) / expected;
   };
-  EXPECT_LT(errorAt(1e-3), 2e-2);
-  EXPECT_LT(errorAt(0.25e-3), 2e-3);
-  EXPECT_LT(errorAt(0.0625e-3), 2e-4);
+  EXPECT_LT(error_at(1e-3), 2e-2);
+  EXPECT_LT(error_at(0.25e-3), 2e-3);
+  EXPECT_LT(error_at(0.0625e-3), 2e-4);
 }
 
 std::string refusalOf(double radius, double distance) {

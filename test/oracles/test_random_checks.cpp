@@ -168,12 +168,12 @@ TEST(ValidateProgram, PrintsItsSeedFirstAndRepeatsByIt) {
 }
 
 TEST(ValidateProgram, DrawsAnotherSeedEveryTimeThatItIsNotTold) {
-  const auto seedOf = [](const Output& output) {
+  const auto seed_of = [](const Output& output) {
     return output.text.substr(0, output.text.find('\n'));
   };
   const Output a = validate(kConfig + "material"), b = validate(kConfig + "material");
-  EXPECT_EQ(seedOf(a).rfind("seed\t", 0), 0u);
-  EXPECT_NE(seedOf(a), seedOf(b));
+  EXPECT_EQ(seed_of(a).rfind("seed\t", 0), 0u);
+  EXPECT_NE(seed_of(a), seed_of(b));
 }
 
 TEST(ValidateProgram, RefusesOtherArguments) {

@@ -63,10 +63,10 @@ std::vector<Vector3d> transformed(const Eigen::Isometry3d& pose, std::vector<Vec
 void expectExact(const Hull& hull, const Triangle& triangle) {
   const std::vector<Vector3d> points = transformed(hull.obstacle.pose(), hull.points);
   const TrianglePoint point = hull.obstacle.closestPoint(triangle);
-  const auto fromHull = [&](const std::vector<Vector3d>& corners) {
+  const auto from_hull = [&](const std::vector<Vector3d>& corners) {
     return std::max(0.0, exactDistance<long double>(points, corners) - hull.radius);
   };
-  const double exact = fromHull(cornersOf(triangle));
+  const double exact = from_hull(cornersOf(triangle));
   EXPECT_NEAR(point.distance, exact, kRounding);
   if (exact == 0.0) {
     EXPECT_EQ(point.distance, 0.0);
@@ -74,7 +74,8 @@ void expectExact(const Hull& hull, const Triangle& triangle) {
   EXPECT_GE(point.barycentric.minCoeff(), 0.0);
   EXPECT_LE(point.barycentric.maxCoeff(), 1.0);
   EXPECT_NEAR(point.barycentric.sum(), 1.0, 1e-15);
-  EXPECT_NEAR(fromHull({point.on(triangle)}), exact, kRounding) << "the point has another distance";
+  EXPECT_NEAR(from_hull({point.on(triangle)}), exact, kRounding)
+      << "the point has another distance";
 }
 
 void expectExactForAllKinds(Hull (*make)(RandomTriangles&), int cases) {

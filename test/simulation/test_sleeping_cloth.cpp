@@ -94,23 +94,23 @@ TEST(SleepingCloth, StaysWhereASleeplessOneComesToRest) {
   for (const Settling& motion : settlingMotions()) {
     SimulatedCloth simulation(motion.scene, motion.fabric);
     Sleepless sleepless(simulation, motion.scene);
-    const auto stepBoth = [&] {
+    const auto step_both = [&] {
       ASSERT_TRUE(simulation.step());
       sleepless.step(simulation.timeStep());
     };
-    const auto stepFor = [&](double seconds) {
+    const auto step_for = [&](double seconds) {
       const double end = simulation.state().time + seconds;
-      while (simulation.state().time < end) stepBoth();
+      while (simulation.state().time < end) step_both();
     };
-    while (!simulation.asleep() && simulation.state().time < 100.0) stepBoth();
+    while (!simulation.asleep() && simulation.state().time < 100.0) step_both();
     ASSERT_TRUE(simulation.asleep()) << motion.name;
     EXPECT_LT(sleepless.distance(simulation), 1e-12) << motion.name << ": the same until then";
-    stepFor(20.0);
+    step_for(20.0);
     EXPECT_TRUE(simulation.asleep()) << motion.name;
     EXPECT_LT(sleepless.distance(simulation), cloth::RestDetector::kTolerance) << motion.name;
     simulation.move({kSmallTop}, {0.01, 0.02, 0.01}, 0.3);
     sleepless.move(kSmallTop, {0.01, 0.02, 0.01}, 0.3);
-    stepFor(0.1);
+    step_for(0.1);
     EXPECT_LT(sleepless.distance(simulation), 3.0 * cloth::RestDetector::kTolerance)
         << motion.name << ": on the way";
   }
@@ -178,18 +178,18 @@ TEST(SleepingCloth, ARefusedChangeLetsItSleep) {
 }
 
 TEST(SleepingCloth, DoesNotSleepWhileSomethingOutsideMoves) {
-  const auto sleepsWithin = [](SimulatedCloth simulation, double seconds) {
+  const auto sleeps_within = [](SimulatedCloth simulation, double seconds) {
     while (!simulation.asleep() && simulation.state().time < seconds) simulation.step();
     return simulation.asleep();
   };
   scene::Scene gusts = smallScene();
   gusts.effects.air = cloth::Air();
   gusts.effects.air->wind.gusts = {{{1e-6, 0.0, 0.0}, 0.01, 0.0}};
-  EXPECT_FALSE(sleepsWithin(SimulatedCloth(gusts, smallFabric()), 60.0));
+  EXPECT_FALSE(sleeps_within(SimulatedCloth(gusts, smallFabric()), 60.0));
 
   SimulatedCloth moved = smallSimulation();
   moved.move({kSmallTop}, {0.0, 0.0, 1e-3}, 1e6);  // which begins more slowly than a creep
-  EXPECT_FALSE(sleepsWithin(std::move(moved), 60.0));
+  EXPECT_FALSE(sleeps_within(std::move(moved), 60.0));
 
   scene::Scene obstacles = smallScene();
   obstacles.effects.contacts = true;
@@ -197,9 +197,9 @@ TEST(SleepingCloth, DoesNotSleepWhileSomethingOutsideMoves) {
   ball.pose.translation() = Vector3d(0.5, 0.0, -0.1);  // it does not touch the cloth
   ball.friction = 0.2;
   obstacles.obstacles = {ball};
-  EXPECT_TRUE(sleepsWithin(SimulatedCloth(obstacles, smallFabric()), 60.0)) << "it rests";
+  EXPECT_TRUE(sleeps_within(SimulatedCloth(obstacles, smallFabric()), 60.0)) << "it rests";
   obstacles.obstacles[0].motion = mesh::ObstacleDrift{{1e-4, 0.0, 0.0}};
-  EXPECT_FALSE(sleepsWithin(SimulatedCloth(obstacles, smallFabric()), 60.0));
+  EXPECT_FALSE(sleeps_within(SimulatedCloth(obstacles, smallFabric()), 60.0));
 }
 
 }  // namespace

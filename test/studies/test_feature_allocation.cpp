@@ -21,9 +21,9 @@ constexpr int kCells = 8;
 constexpr int kSteps = 32;  // the first stroke
 
 const FeatureScene& bare() {
-  static const FeatureScene kBare =
+  static const FeatureScene bare_scene =
       bareScene(material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), kCells);
-  return kBare;
+  return bare_scene;
 }
 
 struct Allocations {

@@ -149,16 +149,16 @@ TEST(ContactorArray, WhatIsNotFiniteIsSilent) {
 }
 
 TEST(ArrayLimits, RefusalsNameLimitValueAndWhatIsAllowed) {
-  const auto refusalOf = [](const ArrayLimits& limits) {
+  const auto refusal_of = [](const ArrayLimits& limits) {
     return refusal<std::invalid_argument>([&] { requireSound(limits); });
   };
-  EXPECT_EQ(refusalOf({}), "");
-  EXPECT_EQ(refusalOf({0.0, 400.0, 1e-4}),
+  EXPECT_EQ(refusal_of({}), "");
+  EXPECT_EQ(refusal_of({0.0, 400.0, 1e-4}),
             "the lowest frequency of the array is 0: allowed are finite numbers > 0 Hz");
-  EXPECT_EQ(refusalOf({20.0, 20.0, 1e-4}),
+  EXPECT_EQ(refusal_of({20.0, 20.0, 1e-4}),
             "the highest frequency of the array is 20: allowed are finite numbers above the "
             "lowest, Hz");
-  EXPECT_EQ(refusalOf({20.0, 400.0, std::nan("")}),
+  EXPECT_EQ(refusal_of({20.0, 400.0, std::nan("")}),
             "the largest displacement of the array is nan: allowed are finite numbers > 0 m");
 }
 

@@ -13,8 +13,9 @@ namespace haptex::contact {
 /// A = M - h D - h^2 K:
 ///   S = sum k - h^2 sum k A^-1 k,
 /// the change of the fingertip's force when it moves within a step and the other one is held. One
-/// direction of one fingertip is computed per step, because each costs a solve; so S is up to six
-/// steps old, and is scaled down where the contact has become softer since.
+/// direction of one fingertip is computed per step, because each costs a solve, and none that is
+/// known already in a step that takes long by itself; so S is six steps old or somewhat more, and
+/// is scaled down where the contact has become softer since.
 class CondensedStiffness {
  public:
   CondensedStiffness() { clear(); }

@@ -72,6 +72,9 @@ class Patch {
   /// @returns 3 x freeCount(), until the next call
   const linear::BlockVector& respond(base::Finger finger, int direction);
 
+  /// Whether the last step took few iterations, so that there is time for a respond().
+  bool stepWasShort() const { return solver_.wasShort(); }
+
  private:
   void assemble(const LargeScaleMotion& motion, double h);
   bool solve(double h);

@@ -19,7 +19,7 @@ class StaticSample {
   /// @param effects as for Cloth; viscosity acts in moveAs() alone
   /// @throws what Cloth throws
   StaticSample(mesh::ClothMesh mesh, const material::Fabric& fabric,
-               cloth::ModelledEffects effects = {});
+               const cloth::ModelledEffects& effects = {});
 
   const mesh::ClothMesh& mesh() const { return cloth_.mesh(); }
 

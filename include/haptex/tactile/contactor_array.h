@@ -21,9 +21,9 @@ using PerContactor = std::array<T, kContactors>;
 /// Place of a contactor in the frame of the array (m): z out of the pad, x distal, origin in the
 /// middle.
 inline Eigen::Vector2d contactorPlace(int contactor) {
+  const int column = contactor % kContactorColumns, row = contactor / kContactorColumns;
   return kContactorSpacing *
-         Eigen::Vector2d(contactor % kContactorColumns - 0.5 * (kContactorColumns - 1),
-                         contactor / kContactorColumns - 0.5 * (kContactorRows - 1));
+         Eigen::Vector2d(column - 0.5 * (kContactorColumns - 1), row - 0.5 * (kContactorRows - 1));
 }
 
 /// Where the plane of the array lies on the fabric: a contactor at (x, y) of the array is at

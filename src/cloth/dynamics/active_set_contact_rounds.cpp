@@ -73,7 +73,7 @@ double ActiveSetContactSolver::searchLine(const linear::BlockVector& solution) {
     const double load = std::max(0.0, entry.normal.dot(entry.force));
     entered += a_ * kPenalty * load * std::max(0.0, out);
   }
-  const auto slopeAt = [&](double share) {
+  const auto slope_at = [&](double share) {
     double sum = slope - entered + share * curvature;
     for (const Entry& entry : entries_) {
       if (entry.state == State::kOpen) continue;
@@ -83,11 +83,11 @@ double ActiveSetContactSolver::searchLine(const linear::BlockVector& solution) {
     }
     return sum;
   };
-  if (slopeAt(1.0) <= kFlat * std::abs(slopeAt(0.0))) return 1.0;
+  if (slope_at(1.0) <= kFlat * std::abs(slope_at(0.0))) return 1.0;
   double low = 0.0, high = 1.0;
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (low + high);
-    (slopeAt(middle) > 0.0 ? high : low) = middle;
+    (slope_at(middle) > 0.0 ? high : low) = middle;
   }
   return std::max(low, kLeast);
 }

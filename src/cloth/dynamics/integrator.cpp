@@ -107,28 +107,28 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
   double most_taken = 0.1;
   balance_->begin(cloth, begin);
   double gained = 0.0;
-  const auto isSmall = [&] {
+  const auto is_small = [&] {
     gained = balance_->excess(cloth, begin, end_, contactReactions());
     return gained <= 0.0 || gained <= most_taken * balance_->kineticAtEnd();
   };
-  const auto isSmallEnough = [&] {
-    const bool small = isSmall();
+  const auto is_small_enough = [&] {
+    const bool small = is_small();
     most_taken = std::min(1.0, 2.0 * most_taken);
     return small;
   };
   // What a step leaves in an obstacle is brought out afterwards, which stretches the cloth.
   const bool enters = touches() && stages_->contacts()->enter(end_.velocities, kLeftInObstacles);
-  if (!isSmall() || enters) {
+  if (!is_small() || enters) {
     report.taken_anew = true;
     const Stage stage{begin, h, end_.time, 1.0, Stage::Rates::kSinceBase};
     if (settings_.method != IntegrationMethod::kBackwardEuler) {
       stages_->forget();
       stages_->solveLinearised(cloth, stage, {begin.positions, begin.velocities, h}, end_, report);
     }
-    const bool judged = stages_->descend(cloth, stage, std::ref(isSmallEnough), end_, report);
+    const bool judged = stages_->descend(cloth, stage, std::ref(is_small_enough), end_, report);
     stages_->forget();
     settle(end_.velocities);
-    if (!judged || touches()) isSmall();
+    if (!judged || touches()) is_small();
   }
   if (gained > 0.0) slowDown(cloth, gained, report);
 }
@@ -186,8 +186,8 @@ void Integrator::settle(Velocities& velocities) const {
 }
 
 const std::vector<ContactReaction>& Integrator::contactReactions() const {
-  static const std::vector<ContactReaction> kNone;
-  return stages_ && stages_->contacts() ? stages_->contacts()->reactions() : kNone;
+  static const std::vector<ContactReaction> none;
+  return stages_ && stages_->contacts() ? stages_->contacts()->reactions() : none;
 }
 
 bool Integrator::continuesHistory(const ClothState& begin, double h) const {

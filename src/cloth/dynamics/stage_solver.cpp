@@ -96,7 +96,7 @@ void StageSolver::hold(const Cloth& cloth, const Stage& stage, const ClothState&
 /// @return the incremental potential of the result
 double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
   constexpr double kMinShare = 1e-9;
-  const auto placeAt = [&](double share) {
+  const auto place_at = [&](double share) {
     for (int i = 0; i < matrix_.size(); ++i) {
       const Vector3d velocity = result.velocities[i];
       trial_.velocities[i] = fixed_[i] ? velocity : Vector3d::Zero();
@@ -106,13 +106,13 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
     }
     return incrementalPotential(cloth, stage, trial_);
   };
-  const double at_rest = placeAt(0.0);
+  const double at_rest = place_at(0.0);
   double potential = incrementalPotential(cloth, stage, result);
   if (potential <= at_rest) return potential;
   double share = 1.0;
   do {
     share = share > kMinShare ? 0.5 * share : 0.0;
-    potential = placeAt(share);
+    potential = place_at(share);
   } while (!(potential <= at_rest) && share > 0.0);
   std::swap(result.positions, trial_.positions);
   std::swap(result.velocities, trial_.velocities);

@@ -10,9 +10,7 @@
 namespace haptex::cloth {
 namespace {
 
-using Eigen::Matrix2d;
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 /// Changes of U and then of V, each along the axes of Polar::frame.
 using Vector6d = Eigen::Matrix<double, 6, 1>;

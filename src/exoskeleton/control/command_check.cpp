@@ -7,7 +7,6 @@ namespace haptex::exoskeleton {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 /// Whether the norm is at most this, without the overflow of its squares.
 template <typename Numbers>

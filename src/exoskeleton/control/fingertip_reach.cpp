@@ -28,7 +28,8 @@ FingertipReach::FingertipReach(const std::string& urdf, Finger finger) : kinemat
     highest_[kMotors - 1] = std::min(highest_[kMotors - 1], std::max(low, high));
   }
   for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
-    const Eigen::Vector3d share(i % kGrid, i / kGrid % kGrid, i / (kGrid * kGrid));
+    const Eigen::Vector3d share =
+        Eigen::Vector3i(i % kGrid, i / kGrid % kGrid, i / (kGrid * kGrid)).cast<double>();
     Place place;
     place.motor_angles = lowest_ + share.cwiseProduct(highest_ - lowest_) / (kGrid - 1);
     place.position =

@@ -37,7 +37,7 @@ Marker sphere(const Eigen::Vector3f& colour, double size, float opacity) {
 
 /// Along or about an axis: the control's x axis is turned there.
 InteractiveMarkerControl control(int axis, std::uint8_t mode) {
-  const char* kAxes[] = {"x", "y", "z"};
+  constexpr const char* kAxes[] = {"x", "y", "z"};
   InteractiveMarkerControl control;
   control.name = (mode == InteractiveMarkerControl::MOVE_AXIS ? "move_" : "turn_");
   control.name += kAxes[axis];

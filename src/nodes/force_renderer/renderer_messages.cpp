@@ -117,8 +117,8 @@ void fillContact(const contact::FingertipContact& contact,
                  const tactile::ArrayPlacement& array, double gain, const ros::Time& stamp,
                  haptex::Contact& message) {
   setHeader(stamp, kFixedFrame, message.header);
-  static const contact::FingertipContact kNone;
-  const contact::FingertipContact& shown = gain > 0.0 ? contact : kNone;
+  static const contact::FingertipContact no_contact;
+  const contact::FingertipContact& shown = gain > 0.0 ? contact : no_contact;
   message.touching = shown.touching;
   message.slipping = shown.slipping;
   message.force = vectorMessage(gain * shown.force);

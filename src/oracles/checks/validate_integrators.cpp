@@ -12,7 +12,6 @@ namespace {
 
 using cloth::IntegrationMethod;
 using cloth::StepSettings;
-using Eigen::Vector3d;
 
 constexpr double kTimeStep = 0.0125;               // s
 constexpr double kPhase = 2.0 * M_PI * kTimeStep;  // of a 1 Hz oscillator per step
@@ -98,14 +97,14 @@ void validateIntegrators(const material::Fabric& linear, const material::Fabric&
         simulatedOscillatorEnergy(settingsOf(named.method, 1), kPhase, kTimeStep, kStepsPerPeriod),
         kEnergyTolerance));
     if (!isImplicit(named.method) || orderOf(named.method) < 2) continue;
-    const auto sinkLoss = [&](const std::string& of, const ClothSwing& swing, int solves) {
+    const auto sink_loss = [&](const std::string& of, const ClothSwing& swing, int solves) {
       const double loss = lossPerPeriod(swing, settingsOf(named.method, solves));
       sink({name + "/swing_loss/" + of, 0.0, loss, std::abs(loss), kMaxLoss});
     };
-    sinkLoss(linear.name, linear_swing, 2);
+    sink_loss(linear.name, linear_swing, 2);
     // The midpoint rule stretches a stiff cloth at the ends of its steps, and has to be damped.
     if (named.method == IntegrationMethod::kBackwardMidpoint) continue;
-    sinkLoss(wool.name, wool_swing, 20);
+    sink_loss(wool.name, wool_swing, 20);
   }
 }
 

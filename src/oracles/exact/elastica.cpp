@@ -20,15 +20,15 @@ struct Chebyshev {
 
   Chebyshev() : points(kDegree + 1), weights(kDegree + 1), derivative(kDegree + 1, kDegree + 1) {
     constexpr double kHalfStep = 0.5 * M_PI / kDegree;
-    const auto atEnd = [](int i) { return i == 0 || i == kDegree; };
-    const auto scale = [&](int i) { return (atEnd(i) ? 2.0 : 1.0) * (i % 2 == 0 ? 1.0 : -1.0); };
+    const auto at_end = [](int i) { return i == 0 || i == kDegree; };
+    const auto scale = [&](int i) { return (at_end(i) ? 2.0 : 1.0) * (i % 2 == 0 ? 1.0 : -1.0); };
     for (int i = 0; i <= kDegree; ++i) {
       points[i] = std::pow(std::cos(kHalfStep * i), 2);
       double weight = 0.0;
       for (int k = 0; k <= kDegree; k += 2) {
-        weight += (atEnd(k) ? 0.5 : 1.0) * std::cos(2.0 * kHalfStep * k * i) / (1.0 - k * k);
+        weight += (at_end(k) ? 0.5 : 1.0) * std::cos(2.0 * kHalfStep * k * i) / (1.0 - k * k);
       }
-      weights[i] = (atEnd(i) ? 1.0 : 2.0) * weight / kDegree;
+      weights[i] = (at_end(i) ? 1.0 : 2.0) * weight / kDegree;
       // The distances of points and the diagonal in forms that do not cancel.
       derivative(i, i) = 0.0;
       for (int j = 0; j <= kDegree; ++j) {

@@ -13,7 +13,6 @@ namespace {
 
 using cloth::Cloth;
 using cloth::ClothState;
-using Eigen::Vector3d;
 
 constexpr double kFrequency = 2.0 * M_PI;  // rad/s
 constexpr double kMaxAmplitude = 0.1;      // m

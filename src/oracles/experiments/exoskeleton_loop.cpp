@@ -105,7 +105,7 @@ void ExoskeletonLoop::makeReady() {
   const auto accept = [](const Refusal& refusal) {
     if (!refusal.empty()) throw std::runtime_error("the exoskeleton refuses: " + refusal);
   };
-  const auto waitUntil = [&](const char* what, auto&& condition) {
+  const auto wait_until = [&](const char* what, auto&& condition) {
     const Time end = now_ + seconds(20);
     while (!condition()) {
       if (now_ > end || controller().operatingState().mode == Mode::kFault) {
@@ -115,10 +115,10 @@ void ExoskeletonLoop::makeReady() {
       step();
     }
   };
-  waitUntil("connected", [&] { return driver().link == LinkStatus::kConnected; });
+  wait_until("connected", [&] { return driver().link == LinkStatus::kConnected; });
   run(milliseconds(20));
   accept(ask(DriverRequest::kHome));
-  waitUntil("homed", [&] { return controller().operatingState().is_homed; });
+  wait_until("homed", [&] { return controller().operatingState().is_homed; });
   run(seconds(1));
   accept(ask(DriverRequest::kEnable));
   run(seconds(1));

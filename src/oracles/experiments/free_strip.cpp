@@ -56,15 +56,15 @@ Uniaxial exactObliqueUniaxial(const Fabric& fabric, kes::Direction along, double
   const double euu = (warp * suu - coupling * svv) / determinant;
   const double evv = (weft * svv - coupling * suu) / determinant;
   const double euv = stress * n.x() * n.y() / shear;  // U.V
-  const auto squaredStretch = [&](const Eigen::Vector2d& way) {
+  const auto squared_stretch = [&](const Eigen::Vector2d& way) {
     const double squared =
         1.0 + 2.0 * (euu * way.x() * way.x() + evv * way.y() * way.y() + euv * way.x() * way.y());
     base::require(squared > 0.0, "exactObliqueUniaxial", "stress", stress,
                   "so small that no stretch vanishes");
     return squared;
   };
-  const double stretch = std::sqrt(squaredStretch(n));
-  return {stretch - 1.0, std::sqrt(squaredStretch(across)) - 1.0, stress * stretch};
+  const double stretch = std::sqrt(squared_stretch(n));
+  return {stretch - 1.0, std::sqrt(squared_stretch(across)) - 1.0, stress * stretch};
 }
 
 Uniaxial simulateUniaxial(const FreeStrip& strip, double force) {

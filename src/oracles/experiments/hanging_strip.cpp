@@ -18,14 +18,14 @@ using material::StrainStressCurve;
 
 double exactElongation(const HangingStrip& strip) {
   constexpr double kMostLoad = 1e12;
-  const auto requirePositive = [](const char* name, double value, bool zero_too) {
+  const auto require_positive = [](const char* name, double value, bool zero_too) {
     base::require(std::isfinite(value) && (value > 0.0 || (zero_too && value == 0.0)),
                   "exactElongation", name, value, zero_too ? "finite and >= 0" : "finite and > 0");
   };
-  requirePositive("length", strip.length, false);
-  requirePositive("modulus", strip.modulus, false);
-  requirePositive("areal_density", strip.areal_density, false);
-  requirePositive("gravity", strip.gravity, true);
+  require_positive("length", strip.length, false);
+  require_positive("modulus", strip.modulus, false);
+  require_positive("areal_density", strip.areal_density, false);
+  require_positive("gravity", strip.gravity, true);
   const double load = strip.areal_density * strip.gravity / strip.modulus * strip.length;
   base::require(load <= kMostLoad, "exactElongation", "weight over modulus", load, "<= 1e12");
   const double right = 2.0 * load;
@@ -73,14 +73,14 @@ double simulatedElongation(const HangingStrip& strip, int cells, double time_ste
 }
 
 double stretchUnder(double load, const StrainStressCurve& curve) {
-  const auto loadAt = [&](double l) { return l * curve.evaluate(0.5 * (l * l - 1.0)).stress; };
-  const double most = loadAt(kLargestStretch);
+  const auto load_at = [&](double l) { return l * curve.evaluate(0.5 * (l * l - 1.0)).stress; };
+  const double most = load_at(kLargestStretch);
   base::require(load >= 0.0 && load <= most, "stretchUnder", "load", load,
                 ">= 0 and <= " + base::shortNumber(most) + " N/m");
   double low = 1.0, high = kLargestStretch;
   for (int halving = 0; halving < 60; ++halving) {
     const double l = 0.5 * (low + high);
-    (loadAt(l) < load ? low : high) = l;
+    (load_at(l) < load ? low : high) = l;
   }
   return low;
 }

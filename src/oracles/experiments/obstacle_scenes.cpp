@@ -46,7 +46,7 @@ ClothMesh flatSheet(const Eigen::Vector2d& size, int cells_u, int cells_v, const
   return mesh;
 }
 
-CollidingCloth::CollidingCloth(ClothMesh mesh, material::Fabric fabric, double gravity,
+CollidingCloth::CollidingCloth(ClothMesh mesh, const material::Fabric& fabric, double gravity,
                                const cloth::StepSettings& settings, std::vector<Obstacle> obstacles)
     : cloth(std::move(mesh), fabric, effectsOf(fabric, gravity)),
       state(cloth.initialState()),

@@ -19,7 +19,6 @@ using exoskeleton::Configuration;
 using exoskeleton::FingerKinematics;
 using exoskeleton::JointVector;
 using exoskeleton::kMotors;
-using exoskeleton::kReduction;
 using exoskeleton::MotorVector;
 
 constexpr int kThumbSteps = 12;  // per joint

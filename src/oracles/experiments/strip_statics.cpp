@@ -184,7 +184,7 @@ double simulatedLateralBucklingLoad(StripMesh mesh, int cells) {
   const Strip strip = makeStrip(mesh, kes::Direction::kWeft, cells, kRows, cell);
   material::Fabric fabric = material::linearFabric(kModulus);
   fabric.bending = {kRigidity, kRigidity};
-  const auto stiffnessUnder = [&](double gravity) {
+  const auto stiffness_under = [&](double gravity) {
     cloth::ModelledEffects effects;
     effects.gravity = {0.0, 0.0, -gravity};
     effects.bending = true;
@@ -199,8 +199,8 @@ double simulatedLateralBucklingLoad(StripMesh mesh, int cells) {
   // the exact load it is scaled to the one that takes all stiffness from some displacement.
   const double gravity =
       kLateralBucklingLoad * kRigidity / (fabric.areal_density * std::pow(kLength, 3));
-  const Eigen::MatrixXd unloaded = stiffnessUnder(0.0);
-  const Eigen::MatrixXd added = stiffnessUnder(gravity) - unloaded;
+  const Eigen::MatrixXd unloaded = stiffness_under(0.0);
+  const Eigen::MatrixXd added = stiffness_under(gravity) - unloaded;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(added, unloaded,
                                                                          Eigen::EigenvaluesOnly);
   return -kLateralBucklingLoad / solver.eigenvalues().minCoeff();

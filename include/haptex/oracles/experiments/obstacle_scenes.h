@@ -25,7 +25,7 @@ struct CollidingCloth {
   contact::ObstacleCollision collision;
 
   /// @param gravity m/s^2, along -z
-  CollidingCloth(mesh::ClothMesh mesh, material::Fabric fabric, double gravity,
+  CollidingCloth(mesh::ClothMesh mesh, const material::Fabric& fabric, double gravity,
                  const cloth::StepSettings& settings, std::vector<mesh::Obstacle> obstacles);
   /// @throws std::runtime_error if the step was not accepted
   cloth::StepReport step(double h);

@@ -55,7 +55,7 @@ class NormalHinges {
   template <typename Place>
   Frame frame(const NormalHinge& hinge, const Place& place) const {
     Frame at;
-    const Eigen::Vector3d origin = place(corners_[hinge.begin].particle);
+    const Eigen::Vector3d& origin = place(corners_[hinge.begin].particle);
     for (int i = hinge.begin + 1; i < hinge.end; ++i) {
       const Corner& corner = corners_[i];
       const Eigen::Vector3d from = place(corner.particle) - origin;
