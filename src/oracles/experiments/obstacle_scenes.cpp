@@ -101,4 +101,52 @@ InclineOutcome slideDown(double angle, double friction, cloth::IntegrationMethod
   return {way() - start, (speed() - speed_before) / (quarter * h)};
 }
 
+double pullOverCapsule(double friction) {
+  constexpr double kRadius = 0.02, kWidth = 0.01, kLength = 0.24, kLoad = 0.2;  // m, N
+  constexpr int kCells = 96;
+  constexpr double kSpeed = 0.02, kDuration = 2.0;  // m/s, s
+  const double radius = kRadius + ObstacleCollision::kOffset;
+  Isometry3d along_y(Eigen::AngleAxisd(M_PI / 2.0, Vector3d::UnitX()));
+  Obstacle capsule{"capsule", mesh::ObstacleCapsule{kRadius, 0.2}, along_y};
+  capsule.friction = friction;
+  ClothMesh mesh = flatSheet({kLength, kWidth}, kCells, 2, Isometry3d::Identity());
+  // Bent around the upper half, both ends hanging down.
+  for (Vector3d& place : mesh.initial_positions) {
+    const double s = place.x(), quarter = 0.5 * M_PI * radius;
+    if (std::abs(s) <= quarter) {
+      place = Vector3d(radius * std::sin(s / radius), place.y(), radius * std::cos(s / radius));
+    } else {
+      place = Vector3d(std::copysign(radius, s), place.y(), quarter - std::abs(s));
+    }
+  }
+  const double h = 1e-3;  // s
+  cloth::StepSettings settings;
+  settings.tolerance = 1e-8;
+  CollidingCloth scene(std::move(mesh), material::linearFabric(1000.0, 0.1), 0.0, settings,
+                       {capsule});
+  const auto loaded = sideParticles(scene.cloth.mesh(), mesh::Side::kLeft);
+  const auto pulled = sideParticles(scene.cloth.mesh(), mesh::Side::kRight);
+  for (int particle : loaded) {
+    scene.cloth.setExternalForce(particle, {0.0, 0.0, -kLoad / loaded.size()});
+  }
+  for (int particle : pulled) {
+    scene.cloth.attach(
+        particle,
+        {scene.state.positions[particle], {0.0, 0.0, -kSpeed * kDuration}, 0.0, kDuration});
+  }
+  // In the middle of the path, when the strip slips everywhere. Under a dead load it judders: the
+  // mean is what the equation is about.
+  std::vector<Vector3d> forces;
+  double sum = 0.0;
+  int samples = 0;
+  while (scene.state.time < 0.7 * kDuration) {
+    scene.step(h);
+    if (scene.state.time < 0.4 * kDuration) continue;
+    scene.cloth.computeForces(scene.state, forces);
+    for (int particle : pulled) sum += forces[particle].z();
+    ++samples;
+  }
+  return sum / samples / kLoad;
+}
+
 }  // namespace haptex::oracles
