@@ -61,11 +61,14 @@ void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess
 bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
                           const std::function<bool()>& enough, ClothState& result,
                           StepReport& report) {
-  constexpr int kMinSolves = 20;
+  // Where the cloth touches, a Newton iteration takes several; with 20 of them impacts of wool
+  // gained up to 0.4 mJ (3 % of weight by size).
+  constexpr int kMinSolves = 20, kMinTouchingSolves = 60;
   hold(cloth, stage, stage.base, true);
   const double potential = touching() ? incrementalPotential(cloth, stage, result)
                                       : retreatTowardsRest(cloth, stage, result);
-  return iterateNewton(cloth, stage, potential, std::max(kMinSolves, settings_.newton_iterations),
+  const int least = touching() ? kMinTouchingSolves : kMinSolves;
+  return iterateNewton(cloth, stage, potential, std::max(least, settings_.newton_iterations),
                        enough, result, report);
 }
 
