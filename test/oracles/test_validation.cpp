@@ -157,7 +157,7 @@ TEST(Validation, EveryQuantityOfObstaclesPasses) {
     ++quantities;
     expectPass(quantity);
   });
-  EXPECT_EQ(quantities, base::unlessSanitized(41, 39));
+  EXPECT_EQ(quantities, base::unlessSanitized(47, 41));
 }
 
 TEST(Validation, ExoskeletonNamesTheUrdfThatItCannotRead) {

@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-// The rounds of a stage. StageSolver calls
-//   begin()         once: each contact starts from what its particle's did in the last stage, a new
-//                   one sticks if the guess enters the body and is open otherwise;
-//   prepareRound()  a fresh copy of the free system A dv = b; what sticks is prescribed, what slips
-//                   gets its friction as a force on the right-hand side and the resistance of its
-//                   direction on the diagonal;
+// The rounds of a system. StageSolver calls
+//   begin()         once per stage: each contact starts from what its particle's did in the last;
+//   beginSystem()   with the free system A dv = b, once per linear solve or Newton iteration;
+//   prepareRound()  a fresh copy of it; what sticks is prescribed, what slips gets its friction as
+//   a
+//                   force on the right-hand side and the resistance of its direction on the
+//                   diagonal;
 //   confine()       takes the normals of what slips out of the unknowns;
-//   update()        after the solve: r = A dv - b of the free system are the impulses that the
-//                   constraints had to exert, r / a the forces N n + T. They say who lets go (N <
-//                   0), slips (|T| > mu N) or sticks again (the slip has come round to where
-//                   friction pushes).
-// until nothing changes. Compare the primal-dual active sets of Hintermueller, Ito and Kunisch,
-// SIAM J. Optim. 13 (2003), and for friction that is given from round to round Necas, Jarusek and
-// Haslinger, Boll. Un. Mat. Ital. 17-B (1980).
+//   compareLoads()  after the solve: r = A dv - b of the free system are the impulses that the
+//                   constraints had to exert, r / a the forces N n + T. Until the friction of what
+//                   slips was that of these N, prepareLoads() and addLoads() change it;
+//   update()        judges it (active_set_contact_rounds.cpp),
+// until update() is content.
 namespace haptex::cloth {
 
 using Eigen::Matrix3d;
@@ -24,10 +23,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kPenetration = 1e-9;  // m, not worth another round
-constexpr double kRest = 1e-5;         // m/s, slower than that nothing slips
-constexpr int kSwitches = 4;           // rounds in which contacts switch between stick and slip
-constexpr int kOpenings = 6;           // rounds in which contacts open
+constexpr double kLoadTolerance = 1e-6;  // of the loads of all contacts together
 
 }  // namespace
 
@@ -36,19 +32,23 @@ ActiveSetContactSolver::ActiveSetContactSolver(const linear::SymmetricBlockMatri
       free_matrix_(pattern),
       free_rhs_(3, pattern.size()),
       residual_(3, pattern.size()),
+      accepted_(3, pattern.size()),
+      product_(3, pattern.size()),
       attached_(pattern.size(), 0),
       confined_(pattern.size(), 0),
       normals_(3, pattern.size()),
       values_(3, pattern.size()),
+      loads_(Eigen::VectorXd::Zero(pattern.size())),
+      results_(Eigen::VectorXd::Zero(pattern.size())),
+      friction_(pattern.size(), 3 * pattern.size()),
       memory_(pattern.size()) {
   entries_.reserve(pattern.size());
+  kept_.reserve(pattern.size());
   reactions_.reserve(pattern.size());
 }
 
 void ActiveSetContactSolver::begin(const Cloth& cloth, const Stage& stage, const Velocities& guess,
-                                   const std::vector<char>& attached,
-                                   const linear::SymmetricBlockMatrix& matrix,
-                                   const linear::BlockVector& rhs) {
+                                   const std::vector<char>& attached) {
   a_ = stage.a;
   entries_.clear();
   reactions_.assign(cloth.contacts().size(), {});
@@ -58,21 +58,16 @@ void ActiveSetContactSolver::begin(const Cloth& cloth, const Stage& stage, const
     }
   }
   ++stages_;
-  rounds_ = 0;
   if (entries_.empty()) return;
-  for (int i = 0; i < matrix.size(); ++i) guess_.col(i) = guess[i];
   attached_ = attached;
-  free_matrix_ = matrix;
-  free_rhs_ = rhs;
-  // What crept to rest sticks; what was not there in the last stage knows nothing.
+  loads_.setZero();
+  results_.setZero();
+  // What was not there in the last stage knows nothing.
   for (Entry& entry : entries_) {
-    const bool remembered = entry.stage == stages_ - 1;
-    if (entry.creeps && entry.speed < kRest) entry.state = State::kSticks;
-    entry.creeps = false;
-    if (remembered) continue;
-    const bool enters = entry.normal.dot(guess[entry.particle] - entry.target) < 0.0;
-    static_cast<Memory&>(entry) = Memory{};
-    if (enters) entry.state = entry.friction > 0.0 ? State::kSticks : State::kSlips;
+    if (entry.stage == stages_ - 1) continue;
+    static_cast<ContactMemory&>(entry) = ContactMemory{};
+    const RelativeMotion motion = relativeMotion(entry, guess[entry.particle]);
+    if (a_ * motion.gap < -kContactPenetration) close(motion, entry);
   }
 }
 
@@ -83,7 +78,7 @@ ActiveSetContactSolver::Entry ActiveSetContactSolver::entryOf(const Cloth& cloth
   const Vector3d place =
       contact.place + (stage.end - contact.end) * contact.velocity - contact.gap * contact.normal;
   Entry entry;
-  static_cast<Memory&>(entry) = memory_[contact.particle];
+  static_cast<ContactMemory&>(entry) = memory_[contact.particle];
   entry.contact = index;
   entry.particle = contact.particle;
   entry.normal = contact.normal;
@@ -91,8 +86,26 @@ ActiveSetContactSolver::Entry ActiveSetContactSolver::entryOf(const Cloth& cloth
   // With it the stage goes its share of the way: x* + a v = x* + share (place - x*).
   entry.target = stage.share / stage.a * (place - stage.base.positions[contact.particle]);
   entry.friction = contact.friction;
-  entry.mass = cloth.masses()[contact.particle];
+  entry.slip -= entry.normal * entry.normal.dot(entry.slip);  // the plane may have turned
   return entry;
+}
+
+void ActiveSetContactSolver::beginSystem(const Velocities& velocities,
+                                         const linear::SymmetricBlockMatrix& matrix,
+                                         const linear::BlockVector& rhs) {
+  for (int i = 0; i < matrix.size(); ++i) guess_.col(i) = velocities[i];
+  free_matrix_ = matrix;
+  free_rhs_ = rhs;
+  phase_ = Phase::kSearch;
+  rounds_ = 0;
+  for (Entry& entry : entries_) {
+    entry.before = entry.force;
+    entry.fresh = false;
+  }
+  accepted_.setZero();
+  last_ = false;
+  kept_smoothing_ = 0.0;
+  smoothing_ = smoothingOfSlips();
 }
 
 bool ActiveSetContactSolver::prepareRound(linear::SymmetricBlockMatrix& matrix,
@@ -103,61 +116,42 @@ bool ActiveSetContactSolver::prepareRound(linear::SymmetricBlockMatrix& matrix,
   rhs = free_rhs_;
   fixed = attached_;
   std::fill(confined_.begin(), confined_.end(), 0);
-  for (const Entry& entry : entries_) {
-    constrain(entry, guess_.col(entry.particle), matrix, rhs, fixed, prescribed);
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    Entry& entry = entries_[k];
+    loads_[k] = 0.0;
+    if (phase_ == Phase::kForces) {
+      rhs.col(entry.particle) += a_ * entry.force;
+      continue;
+    }
+    if (phase_ == Phase::kSearch) entry.ratio = frictionAt(entry, entry.slip, 1.0, smoothing_);
+    if (entry.state == State::kSlips) loads_[k] = entry.load;
+    constrain(entry, matrix, rhs, fixed, prescribed);
   }
   return std::find(fixed.begin(), fixed.end(), 1) != fixed.end();
 }
 
-/// @param velocity of the linearisation @returns whether it violates the constraint
-bool ActiveSetContactSolver::constrain(const Entry& entry, const Vector3d& velocity,
-                                       linear::SymmetricBlockMatrix& matrix,
+void ActiveSetContactSolver::constrain(const Entry& entry, linear::SymmetricBlockMatrix& matrix,
                                        linear::BlockVector& rhs, std::vector<char>& fixed,
                                        linear::BlockVector& prescribed) {
   const int i = entry.particle;
+  const Vector3d velocity = guess_.col(i);
   const Vector3d change = entry.target - velocity;
   if (entry.state == State::kSticks) {
     fixed[i] = 1;
     prescribed.col(i) = change;
-    return a_ * change.norm() > kPenetration;
+    return;
   }
-  if (entry.state == State::kOpen) return false;
-  confined_[i] = 1;
-  normals_.col(i) = entry.normal;
-  values_.col(i) = entry.normal * entry.normal.dot(change);
-  addFriction(entry, velocity, matrix, rhs);
-  return a_ * values_.col(i).norm() > kPenetration;
-}
-
-/// How much the friction of what slips resists a turn of the slip (N.s/m): the second derivative of
-/// mu N |s| across s. Slips that friction changes within the stage are no measure of it.
-/// What creeps is resisted so in every direction.
-double ActiveSetContactSolver::lateralResistance(const Entry& entry) const {
-  const double limit = entry.friction * entry.load;
-  if (!(limit > 0.0)) return 0.0;
-  const double least = entry.creeps ? 0.01 * kRest : a_ * limit / entry.mass;
-  return limit / std::max(entry.speed, least);
-}
-
-/// Across the normal, and unless it creeps across the slip of the round before (m/s).
-Vector3d ActiveSetContactSolver::lateralSlip(const Entry& entry, const Vector3d& velocity) const {
-  const Vector3d slip = velocity - entry.target;
-  const Vector3d tangential = slip - entry.normal * entry.normal.dot(slip);
-  return entry.creeps ? tangential
-                      : Vector3d(tangential - entry.direction * entry.direction.dot(slip));
-}
-
-void ActiveSetContactSolver::addFriction(const Entry& entry, const Vector3d& velocity,
-                                         linear::SymmetricBlockMatrix& matrix,
-                                         linear::BlockVector& rhs) const {
-  if (entry.friction == 0.0) return;
-  const double resistance = lateralResistance(entry);
+  if (entry.state == State::kOpen) return;
   const Vector3d& n = entry.normal;
-  const Vector3d d = entry.creeps ? Vector3d(0.0, 0.0, 0.0) : entry.direction;
-  rhs.col(entry.particle) +=
-      a_ * (entry.friction * entry.load * d - resistance * lateralSlip(entry, velocity));
-  matrix.diagonal(entry.particle) +=
-      a_ * resistance * (Matrix3d::Identity() - n * n.transpose() - d * d.transpose());
+  confined_[i] = 1;
+  normals_.col(i) = n;
+  values_.col(i) = n * n.dot(change);
+  if (entry.friction == 0.0) return;
+  rhs.col(i) += a_ * entry.load * entry.ratio;
+  if (phase_ != Phase::kSearch) return;
+  const Matrix3d resisted = frictionResistance(entry, smoothing_);
+  rhs.col(i) -= a_ * resisted * (velocity - entry.target - entry.slip);
+  matrix.diagonal(i) += a_ * resisted;
 }
 
 void ActiveSetContactSolver::confine(linear::SymmetricBlockMatrix& matrix,
@@ -179,127 +173,105 @@ void ActiveSetContactSolver::putNormal(linear::BlockVector& solution) const {
   }
 }
 
-bool ActiveSetContactSolver::update(const linear::BlockVector& solution, bool last) {
-  constexpr double kFrictionTolerance = 1e-3;  // of the friction of all contacts together
-  // What the free system lacks is what the constraints exert.
+void ActiveSetContactSolver::compareLoads(const linear::BlockVector& solution) {
   free_matrix_.multiply(solution, residual_);
-  residual_ -= free_rhs_;
-  bool changed = false;
-  double friction = 0.0, change = 0.0;
-  for (Entry& entry : entries_) {
-    const Vector3d velocity = guess_.col(entry.particle) + solution.col(entry.particle);
-    const Vector3d force = residual_.col(entry.particle) / a_;
-    const Entry before = entry;
-    judge(velocity, force, entry);
-    changed = changed || entry.state != before.state;
-    if (entry.state == State::kSlips) {
-      friction += entry.friction * entry.load;
-      change += frictionChange(entry, before);
+  results_.setZero();
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    const Entry& entry = entries_[k];
+    if (!confined_[entry.particle] || entry.friction == 0.0) {
+      loads_[k] = 0.0;
+      continue;
     }
-    if (last) entry.state = before.state;
-    keep(entry, before.state, force);
+    const int i = entry.particle;
+    results_[k] = entry.normal.dot(residual_.col(i) - free_rhs_.col(i)) / a_;
   }
-  return changed || change > kFrictionTolerance * friction;
+  friction_.begin(loads_, results_);
 }
 
-/// How far friction in this round was from what it is by the round's solution (N).
-double ActiveSetContactSolver::frictionChange(const Entry& entry, const Entry& before) const {
-  const double limit = entry.friction * entry.load;
-  if (!entry.creeps) {
-    return entry.friction * (entry.load * entry.direction - before.load * before.direction).norm();
+bool ActiveSetContactSolver::prepareLoads(linear::BlockVector& rhs) const {
+  if (!friction_.wantsDirection(kLoadTolerance)) return false;
+  rhs.setZero();
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    const Entry& entry = entries_[k];
+    if (!confined_[entry.particle]) continue;
+    rhs.col(entry.particle) = a_ * friction_.direction()[k] * entry.ratio;
   }
-  if (!before.creeps) return limit;
-  const double exerted = lateralResistance(before) * entry.speed;
-  return entry.speed < kRest ? std::max(0.0, exerted - limit) : std::abs(exerted - limit);
+  return true;
+}
+
+void ActiveSetContactSolver::addLoads(linear::BlockVector& change, linear::BlockVector& solution) {
+  free_matrix_.multiply(change, residual_);
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    const Entry& entry = entries_[k];
+    if (!confined_[entry.particle] || entry.friction == 0.0) continue;
+    results_[k] = entry.normal.dot(residual_.col(entry.particle)) / a_;
+  }
+  Eigen::Map<Eigen::VectorXd> change_numbers(change.data(), change.size());
+  Eigen::Map<Eigen::VectorXd> numbers(solution.data(), solution.size());
+  friction_.add(results_, change_numbers, loads_, numbers);
 }
 
 /// For the next stage, and for who asks what the contact did.
-void ActiveSetContactSolver::keep(const Entry& entry, State state, const Vector3d& force) {
-  reactions_[entry.contact].state = state;
-  reactions_[entry.contact].force = state == State::kOpen ? Vector3d(0.0, 0.0, 0.0) : force;
-  memory_[entry.particle] = entry;
-  memory_[entry.particle].stage = stages_;
-}
-
-/// What the contact does in the next round.
-/// @param force that the contact had to exert in this one, N
-void ActiveSetContactSolver::judge(const Vector3d& velocity, const Vector3d& force,
-                                   Entry& entry) const {
-  const Vector3d relative = velocity - entry.target;
-  if (entry.state == State::kOpen) {
-    if (a_ * entry.normal.dot(relative) >= -kPenetration) return;
-    entry.state = entry.friction > 0.0 ? State::kSticks : State::kSlips;
-    return;
-  }
-  entry.load = entry.normal.dot(force);
-  if (entry.load < 0.0 && rounds_ > kOpenings) entry.load = 0.0;
-  if (!(entry.load >= 0.0)) {  // it would pull
-    static_cast<Memory&>(entry) = Memory{};
-    return;
-  }
-  if (entry.friction == 0.0) return;
-  // Stick to slip: friction goes on in the direction in which it held. Slip to stick: the slip
-  // points where friction pushes, so friction has stopped it and more. What goes on switching
-  // between the two creeps instead, see the header.
-  const Vector3d tangential = force - entry.load * entry.normal;
-  const Vector3d slip = relative - entry.normal * entry.normal.dot(relative);
-  if (entry.state == State::kSticks) {
-    if (tangential.norm() <= entry.friction * entry.load) return;
-    entry.state = State::kSlips;
-    entry.direction = tangential.normalized();
-    entry.speed = 0.0;
-    return;
-  }
-  entry.speed = slip.norm();
-  if (entry.creeps || slip.dot(entry.direction) <= 0.0) {
-    if (entry.speed > 0.0) entry.direction = -slip / entry.speed;
-  } else if (rounds_ <= kSwitches) {
-    entry.state = State::kSticks;
-  } else {
-    entry.creeps = true;
-  }
-}
-
-bool ActiveSetContactSolver::addNewton(const Velocities& velocities,
-                                       linear::SymmetricBlockMatrix& matrix,
-                                       linear::BlockVector& rhs, std::vector<char>& fixed,
-                                       linear::BlockVector& prescribed) {
-  // The right-hand side of a Newton iteration is minus the residual itself: the contacts' forces
-  // can be read off before the solve.
-  fixed = attached_;
-  std::fill(confined_.begin(), confined_.end(), 0);
-  bool changed = false;
-  ++rounds_;
+void ActiveSetContactSolver::finish() {
+  phase_ = Phase::kFinished;
   for (Entry& entry : entries_) {
-    const Vector3d force = -rhs.col(entry.particle) / a_;
-    const State before = entry.state;
-    judge(velocities[entry.particle], force, entry);
-    keep(entry, entry.state, force);
-    changed = changed || entry.state != before;
-    const bool violated =
-        constrain(entry, velocities[entry.particle], matrix, rhs, fixed, prescribed);
-    changed = changed || violated;
+    bringIntoCone(entry);
+    ContactReaction& reaction = reactions_[entry.contact];
+    reaction.force = entry.force;
+    reaction.state = entry.state;
+    memory_[entry.particle] = entry;
+    memory_[entry.particle].stage = stages_;
   }
-  return changed;
 }
 
-bool ActiveSetContactSolver::enter(const Velocities& velocities) const {
-  return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-    const Vector3d relative = velocities[entry.particle] - entry.target;
-    return !(a_ * entry.normal.dot(relative) >= -2.0 * kPenetration);
-  });
+double ActiveSetContactSolver::potentialOf(const Entry& entry, const Vector3d& velocity) const {
+  constexpr double kPenalty = 2.0;  // of what enters a body, over what brings it out
+  const double load = entry.normal.dot(entry.force);
+  if (!(load > 0.0)) return 0.0;
+  const RelativeMotion motion = relativeMotion(entry, velocity);
+  return a_ * load * (entry.friction * motion.slip.norm() + kPenalty * std::max(0.0, -motion.gap));
 }
 
-double ActiveSetContactSolver::frictionPotential(const Velocities& velocities) const {
+double ActiveSetContactSolver::potential(const Velocities& velocities) const {
   double potential = 0.0;
-  for (const Entry& entry : entries_) {
-    if (entry.state != State::kSlips || entry.friction == 0.0) continue;
-    const Vector3d& velocity = velocities[entry.particle];
-    potential +=
-        a_ * (0.5 * lateralResistance(entry) * lateralSlip(entry, velocity).squaredNorm() -
-              (entry.creeps ? 0.0 : entry.friction * entry.load) * entry.direction.dot(velocity));
-  }
+  for (const Entry& entry : entries_) potential += potentialOf(entry, velocities[entry.particle]);
   return potential;
+}
+
+double ActiveSetContactSolver::descent(const linear::BlockVector& solution) const {
+  double descent = free_rhs_.cwiseProduct(solution).sum();
+  for (const Entry& entry : entries_) {
+    const Vector3d velocity = guess_.col(entry.particle);
+    descent +=
+        potentialOf(entry, velocity) - potentialOf(entry, velocity + solution.col(entry.particle));
+  }
+  return descent;
+}
+
+void ActiveSetContactSolver::shorten(double share) {
+  for (Entry& entry : entries_) {
+    entry.force = (1.0 - share) * entry.before + share * entry.force;
+    reactions_[entry.contact].force = entry.force;
+    if (entry.force.isZero(0.0)) reactions_[entry.contact].state = State::kOpen;
+  }
+}
+
+double ActiveSetContactSolver::residualNorm(const linear::BlockVector& rhs) const {
+  double squared = 0.0;
+  for (int i = 0; i < rhs.cols(); ++i) {
+    if (!attached_[i]) squared += rhs.col(i).squaredNorm();
+  }
+  for (const Entry& entry : entries_) {
+    const Vector3d of_cloth = rhs.col(entry.particle);
+    squared += (of_cloth + a_ * entry.force).squaredNorm() - of_cloth.squaredNorm();
+  }
+  return std::sqrt(std::max(0.0, squared));
+}
+
+bool ActiveSetContactSolver::enter(const Velocities& velocities, double depth) const {
+  return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    return !(a_ * relativeMotion(entry, velocities[entry.particle]).gap >= -depth);
+  });
 }
 
 void ActiveSetContactSolver::settle(Velocities& velocities) const {

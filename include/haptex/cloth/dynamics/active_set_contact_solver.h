@@ -5,37 +5,47 @@
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/friction_loads.h"
+#include "haptex/cloth/dynamics/held_contact.h"
 #include "haptex/cloth/dynamics/particle_contact.h"
 #include "haptex/cloth/dynamics/stage.h"
 #include "haptex/linear/block_matrix.h"
 
 namespace haptex::cloth {
 
-/// Solves a stage's linear system under the conditions of Signorini and Coulomb,
-///   gap >= 0, N >= 0, gap N = 0;  |T| <= mu N, and T opposite to the slip where there is any,
-/// by an active-set strategy: each round solves the system with those contacts that hold as exact
-/// linear constraints (a contact that sticks fixes its particle, one that slips the component of
-/// its velocity along the normal), and the friction of those that slip as a force of mu N with the
-/// N of the round before; then contacts that would pull open, those that are penetrated close,
-/// friction beyond mu N slips, and what friction would push backwards sticks. The first round
-/// starts from what the particles' contacts did last. Contacts that go on to switch between stick
-/// and slip get instead the resistance mu N / |s| against slips s, taken from the round before:
-/// that converges whichever they do, from above for a given N. After some rounds contacts only
-/// close: one that pulls for the rest of the stage holds its particle back, one that opens again
-/// and again would leave it in the body.
+/// Solves linear systems of a stage under the conditions of Signorini and Coulomb,
+///   gap >= 0, N >= 0, gap N = 0;  |T| <= mu N, and T opposite to the slip where there is any.
+/// Each round solves the system with those contacts that hold as exact linear constraints: what
+/// sticks has its velocity prescribed, what slips the component along the normal. Friction of what
+/// slips is that of the normal forces of the same solve (FrictionLoads), linearised by slips that
+/// are slower than a threshold, at first a tenth of the mean slip, as if it grew with them. With
+/// these loads it has a convex potential, and so has the stage: a round goes on from the one before
+/// as far as that potential falls (exact line search), which Newton's method needs to converge.
+/// Then what would pull opens, what is entered closes (as the map of Alart and Curnier says,
+/// Comput. Methods Appl. Mech. Eng. 92, 1991), and what sticks with more than mu N slips. Smoothed
+/// friction that has converged becomes Coulomb's: what creeps below the threshold sticks from then
+/// on, or slips again if that takes more than mu N, with a lower threshold. If that does not
+/// converge in the rounds that are left, the smoothed friction acts.
+///
+/// Whatever has been found when the rounds are spent, the force that acts lies in the cone: last
+/// rounds let all contacts that push slip, with friction of the ratio T / N that they had, mu at
+/// most, until none of them pulls; and if one still does, the forces themselves act, without those
+/// that pull. What had not converged shows as slip, not as force.
 ///
 /// One contact per particle. Allocates nothing after construction.
 class ActiveSetContactSolver {
  public:
   explicit ActiveSetContactSolver(const linear::SymmetricBlockMatrix& pattern);
 
-  /// Takes over the contacts and the stage's linear system, (A, b) for the change from the guess's
-  /// velocities, before anything is eliminated.
+  /// Takes over the contacts. Each starts from what its particle's did in the last stage.
   /// @param attached per particle; contacts of attached ones are left out
   void begin(const Cloth& cloth, const Stage& stage, const Velocities& guess,
-             const std::vector<char>& attached, const linear::SymmetricBlockMatrix& matrix,
-             const linear::BlockVector& rhs);
+             const std::vector<char>& attached);
   bool empty() const { return entries_.empty(); }
+
+  /// The system (A, b) for the change from some velocities, before anything is eliminated.
+  void beginSystem(const Velocities& velocities, const linear::SymmetricBlockMatrix& matrix,
+                   const linear::BlockVector& rhs);
 
   /// Writes the system of the next round: friction is added, `fixed` and `prescribed` are set where
   /// contacts stick. What they and confine() say is not eliminated yet.
@@ -49,23 +59,31 @@ class ActiveSetContactSolver {
   void removeNormal(linear::BlockVector& solution) const;
   void putNormal(linear::BlockVector& solution) const;
 
+  /// Reads the normal forces off the solution of a round.
+  void compareLoads(const linear::BlockVector& solution);
+  /// Writes the right-hand side of a change of the loads that friction is taken from.
+  /// @returns false if none is needed
+  bool prepareLoads(linear::BlockVector& rhs) const;
+  /// @param change that prepareLoads() led to, overwritten @param solution improved
+  void addLoads(linear::BlockVector& change, linear::BlockVector& solution);
+
   /// Judges the solution of a round.
-  /// @param last keep what holds, there is no other round
   /// @returns whether another round is needed
-  bool update(const linear::BlockVector& solution, bool last);
+  bool update(const linear::BlockVector& solution);
 
-  /// Judges the contacts by the residual of a Newton iteration, and goes on as prepareRound(): adds
-  /// friction, and fixes what sticks. Values are what is left to the constraints.
-  /// @returns whether a contact has changed or is not where it should be, so that the next step of
-  ///   the iteration is no descent
-  bool addNewton(const Velocities& velocities, linear::SymmetricBlockMatrix& matrix,
-                 linear::BlockVector& rhs, std::vector<char>& fixed,
-                 linear::BlockVector& prescribed);
-  /// The potential that addNewton() is the gradient of (J).
-  double frictionPotential(const Velocities& velocities) const;
+  /// What friction and bodies resist (J), with the normal forces of the last system, beyond the
+  /// incremental potential without contacts.
+  double potential(const Velocities& velocities) const;
+  /// By how much the incremental potential falls along the solution of the last system (J), to
+  /// the first order in its parts that are smooth.
+  double descent(const linear::BlockVector& solution) const;
+  /// The change has gone only this share of the way: forces are those in between.
+  void shorten(double share);
+  /// |b + a f| of a system for the change from velocities at which the forces f act.
+  double residualNorm(const linear::BlockVector& rhs) const;
 
-  /// Whether any particle would enter a body with these velocities.
-  bool enter(const Velocities& velocities) const;
+  /// Whether any particle would enter a body with these velocities, farther than `depth` (m).
+  bool enter(const Velocities& velocities, double depth) const;
 
   /// What the last stage did: the velocities of particles whose contact holds become the body's,
   /// along the normal or altogether. Impacts are inelastic.
@@ -77,50 +95,49 @@ class ActiveSetContactSolver {
 
  private:
   using State = ContactReaction::State;
-  /// What the next stage starts from, of a contact that is there again.
-  struct Memory {
-    State state = State::kOpen;
-    double load = 0.0;                                    // N, normal, that friction is taken from
-    Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit, of the friction of what slips
-    double speed = 0.0;                                   // m/s, of the slip
-    bool creeps = false;  // slips, with a resistance in every direction: see above
-    long stage = -1;      // in which it was
+  enum class Phase {
+    kSearch,  // for what holds
+    kRatios,  // all that push slip with the ratios T / N that were found
+    kForces,  // the forces themselves act, and constrain nothing
+    kFinished
   };
-  struct Entry : Memory {
-    int contact;             // of the cloth
-    int particle;            // of that contact
-    Eigen::Vector3d normal;  // of that contact
-    Eigen::Vector3d body;    // m/s, its velocity
-    Eigen::Vector3d target;  // m/s, of a particle that goes with the body and closes the gap
-    double friction;
-    double mass;  // kg
-  };
+  using Entry = HeldContact;
 
-  double frictionChange(const Entry& entry, const Entry& before) const;
   Entry entryOf(const Cloth& cloth, const Stage& stage, int contact) const;
-  void judge(const Eigen::Vector3d& velocity, const Eigen::Vector3d& force, Entry& entry) const;
-  void keep(const Entry& entry, State state, const Eigen::Vector3d& force);
-  double lateralResistance(const Entry& entry) const;
-  Eigen::Vector3d lateralSlip(const Entry& entry, const Eigen::Vector3d& velocity) const;
-  bool constrain(const Entry& entry, const Eigen::Vector3d& velocity,
-                 linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs,
+  double potentialOf(const Entry& entry, const Eigen::Vector3d& velocity) const;
+  double smoothingOfSlips() const;
+  double searchLine(const linear::BlockVector& solution);
+  bool search(const linear::BlockVector& solution);
+  bool goBack();
+  bool holdRatios(const linear::BlockVector& solution);
+  void takeRatios();
+  void finish();
+  void constrain(const Entry& entry, linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs,
                  std::vector<char>& fixed, linear::BlockVector& prescribed);
-  void addFriction(const Entry& entry, const Eigen::Vector3d& velocity,
-                   linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
 
-  double a_ = 0.0;             // s, of the stage
-  long stages_ = 0;            // so far
-  int rounds_ = 0;             // of this stage
-  linear::BlockVector guess_;  // m/s
+  double a_ = 0.0;   // s, of the stage
+  long stages_ = 0;  // so far
+  Phase phase_ = Phase::kSearch;
+  int rounds_ = 0;               // of this phase
+  double smoothing_ = 0.0;       // m/s, of slips up to which friction grows with them
+  bool last_ = false;            // round of the search
+  double kept_smoothing_ = 0.0;  // m/s, of kept_; 0: nothing has been kept
+  linear::BlockVector guess_;    // m/s
   linear::SymmetricBlockMatrix free_matrix_;
   linear::BlockVector free_rhs_;
   linear::BlockVector residual_;
+  linear::BlockVector accepted_;  // solution of the rounds so far
+  linear::BlockVector product_;
   std::vector<char> attached_;
   std::vector<char> confined_;
   linear::BlockVector normals_;
   linear::BlockVector values_;
   std::vector<Entry> entries_;
-  std::vector<Memory> memory_;  // per particle
+  std::vector<Entry> kept_;  // that friction had converged with, smoothed
+  Eigen::VectorXd loads_;    // N, that friction is taken from, by entry
+  Eigen::VectorXd results_;  // N
+  FrictionLoads friction_;
+  std::vector<ContactMemory> memory_;  // per particle
   std::vector<ContactReaction> reactions_;
 };
 

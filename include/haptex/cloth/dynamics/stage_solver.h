@@ -32,8 +32,8 @@ namespace haptex::cloth {
 /// xg + ahead vg: what turns is stretched there, and stiff fabrics that do not resist compression
 /// then gain energy without bounds.
 ///
-/// Contacts of the cloth hold as ActiveSetContactSolver says; the linear solve of a stage is then
-/// repeated until they are found. Newton iterations look for them anew by their own residual.
+/// Contacts of the cloth hold as ActiveSetContactSolver says; every linear solve of a stage is then
+/// repeated until they are found.
 ///
 /// Allocates nothing after construction.
 class StageSolver {
@@ -81,6 +81,9 @@ class StageSolver {
                   StepReport& report);
   bool solveLinear(StepReport& report, linear::LinearSolver::Definiteness definiteness =
                                            linear::LinearSolver::Definiteness::kPositive);
+  bool solveTouching(const Velocities& velocities, StepReport& report,
+                     linear::LinearSolver::Definiteness definiteness =
+                         linear::LinearSolver::Definiteness::kPositive);
   bool touching() const { return contacts_ && !contacts_->empty(); }
   bool iterateNewton(const Cloth& cloth, const Stage& stage, double potential, int most_solves,
                      const std::function<bool()>& enough, ClothState& result, StepReport& report);
@@ -98,10 +101,11 @@ class StageSolver {
   linear::BlockVector solution_;    // of the last linear system, with the prescribed values
   linear::BlockVector prescribed_;  // velocity changes of the attached particles
   double linearised_norm_ = 0.0;    // N s, of the right-hand side of the linearised stage
+  double round_norm_ = 0.0;         // N s, likewise of the last round of contacts
   std::vector<char> fixed_;
   bool any_fixed_ = false;
   std::optional<ActiveSetContactSolver> contacts_;
-  bool contacts_change_ = false;       // in this Newton iteration
+  linear::BlockVector load_change_;    // of the solution, by other loads of friction
   ClothState trial_;                   // of a line search; empty where there is none
   std::vector<Eigen::Vector3d> held_;  // by the forces: Force::hold()
 };

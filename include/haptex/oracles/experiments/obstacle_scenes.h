@@ -43,8 +43,4 @@ struct InclineOutcome {
 };
 InclineOutcome slideDown(double angle, double friction, cloth::IntegrationMethod method, double h);
 
-/// Mean ratio of the tensions at both ends of a narrow strip under a dead load that is pulled over
-/// a fixed capsule of 20 mm radius, wound half around it.
-double pullOverCapsule(double friction);
-
 }  // namespace haptex::oracles

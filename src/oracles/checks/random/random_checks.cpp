@@ -34,6 +34,7 @@ const std::vector<RandomCheck>& randomChecks() {
       {"contact", "press", randomPress},
       {"contact", "stick", randomStick},
       {"contact", "incline", randomIncline},
+      {"contact", "capstan", randomCapstan},
       {"exoskeleton", "pose", randomPose},
       {"exoskeleton", "static_force", randomStaticForce},
       {"tactile", "grating", randomGrating},
