@@ -17,11 +17,13 @@ const double kLargeShear = std::sin(5.0 * kDegree);
 ThreadFriction::ThreadFriction(material::StrainStressCurve curve, double resilience)
     : curve_(std::move(curve)), share_(share(resilience)) {}
 
-double ThreadFriction::work(double strain) const {
-  if (strain <= 0.0) return kLeastWork;
+bool ThreadFriction::isSlack(double strain) const {
   // Work below 0 is that of a curve that pushes when it is stretched.
-  const double work = curve_.energy(strain);
-  return work < 0.0 ? kLeastWork : kLeastWork + work;
+  return strain <= 0.0 || curve_.energy(strain) < 0.0;
+}
+
+double ThreadFriction::work(double strain) const {
+  return isSlack(strain) ? kLeastWork : kLeastWork + curve_.energy(strain);
 }
 
 FrictionResponse ThreadFriction::respond(double strain, double remembered) const {
@@ -39,7 +41,7 @@ FrictionResponse ThreadFriction::respond(double strain, double remembered) const
     response.energy = 0.5 * force * beyond;
   }
   const auto [stress, slope] = curve_.evaluate(strain);
-  if (strain <= 0.0) {
+  if (isSlack(strain)) {
     response.stress = share_ * stress;
     response.tangent = share_ * slope;
     response.secant = std::max(0.0, response.tangent);

@@ -45,6 +45,7 @@ class ThreadFriction {
   double follow(double strain, double remembered) const;
 
  private:
+  bool isSlack(double strain) const;
   double work(double strain) const;  // Q
 
   material::StrainStressCurve curve_;
