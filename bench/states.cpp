@@ -67,14 +67,17 @@ void printStates(const fs::path& file) {
     printState(name + named.name, scene);
   }
   scene::Scene springs = shipped, corotational = shipped, bends = shipped, remembers = shipped;
+  scene::Scene stretches = shipped;
   springs.effects.elasticity = cloth::Elasticity::kMassSpring;
   corotational.effects.elasticity = cloth::Elasticity::kCorotational;
   bends.effects.bending = true;
   remembers.effects.bending = remembers.effects.bending_hysteresis = true;
+  stretches.effects.membrane_hysteresis = true;
   printState(name + "mass_spring", springs);
   printState(name + "corotational", corotational);
   printState(name + "bending", bends);
   printState(name + "bending_hysteresis", remembers);
+  printState(name + "membrane_hysteresis", stretches);
 }
 
 }  // namespace

@@ -81,42 +81,73 @@ TensileParameters parametersOf(double emt, double work, double returned) {
           100.0 * returned / work};
 }
 
+cloth::ModelledEffects effectsOf(bool hysteresis) {
+  cloth::ModelledEffects effects;
+  effects.membrane_hysteresis = hysteresis;
+  return effects;
+}
+
+/// Without the hysteresis of shear, which the test does not meet.
+Fabric pulledFabric(Fabric fabric) {
+  fabric.shear_hysteresis = {0.0, 0.0};
+  return fabric;
+}
+
+/// Without that of the threads, which the constant tension hardly moves.
+Fabric shearedFabric(Fabric fabric) {
+  fabric.resilience = {1.0, 1.0};
+  return fabric;
+}
+
 void addTensile(const Fabric& fabric, Direction direction, KesResult& result) {
   const MembraneCurves& curves = curvesOf(fabric, direction);
-  TensileRig rig(fabric, direction);
-  const auto moving = [&](double rate) {
-    rig.move(rate);
+  const bool hysteresis = fabric.resilience.has_value();
+  TensileRig rig(pulledFabric(fabric), direction, effectsOf(hysteresis));
+  // What the file says of hysteresis is all of it: it is read at rest.
+  const double rate = hysteresis ? 0.0 : kKesStrainRate;
+  const auto moving = [&](double at_rate) {
+    rig.move(at_rate);
     return rig.force() / kSampleWidth;
   };
   const double emt = strainAtLoad([&](double strain) {
+    rig.renew();
     rig.pull(strain);
-    return moving(kKesStrainRate);
+    return moving(rate);
   });
+  rig.renew();
   std::vector<double> loading, unloading;
   for (int i = 0; i <= kTensileSteps; ++i) {
     const double strain = emt * i / kTensileSteps;
     rig.pull(strain);
     const double at_rest = rig.force() / kSampleWidth;
-    loading.push_back(moving(kKesStrainRate));
-    unloading.push_back(moving(-kKesStrainRate));
+    loading.push_back(moving(rate));
     result.points.push_back(
         {"tensile", nameOf(direction), strain, at_rest, curveForce(curves, strain, 0.0)});
+  }
+  for (int i = kTensileSteps; i >= 0; --i) {
+    rig.pull(emt * i / kTensileSteps);
+    unloading.push_back(moving(-rate));
   }
   const TensileParameters measured =
       parametersOf(emt, simpson(loading, emt), simpson(unloading, emt));
 
   const double exact_emt =
-      strainAtLoad([&](double strain) { return curveForce(curves, strain, kKesStrainRate); });
-  const auto exact_work = [&](double rate) {
+      strainAtLoad([&](double strain) { return curveForce(curves, strain, rate); });
+  const auto exact_work = [&](double at_rate) {
     constexpr int kParts = 20000;
     std::vector<double> forces;
     for (int i = 0; i <= kParts; ++i) {
-      forces.push_back(curveForce(curves, exact_emt * i / kParts, rate));
+      forces.push_back(curveForce(curves, exact_emt * i / kParts, at_rate));
     }
     return simpson(forces, exact_emt);
   };
+  double resilience = 1.0;
+  if (hysteresis) {
+    const auto& [weft, warp] = *fabric.resilience;
+    resilience = direction == Direction::kWeft ? weft : warp;
+  }
   const TensileParameters exact =
-      parametersOf(exact_emt, exact_work(kKesStrainRate), exact_work(-kKesStrainRate));
+      parametersOf(exact_emt, exact_work(rate), resilience * exact_work(-rate));
   const std::string of = std::string("/") + nameOf(direction);
   result.parameters.push_back({"LT" + of, "-", exact.lt, measured.lt});
   result.parameters.push_back({"WT" + of, "gf.cm/cm2", exact.wt, measured.wt});
@@ -135,7 +166,8 @@ double longerThan(double elongation) {
 /// The sample under shear, its jaws pulled apart by the tester's tension.
 class TensionedShear {
  public:
-  TensionedShear(const Fabric& fabric, Direction direction) : rig_(fabric, direction) {}
+  TensionedShear(const Fabric& fabric, Direction direction)
+      : rig_(shearedFabric(fabric), direction, effectsOf(fabric.shear_hysteresis.has_value())) {}
 
   /// Shears by an angle (degrees) and lets the jaw find its height.
   void shear(double angle) {
@@ -164,17 +196,52 @@ class TensionedShear {
   double tangent_ = 0.0, height_ = 1.0, elongation_ = 0.0;
 };
 
-struct ShearCycle {
-  std::vector<double> loading, unloading;  // N/m, by angles
-};
-
-/// By kAngles.
 struct ShearParameters {
   double g, hg, hg5;
 };
 const std::vector<double> kAngles = {-8.0, -7.0, -6.0, -5.0, -4.0, -3.0, -2.5,
                                      -2.0, -1.0, -0.5, 0.0,  0.5,  1.0,  2.0,
                                      2.5,  3.0,  4.0,  5.0,  6.0,  7.0,  8.0};
+constexpr int kNoAngle = 10;
+
+/// Forces (N/m) by kAngles.
+struct ShearCycle {
+  std::vector<double> loading, unloading;
+  std::vector<double> at_rest;  // the mean of both ways, where they are not the same
+};
+
+/// At rest, from no angle to the largest on one side, to that on the other, and back.
+ShearCycle readHysteresis(TensionedShear& sample) {
+  const int last = static_cast<int>(kAngles.size()) - 1;
+  ShearCycle cycle;
+  cycle.loading.resize(kAngles.size());
+  cycle.unloading.resize(kAngles.size());
+  const auto read = [&](int i) {
+    sample.shear(kAngles[i]);
+    return sample.force(0.0);
+  };
+  for (int i = kNoAngle; i <= last; ++i) cycle.loading[i] = read(i);
+  cycle.unloading[last] = cycle.loading[last];
+  for (int i = last - 1; i >= 0; --i) cycle.unloading[i] = read(i);
+  cycle.loading[0] = cycle.unloading[0];
+  for (int i = 1; i <= kNoAngle; ++i) cycle.loading[i] = read(i);
+  for (int i = 0; i <= last; ++i) {
+    cycle.at_rest.push_back(0.5 * (cycle.loading[i] + cycle.unloading[i]));
+  }
+  return cycle;
+}
+
+/// Without a hysteresis that remembers: passed through both ways at every angle.
+ShearCycle readViscosity(TensionedShear& sample) {
+  ShearCycle cycle;
+  for (double angle : kAngles) {
+    sample.shear(angle);
+    cycle.at_rest.push_back(sample.force(0.0));
+    cycle.loading.push_back(sample.force(kKesShearRate));
+    cycle.unloading.push_back(sample.force(-kKesShearRate));
+  }
+  return cycle;
+}
 
 /// G is the mean slope from 0.5 to 2.5 degrees of both branches on both sides.
 ShearParameters parametersOf(const ShearCycle& cycle) {
@@ -195,21 +262,39 @@ ShearParameters parametersOf(const ShearCycle& cycle) {
           width(5.0) / kKesGramPerCentimetre};
 }
 
+/// What the file says: the elastic curve at rest, and on both ways viscosity or hysteresis.
+ShearCycle exactCycle(const Fabric& fabric, Direction pulled) {
+  ShearCycle exact;
+  for (double angle : kAngles) {
+    // The rate of U.V is that of the jaw: U stays.
+    const double strain = exactShearStrain(curvesOf(fabric, pulled), angle);
+    const double elastic = fabric.shear.elastic.evaluate(strain).stress;
+    double more = fabric.shear.viscous.evaluate(kKesShearRate).stress;
+    double less = fabric.shear.viscous.evaluate(-kKesShearRate).stress;
+    double turn = 0.0;
+    if (const auto& hysteresis = fabric.shear_hysteresis) {
+      more =
+          0.5 * (std::abs(angle) < 5.0 ? hysteresis->at_half_degree : hysteresis->at_five_degrees);
+      less = -more;
+      // The cycle turns at its ends, where friction resists on both ways in the same direction.
+      if (std::abs(angle) == kKesLargestShear) turn = std::copysign(more, angle);
+    }
+    exact.at_rest.push_back(elastic + turn);
+    exact.loading.push_back(elastic + more);
+    exact.unloading.push_back(elastic + less);
+  }
+  return exact;
+}
+
 void addShear(const Fabric& fabric, Direction direction, KesResult& result) {
   const Direction pulled = direction == Direction::kWeft ? Direction::kWarp : Direction::kWeft;
   TensionedShear sample(fabric, direction);
-  ShearCycle measured, exact;
-  for (double angle : kAngles) {
-    sample.shear(angle);
-    const double strain = exactShearStrain(curvesOf(fabric, pulled), angle);
-    const double elastic = fabric.shear.elastic.evaluate(strain).stress;
-    result.points.push_back({"shear", nameOf(direction), angle, sample.force(0.0), elastic});
-    measured.loading.push_back(sample.force(kKesShearRate));
-    measured.unloading.push_back(sample.force(-kKesShearRate));
-    // The rate of U.V is that of the jaw: U stays.
-    const double viscous = fabric.shear.viscous.evaluate(kKesShearRate).stress;
-    exact.loading.push_back(elastic + viscous);
-    exact.unloading.push_back(elastic + fabric.shear.viscous.evaluate(-kKesShearRate).stress);
+  const ShearCycle measured =
+      fabric.shear_hysteresis ? readHysteresis(sample) : readViscosity(sample);
+  const ShearCycle exact = exactCycle(fabric, pulled);
+  for (std::size_t i = 0; i < kAngles.size(); ++i) {
+    result.points.push_back(
+        {"shear", nameOf(direction), kAngles[i], measured.at_rest[i], exact.at_rest[i]});
   }
   const ShearParameters found = parametersOf(measured), in = parametersOf(exact);
   const std::string of = std::string("/") + nameOf(direction);

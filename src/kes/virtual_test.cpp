@@ -77,9 +77,9 @@ mesh::ClothMesh irregularRectangle(double width, double height, int cells_u, int
 }
 
 TensileRig::TensileRig(const material::Fabric& fabric, Direction direction,
-                       cloth::Elasticity elasticity)
+                       const cloth::ModelledEffects& effects)
     : weft_(direction == Direction::kWeft),
-      sample_(sampleMesh(weft_, 2, elasticity), fabric, effectsOf(elasticity)) {
+      sample_(sampleMesh(weft_, 2, effects.elasticity), fabric, effects) {
   jaw_ = sideParticles(sample_.mesh(), weft_ ? mesh::Side::kRight : mesh::Side::kTop);
   held_ = sideParticles(sample_.mesh(), weft_ ? mesh::Side::kLeft : mesh::Side::kBottom);
   held_.insert(held_.end(), jaw_.begin(), jaw_.end());
@@ -106,8 +106,9 @@ double TensileRig::force() const {
   return force;
 }
 
-ShearRig::ShearRig(const material::Fabric& fabric, Direction direction)
-    : weft_(direction == Direction::kWeft), sample_(sampleMesh(!weft_, 3), fabric) {
+ShearRig::ShearRig(const material::Fabric& fabric, Direction direction,
+                   const cloth::ModelledEffects& effects)
+    : weft_(direction == Direction::kWeft), sample_(sampleMesh(!weft_, 3), fabric, effects) {
   jaw_ = sideParticles(sample_.mesh(), weft_ ? mesh::Side::kTop : mesh::Side::kRight);
   for (mesh::Side side :
        {mesh::Side::kTop, mesh::Side::kBottom, mesh::Side::kLeft, mesh::Side::kRight}) {
@@ -141,7 +142,7 @@ ShearRig::Force ShearRig::force() const {
 
 std::vector<Reading> tensileTest(const material::Fabric& fabric, Direction direction,
                                  const std::vector<double>& strains, cloth::Elasticity elasticity) {
-  TensileRig rig(fabric, direction, elasticity);
+  TensileRig rig(fabric, direction, effectsOf(elasticity));
   std::vector<Reading> readings;
   for (double strain : strains) {
     rig.pull(strain);

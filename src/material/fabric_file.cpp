@@ -196,9 +196,14 @@ BendingRigidity readBending(const base::YamlValue& value) {
   return {readRigidity(value.at("weft")), readRigidity(value.at("warp"))};
 }
 
-double readLoopWidth(const base::YamlValue& value, double rigidity) {
+double readLoopWidth(const base::YamlValue& value) {
   const double width = value.number();
   if (width < 0.0) value.refuse("must be a finite number >= 0");
+  return width;
+}
+
+double readLoopWidth(const base::YamlValue& value, double rigidity) {
+  const double width = readLoopWidth(value);
   if (width > 0.0 && rigidity == 0.0) value.refuse("must be 0, as the rigidity is");
   return width;
 }
@@ -218,6 +223,25 @@ void readBendingInto(const base::YamlValue& file, Fabric& fabric) {
   if (!value.has("hysteresis")) return;
   fabric.bending_hysteresis = readHysteresis(value.at("hysteresis"), *fabric.bending);
   fabric.provenance["bending.hysteresis"] = readProvenance(value.at("hysteresis"));
+}
+
+ShearHysteresis readShearHysteresis(const base::YamlValue& value) {
+  value.requireKeys({"unit", "provenance", "source", "2HG", "2HG5"});
+  value.at("unit").oneOf({"N/m"});
+  return {readLoopWidth(value.at("2HG")), readLoopWidth(value.at("2HG5"))};
+}
+
+double readResilience(const base::YamlValue& value) {
+  const double resilience = value.number();
+  if (resilience < TensileResilience::kLeast || resilience > 1.0) {
+    value.refuse("must be a number from 0.1 to 1, KES RT over 100");
+  }
+  return resilience;
+}
+
+TensileResilience readResiliences(const base::YamlValue& value) {
+  value.requireKeys({"provenance", "source", "weft", "warp"});
+  return {readResilience(value.at("weft")), readResilience(value.at("warp"))};
 }
 
 /// Of a fabric whose curves are read.
@@ -269,9 +293,13 @@ double readFriction(const base::YamlValue& value) {
 MembraneCurves readDirection(const base::YamlValue& fabric_value, const std::string& key,
                              NegativeBranch negative_branch, Fabric& fabric) {
   const base::YamlValue value = fabric_value.at(key);
-  value.requireKeys({"elastic"}, {"viscous"});
-  MembraneCurves curves;
   const bool thread_direction = negative_branch == NegativeBranch::kLinear;
+  if (thread_direction) {
+    value.requireKeys({"elastic"}, {"viscous"});
+  } else {
+    value.requireKeys({"elastic"}, {"viscous", "hysteresis"});
+  }
+  MembraneCurves curves;
   curves.elastic =
       readCurve(value.at("elastic"), {CurveKind::kElastic, negative_branch, thread_direction});
   fabric.provenance[key + ".elastic"] = readProvenance(value.at("elastic"));
@@ -280,6 +308,15 @@ MembraneCurves readDirection(const base::YamlValue& fabric_value, const std::str
     fabric.provenance[key + ".viscous"] = readProvenance(value.at("viscous"));
   }
   return curves;
+}
+
+// Reads the shear, and the provenance of all that it has, into the fabric.
+void readShearInto(const base::YamlValue& file, Fabric& fabric) {
+  fabric.shear = readDirection(file, "shear", NegativeBranch::kOdd, fabric);
+  const base::YamlValue value = file.at("shear");
+  if (!value.has("hysteresis")) return;
+  fabric.shear_hysteresis = readShearHysteresis(value.at("hysteresis"));
+  fabric.provenance["shear.hysteresis"] = readProvenance(value.at("hysteresis"));
 }
 
 // Reads the surface, if there is one, and its provenance into the fabric, after the friction.
@@ -300,7 +337,8 @@ void readSurfaceInto(const base::YamlValue& file, Fabric& fabric) {
 Fabric loadFabric(const std::string& path) {
   const base::YamlValue file = base::YamlValue::load(path);
   file.requireKeys({"name", "areal_density", "weft", "warp", "shear"},
-                   {"description", "bending", "contraction", "compression", "friction", "surface"});
+                   {"description", "resilience", "bending", "contraction", "compression",
+                    "friction", "surface"});
   Fabric fabric;
   fabric.name = file.at("name").text();
   if (file.has("description")) fabric.description = file.at("description").text();
@@ -308,14 +346,16 @@ Fabric loadFabric(const std::string& path) {
   fabric.provenance["areal_density"] = readProvenance(file.at("areal_density"));
   fabric.weft = readDirection(file, "weft", NegativeBranch::kLinear, fabric);
   fabric.warp = readDirection(file, "warp", NegativeBranch::kLinear, fabric);
-  fabric.shear = readDirection(file, "shear", NegativeBranch::kOdd, fabric);
+  readShearInto(file, fabric);
+  if (file.has("resilience")) fabric.resilience = readResiliences(file.at("resilience"));
   readBendingInto(file, fabric);
   if (file.has("contraction")) {
     fabric.contraction = readContraction(file.at("contraction"), fabric);
   }
   if (file.has("compression")) fabric.compression = readCompression(file.at("compression"));
   if (file.has("friction")) fabric.friction = readFriction(file.at("friction"));
-  for (const std::string key : {"bending", "contraction", "compression", "friction"}) {
+  for (const std::string key :
+       {"resilience", "bending", "contraction", "compression", "friction"}) {
     if (file.has(key)) fabric.provenance[key] = readProvenance(file.at(key));
   }
   readSurfaceInto(file, fabric);

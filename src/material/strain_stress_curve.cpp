@@ -257,6 +257,15 @@ void StrainStressCurve::integrateEnergy() {
   }
 }
 
+StrainStressCurve StrainStressCurve::scaledBy(double factor) const {
+  StrainStressCurve scaled = *this;
+  for (Segment& segment : scaled.segments_) {
+    for (double& coefficient : segment.coefficients) coefficient *= factor;
+    segment.energy_at_begin *= factor;
+  }
+  return scaled;
+}
+
 bool StrainStressCurve::isZero() const {
   return std::all_of(segments_.begin(), segments_.end(),
                      [](const Segment& segment) { return segment.coefficients == Cubic{}; });

@@ -196,8 +196,8 @@ Listed readModel(const YamlValue& scene) {
   Listed listed;
   for (const YamlValue& item : scene.at("model").items()) {
     const std::string name =
-        item.oneOf({"gravity", "viscosity", "bending", "bending_hysteresis", "contraction", "air",
-                    "wind", "obstacles", "fingers", "tactile", "recording"});
+        item.oneOf({"gravity", "viscosity", "membrane_hysteresis", "bending", "bending_hysteresis",
+                    "contraction", "air", "wind", "obstacles", "fingers", "tactile", "recording"});
     if (!listed.insert(name).second) item.refuse("is listed twice");
   }
   const auto require_both = [&](const std::string& effect, const std::string& base) {
@@ -229,6 +229,7 @@ void requireListedKeys(const YamlValue& scene, const Listed& listed) {
 cloth::ModelledEffects readEffects(const YamlValue& scene, const Listed& listed) {
   cloth::ModelledEffects effects;
   effects.viscosity = listed.count("viscosity") > 0;
+  effects.membrane_hysteresis = listed.count("membrane_hysteresis") > 0;
   effects.bending = listed.count("bending") > 0;
   effects.bending_hysteresis = listed.count("bending_hysteresis") > 0;
   effects.contraction = listed.count("contraction") > 0;
@@ -259,9 +260,11 @@ Scene readScene(const std::string& path, double cell_size) {
   scene.recording = listed.count("recording") > 0;
   if (file.has("elasticity")) {
     scene.effects.elasticity = readElasticity(file.at("elasticity"), scene.mesh);
-    if (scene.effects.contraction &&
-        scene.effects.elasticity != cloth::Elasticity::kGreenLagrange) {
-      file.at("elasticity").refuse("is not allowed if model lists contraction");
+    if (scene.effects.elasticity != cloth::Elasticity::kGreenLagrange) {
+      for (const char* effect : {"contraction", "membrane_hysteresis"}) {
+        if (listed.count(effect) == 0) continue;
+        file.at("elasticity").refuse(std::string("is not allowed if model lists ") + effect);
+      }
     }
     if (scene.effects.bending_hysteresis &&
         scene.effects.elasticity == cloth::Elasticity::kMassSpring) {

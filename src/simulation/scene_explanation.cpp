@@ -203,6 +203,8 @@ std::vector<Effect> effectsOf(const scene::Scene& scene) {
   return {
       {"gravity", "weight", !effects.gravity.isZero(0.0)},
       {"viscosity", "stress by rates of strain", effects.viscosity},
+      {"membrane_hysteresis", "friction within the fabric against stretch and shear",
+       effects.membrane_hysteresis},
       {"bending", "resistance to bending", effects.bending},
       {"bending_hysteresis", "friction within the fabric against bending",
        effects.bending_hysteresis},
@@ -222,6 +224,8 @@ scene::Scene withoutEffect(scene::Scene scene, const std::string& name) {
     effects.gravity.setZero();
   } else if (name == "viscosity") {
     effects.viscosity = false;
+  } else if (name == "membrane_hysteresis") {
+    effects.membrane_hysteresis = false;
   } else if (name == "bending") {
     effects.bending = effects.bending_hysteresis = false;
   } else if (name == "bending_hysteresis") {

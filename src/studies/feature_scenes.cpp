@@ -20,6 +20,11 @@ void describeViscosity(FeatureScene& scene) {
   scene.fabric.shear.viscous = material::StrainStressCurve::linear(0.5);
 }
 
+void describeMembraneHysteresis(FeatureScene& scene) {
+  scene.fabric.resilience = {0.6, 0.65};
+  scene.fabric.shear_hysteresis = {1.0, 2.0};
+}
+
 void describeBending(FeatureScene& scene) { scene.fabric.bending = {1e-5, 1.5e-5}; }
 
 void describeQuadraticBending(FeatureScene& scene) {
@@ -55,6 +60,7 @@ void listGravity(FeatureScene& scene) {
   scene.scene.effects.gravity = {0.0, 0.0, -base::kStandardGravity};
 }
 void listViscosity(FeatureScene& scene) { scene.scene.effects.viscosity = true; }
+void listMembraneHysteresis(FeatureScene& scene) { scene.scene.effects.membrane_hysteresis = true; }
 void listBending(FeatureScene& scene) { scene.scene.effects.bending = true; }
 void listHysteresis(FeatureScene& scene) {
   scene.scene.effects.bending = scene.scene.effects.bending_hysteresis = true;
@@ -114,6 +120,7 @@ const std::vector<Feature>& features() {
   static const std::vector<Feature> all = {
       {"gravity", describeNothing, listGravity},
       {"viscosity", describeViscosity, listViscosity},
+      {"membrane_hysteresis", describeMembraneHysteresis, listMembraneHysteresis},
       {"bending_linear", describeBending, listBending},
       {"bending_quadratic", describeQuadraticBending, listBending},
       {"bending_hysteresis", describeHysteresis, listHysteresis},

@@ -24,11 +24,13 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
     effects.gravity = {0.0, 0.0, -9.81};
     effects.air = Air();
     effects.air->wind.gusts = {{{1.0, 0.0, 0.0}, 1.0, 0.0}};
-    effects.bending = effects.bending_hysteresis = true;
+    effects.bending = effects.bending_hysteresis = effects.membrane_hysteresis = true;
     effects.bending_settings.rest_curvature << 5.0, -2.0;
     material::Fabric fabric = stiffeningFabric();
     fabric.bending = {1e-5, 2e-5};
     fabric.bending_hysteresis = {3e-4, 1e-4};
+    fabric.resilience = {0.5, 0.7};
+    fabric.shear_hysteresis = {0.5, 1.0};
     Cloth cloth(square(16), fabric, effects);
     for (int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) {
       AttachmentPath path;

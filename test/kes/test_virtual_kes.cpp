@@ -66,6 +66,30 @@ TEST(VirtualKes, FindsTheHysteresisOfBendingBesideTheRigidity) {
   for (const KesParameter& parameter : result.parameters) EXPECT_LT(parameter.error(), 0.02);
 }
 
+// The cycles are really run. Stretched for the first time the fabric is on its curve, so that its
+// work stays what it was.
+TEST(VirtualKes, FindsTheHysteresisOfStretchAndShearBesideTheCurves) {
+  material::Fabric fabric = shipped("cotton_poplin");
+  fabric.resilience = {0.4, 0.8};
+  fabric.shear_hysteresis = {1.2, 3.0};  // N/m
+  const KesResult tensile = kesTensile(fabric), shear = kesShear(fabric);
+  EXPECT_NEAR(measured(tensile, "RT/weft"), 40.0, 0.02 * 40.0);
+  EXPECT_NEAR(measured(tensile, "RT/warp"), 80.0, 0.02 * 80.0);
+  for (const char* direction : {"weft", "warp"}) {
+    const std::string of = std::string("/") + direction;
+    EXPECT_NEAR(measured(shear, "2HG" + of), 1.2 / kKesGramPerCentimetre, 0.02 * 1.2);
+    EXPECT_NEAR(measured(shear, "2HG5" + of), 3.0 / kKesGramPerCentimetre, 0.02 * 3.0);
+  }
+  for (const KesResult* result : {&tensile, &shear}) {
+    for (const KesParameter& parameter : result->parameters) {
+      EXPECT_LT(std::abs(parameter.error()), 0.02) << parameter.name;
+    }
+    for (const KesPoint& point : result->points) {
+      EXPECT_NEAR(point.simulated, point.put_in, 1e-3 * kKesTensileLoad) << point.x;
+    }
+  }
+}
+
 TEST(VirtualKes, CompressesAsTheCurveSaysAndRecoversLessThanAll) {
   const material::Fabric fabric = shipped("wool");
   const KesResult result = kesCompression(fabric);

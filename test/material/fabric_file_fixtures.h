@@ -102,4 +102,14 @@ inline std::string hysteresisOf(const std::string& unit, const std::string& weft
          ", warp: 2e-4}";
 }
 
+/// As a key of the shear.
+inline std::string shearHysteresisOf(const std::string& unit, const std::string& at_half_degree) {
+  return "  hysteresis: {unit: " + unit +
+         ", provenance: measured, source: its loops, 2HG: " + at_half_degree + ", 2HG5: 1.5}\n";
+}
+
+inline std::string resilienceOf(const std::string& weft) {
+  return "resilience: {provenance: measured, source: KES-FB1, weft: " + weft + ", warp: 0.7}\n";
+}
+
 }  // namespace haptex::material

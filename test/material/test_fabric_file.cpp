@@ -75,6 +75,20 @@ TEST(FabricFile, ReadsTheHysteresisOfBendingWithItsProvenance) {
   EXPECT_EQ(fabric.provenance.at("bending.hysteresis").source, "its loops");
 }
 
+TEST(FabricFile, ReadsTheHysteresisOfStretchAndShearWithItsProvenance) {
+  const Fabric without = loadFabric(TemporaryFile(kFull).path());
+  EXPECT_FALSE(without.resilience || without.shear_hysteresis);
+  const TemporaryFile file(kValid + shearHysteresisOf("N/m", "0.5") + resilienceOf("0.65"));
+  const Fabric fabric = loadFabric(file.path());
+  ASSERT_TRUE(fabric.resilience && fabric.shear_hysteresis);
+  EXPECT_EQ(fabric.resilience->weft, 0.65);
+  EXPECT_EQ(fabric.resilience->warp, 0.7);
+  EXPECT_EQ(fabric.shear_hysteresis->at_half_degree, 0.5);
+  EXPECT_EQ(fabric.shear_hysteresis->at_five_degrees, 1.5);
+  EXPECT_EQ(fabric.provenance.at("resilience").source, "KES-FB1");
+  EXPECT_EQ(fabric.provenance.at("shear.hysteresis").source, "its loops");
+}
+
 const std::string kContraction =
     "contraction: {provenance: measured, source: video of a tensile test, value: 0.3}\n";
 

@@ -16,7 +16,7 @@ TEST_P(FabricFileRefuses, NamingFileKeyValueAndWhatIsAllowed) { expectRefusal(kF
 
 const std::string kRequired = "name, areal_density, weft, warp, shear";
 const std::string kAllowed =
-    kRequired + ", description, bending, contraction, compression, friction, surface";
+    kRequired + ", description, resilience, bending, contraction, compression, friction, surface";
 const std::string kCurveKeys = "unit, provenance, source, modulus, points, polynomials, quantity";
 const std::string kPiola = "second_piola_kirchhoff_over_green_lagrange";
 const std::string kDissipate =
@@ -257,6 +257,47 @@ INSTANTIATE_TEST_SUITE_P(
                 "friction: {provenance: representative, source: a guess, value: 0.25}",
                 "friction: 0.25", "friction",
                 "'0.25' must be a map with the keys value, provenance, source"}),
+    [](const auto& info) { return info.param.name; });
+
+// The shear ends where the bending begins.
+const std::string kBending = "bending: {unit";
+const std::string kTwoDirections = "provenance, source, weft, warp";
+
+INSTANTIATE_TEST_SUITE_P(
+    Hysteresis, FabricFileRefuses,
+    testing::Values(
+        Refusal{"ResilienceInPercent", "friction:", resilienceOf("65") + "friction:",
+                "resilience.weft", "'65' must be a number from 0.1 to 1, KES RT over 100"},
+        Refusal{"HardlyAnyResilience", "friction:", resilienceOf("0.09") + "friction:",
+                "resilience.weft", "'0.09' must be a number from 0.1 to 1, KES RT over 100"},
+        Refusal{"NanResilience", "friction:", resilienceOf(".nan") + "friction:", "resilience.weft",
+                "'.nan' must be a finite number"},
+        Refusal{"ResilienceWithAUnit", "friction:", resilienceOf("0.6, unit: '%'") + "friction:",
+                "resilience.unit", "unknown key, allowed here: " + kTwoDirections},
+        Refusal{"ResilienceInOneDirection", "friction:",
+                "resilience: {provenance: measured, source: KES, weft: 0.6}\nfriction:",
+                "resilience", "the key 'warp' is missing, required here: " + kTwoDirections},
+        Refusal{"ResilienceWithoutProvenance", "friction:",
+                "resilience: {source: KES, weft: 0.6, warp: 0.6}\nfriction:", "resilience",
+                "the key 'provenance' is missing, required here: " + kTwoDirections},
+        Refusal{"ShearHysteresisInAnotherUnit", kBending,
+                shearHysteresisOf("gf/cm", "0.5") + kBending, "shear.hysteresis.unit",
+                "'gf/cm' must be N/m"},
+        Refusal{"NegativeShearHysteresis", kBending, shearHysteresisOf("N/m", "-0.5") + kBending,
+                "shear.hysteresis.2HG", "'-0.5' must be a finite number >= 0"},
+        Refusal{"InfiniteShearHysteresis", kBending, shearHysteresisOf("N/m", ".inf") + kBending,
+                "shear.hysteresis.2HG", "'.inf' must be a finite number"},
+        Refusal{"ShearHysteresisOfNothing", kBending, "  hysteresis: 1\n" + kBending,
+                "shear.hysteresis",
+                "'1' must be a map with the keys unit, provenance, source, 2HG, 2HG5"},
+        Refusal{"ShearHysteresisAtOneAngle", kBending,
+                "  hysteresis: {unit: N/m, provenance: measured, source: KES, 2HG: 1}\n" + kBending,
+                "shear.hysteresis",
+                "the key '2HG5' is missing, required here: unit, provenance, source, 2HG, 2HG5"},
+        Refusal{"UnknownShearKey", kBending, "  resilience: 1\n" + kBending, "shear.resilience",
+                "unknown key, allowed here: elastic, viscous, hysteresis"},
+        Refusal{"HysteresisOfWeft", "warp:\n", "  hysteresis: {unit: N/m}\nwarp:\n",
+                "weft.hysteresis", "unknown key, allowed here: elastic, viscous"}),
     [](const auto& info) { return info.param.name; });
 
 std::string runtimeErrorOf(const std::string& path) {

@@ -119,6 +119,9 @@ TEST_F(SceneFile, ModelsHysteresisOnlyIfAsked) {
   const cloth::ModelledEffects asked =
       load(replaced(kValid, "[gravity, viscosity]", "[bending_hysteresis, bending]")).effects;
   EXPECT_TRUE(asked.bending && asked.bending_hysteresis);
+  EXPECT_FALSE(asked.membrane_hysteresis);
+  EXPECT_TRUE(load(replaced(kValid, "[gravity, viscosity]", "[membrane_hysteresis]"))
+                  .effects.membrane_hysteresis);
 }
 
 TEST_F(SceneFile, JoinsAttachedSidesAndParticles) {

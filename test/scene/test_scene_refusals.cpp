@@ -64,14 +64,17 @@ INSTANTIATE_TEST_SUITE_P(
     Values, SceneFileRefuses,
     testing::Values(
         Refusal{"UnknownEffect", "viscosity]", "steam]",
-                "model[1]: 'steam' must be one of gravity, viscosity, bending, "
-                "bending_hysteresis, contraction, air, wind, obstacles, fingers, tactile, "
+                "model[1]: 'steam' must be one of gravity, viscosity, membrane_hysteresis, "
+                "bending, bending_hysteresis, contraction, air, wind, obstacles, fingers, tactile, "
                 "recording"},
         Refusal{"UnknownElasticity", "attach:", "elasticity: rubber\nattach:",
                 "elasticity: 'rubber' must be one of green_lagrange, mass_spring, corotational"},
         Refusal{"ContractionOfSprings", "[gravity, viscosity]",
                 "[contraction]\nelasticity: mass_spring",
                 "elasticity: 'mass_spring' is not allowed if model lists contraction"},
+        Refusal{"MembraneHysteresisOfLinearElements", "[gravity, viscosity]",
+                "[membrane_hysteresis]\nelasticity: corotational",
+                "elasticity: 'corotational' is not allowed if model lists membrane_hysteresis"},
         Refusal{"HysteresisOfSprings", "[gravity, viscosity]",
                 "[bending, bending_hysteresis]\nelasticity: mass_spring",
                 "elasticity: 'mass_spring' is not allowed if model lists bending_hysteresis"},

@@ -8,7 +8,7 @@ namespace haptex::simulation {
 constexpr std::uint32_t kSmallParticles = 25;
 constexpr std::uint32_t kSmallTop = 20;  // an attached corner
 
-/// Linear, with all that bends.
+/// Linear, with all that bends, and hysteresis of everything.
 inline material::Fabric smallFabric() {
   material::Fabric fabric;
   fabric.name = "test";
@@ -18,6 +18,8 @@ inline material::Fabric smallFabric() {
   }
   fabric.bending = {1e-5, 1e-5};
   fabric.bending_hysteresis = {2e-4, 2e-4};
+  fabric.resilience = {0.6, 0.7};
+  fabric.shear_hysteresis = {0.02, 0.05};
   return fabric;
 }
 

@@ -24,7 +24,8 @@ std::vector<std::string> listedIn(const scene::Scene& scene) {
 scene::Scene sceneWithEverything() {
   scene::Scene scene;
   scene.effects.gravity = {0.0, 0.0, -9.8};
-  scene.effects.viscosity = scene.effects.bending = scene.effects.bending_hysteresis = true;
+  scene.effects.viscosity = scene.effects.membrane_hysteresis = true;
+  scene.effects.bending = scene.effects.bending_hysteresis = true;
   scene.effects.contraction = scene.effects.contacts = scene.effects.point_loads = true;
   scene.effects.air = cloth::Air();
   scene.effects.air->wind.mean = {1.0, 0.0, 0.0};
@@ -52,8 +53,8 @@ TEST(WithoutEffect, TakesAwayWhatBuildsOnItAndNothingElse) {
     }
     return gone;
   };
-  for (const char* name :
-       {"gravity", "viscosity", "bending_hysteresis", "contraction", "wind", "obstacles"}) {
+  for (const char* name : {"gravity", "viscosity", "membrane_hysteresis", "bending_hysteresis",
+                           "contraction", "wind", "obstacles"}) {
     EXPECT_EQ(gone(name), Names({name}));
   }
   EXPECT_EQ(gone("bending"), Names({"bending", "bending_hysteresis"}));

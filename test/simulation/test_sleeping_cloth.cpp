@@ -73,6 +73,8 @@ std::vector<Settling> settlingMotions() {
   motions.push_back({"hanging", smallScene(), smallFabric()});
   motions.push_back({"with bending and its hysteresis", smallScene(), smallFabric()});
   motions.back().scene.effects.bending = motions.back().scene.effects.bending_hysteresis = true;
+  motions.push_back({"with hysteresis of stretch and shear", smallScene(), smallFabric()});
+  motions.back().scene.effects.membrane_hysteresis = true;
   for (const double seconds : {0.2, 3.0}) {
     motions.push_back({"creeping", smallScene(), viscousFabric(seconds)});
     motions.back().scene.effects.viscosity = true;

@@ -29,6 +29,8 @@ class StaticSample {
   /// @throws std::runtime_error if it is not reached
   void equilibrate(const std::vector<int>& held, const Field& place,
                    const Eigen::Vector3d& disturbance = {0.0, 2e-5, 2e-5});
+  /// Makes it a new sample: at rest, without friction.
+  void renew() { state_ = cloth_.initialState(); }
   /// From now on the particles move with these velocities where they are; until equilibrate().
   void moveAs(const Field& velocity);
   const Eigen::Vector3d& position(int particle) const { return state_.positions[particle]; }  ///< m

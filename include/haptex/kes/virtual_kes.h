@@ -58,8 +58,9 @@ constexpr double kKesFrictionSide = 5e-3;                        ///< m, of the 
 ///   to the tension by more than 2000 %
 double exactShearStrain(const material::MembraneCurves& pulled, double angle);
 
-/// The five tests. Hysteresis is that of the simulated cycle. Bending has the fabric's; the other
-/// curves have none of their own, so what there is comes from viscosity at the rate of the tester.
+/// The five tests. Hysteresis is that of the simulated cycle: the fabric's own where the file says
+/// one (bending, stretch and shear), at rest; elsewhere what comes from viscosity at the rate of
+/// the tester.
 /// @throws std::invalid_argument if the fabric lacks what the test is about, naming the key;
 ///   std::runtime_error if a sample does not come to rest
 KesResult kesTensile(const material::Fabric& fabric);

@@ -36,10 +36,12 @@ constexpr double kSampleLength = 0.1;
 /// Both jaws hold a full edge, the sides are free.
 class TensileRig {
  public:
-  /// @param elasticity the mesh of springs is regular
+  /// @param effects the mesh of springs is regular
   TensileRig(const material::Fabric& fabric, Direction direction,
-             cloth::Elasticity elasticity = cloth::Elasticity::kGreenLagrange);
+             const cloth::ModelledEffects& effects = {});
 
+  /// Puts a new sample between the jaws, which has no past.
+  void renew() { sample_.renew(); }
   /// To an engineering strain > -1, where the sample comes to rest.
   /// @throws std::runtime_error if it does not
   void pull(double strain);
@@ -57,7 +59,8 @@ class TensileRig {
 class ShearRig {
  public:
   /// @param direction in which the moving jaw shears the sample; it pulls on the other threads
-  ShearRig(const material::Fabric& fabric, Direction direction);
+  ShearRig(const material::Fabric& fabric, Direction direction,
+           const cloth::ModelledEffects& effects = {});
 
   /// Moves the jaw by `shear` times the length of the sample, at `height` times that length from
   /// the other jaw, where the sample comes to rest.

@@ -39,6 +39,20 @@ struct BendingHysteresis {
   double warp;  ///< likewise
 };
 
+/// Hysteresis of stretch: the share of the work of pulling that comes back (no unit), KES value RT
+/// over 100.
+struct TensileResilience {
+  static constexpr double kLeast = 0.1;  ///< at less cloth would not contract when it is let go
+  double weft;                           ///< pulled along the weft, kLeast to 1
+  double warp;                           ///< likewise
+};
+
+/// Hysteresis of shear: width of the loop of shear stress over shear angle (N/m).
+struct ShearHysteresis {
+  double at_half_degree;   ///< KES value 2HG, >= 0
+  double at_five_degrees;  ///< KES value 2HG5, >= 0
+};
+
 /// Lateral compression between two plates.
 struct Compression {
   double thickness;  ///< m, without pressure, > 0
@@ -53,7 +67,9 @@ struct Fabric {
   MembraneCurves weft;         ///< along the rest coordinate u
   MembraneCurves warp;         ///< along the rest coordinate v
   MembraneCurves shear;        ///< against U.V, without the factor 1/2
-  // What a scene without bending, contact or tactile rendering does not need.
+  // What a scene without hysteresis, bending, contact or tactile rendering does not need.
+  std::optional<TensileResilience> resilience;
+  std::optional<ShearHysteresis> shear_hysteresis;
   std::optional<BendingRigidity> bending;
   std::optional<BendingHysteresis> bending_hysteresis;  ///< only with bending
   /// Coupling of weft and warp like a Poisson ratio, >= 0: haptex/material/contraction.h

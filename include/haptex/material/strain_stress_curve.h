@@ -92,6 +92,9 @@ class StrainStressCurve {
     return segments_[segment].energy_at_begin + energyFromBegin(segment, strain);
   }
 
+  /// The curve whose stress is `factor` times this one's. @param factor finite, not checked
+  StrainStressCurve scaledBy(double factor) const;
+
   /// True if the stress is zero for every strain.
   bool isZero() const;
 

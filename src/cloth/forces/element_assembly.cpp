@@ -57,4 +57,25 @@ Vector3d projectStress(const Vector3d& stress) {
           half * stress[2] / radius};
 }
 
+void addTangent(const MembraneElement& element, const ElementFrame& frame, const Vector3d& slope,
+                double coupling, const Vector3d& stress, double factor,
+                linear::SymmetricBlockMatrix& matrix) {
+  const Eigen::Matrix3d weft_weft = frame.weft * frame.weft.transpose();
+  const Eigen::Matrix3d warp_warp = frame.warp * frame.warp.transpose();
+  const Eigen::Matrix3d warp_weft = frame.warp * frame.weft.transpose();
+  const auto block = [&](int i, int j) {
+    const double uu = factor * element.weft_weights[i] * element.weft_weights[j];
+    const double vv = factor * element.warp_weights[i] * element.warp_weights[j];
+    const double uv = factor * element.weft_weights[i] * element.warp_weights[j];
+    const double vu = factor * element.warp_weights[i] * element.weft_weights[j];
+    Eigen::Matrix3d result = (slope[0] * uu + slope[2] * vv) * weft_weft +
+                             (slope[1] * vv + slope[2] * uu) * warp_warp +
+                             (slope[2] * uv + coupling * vu) * warp_weft +
+                             (slope[2] * vu + coupling * uv) * warp_weft.transpose();
+    result.diagonal().array() += stress[0] * uu + stress[1] * vv + stress[2] * (uv + vu);
+    return result;
+  };
+  addElementBlocks(element, block, matrix);
+}
+
 }  // namespace haptex::cloth

@@ -14,10 +14,7 @@ using Eigen::Vector3d;
 
 struct Membrane::Frame : ElementFrame {
   MembraneStrain strain() const { return greenStrain(*this); }
-  MembraneStrain rate(const Frame& derivative) const {
-    return {weft.dot(derivative.weft), warp.dot(derivative.warp),
-            derivative.weft.dot(warp) + weft.dot(derivative.warp)};
-  }
+  MembraneStrain rate(const Frame& derivative) const { return greenStrainRate(*this, derivative); }
 };
 
 struct Membrane::Response {
@@ -43,30 +40,6 @@ kernels::MembraneBatch batchOf(const MembraneElement* elements) {
     }
   }
   return batch;
-}
-
-/// Adds factor * (tangent blocks of one element) to the matrix: the sum over the three strains of
-/// slope g_i g_j^T, plus that of weft and warp by their coupling, plus the geometric part, both
-/// positive semidefinite.
-void addTangent(const MembraneElement& element, const Vector3d& weft, const Vector3d& warp,
-                const Vector3d& slope, double coupling, const Vector3d& stress, double factor,
-                linear::SymmetricBlockMatrix& matrix) {
-  const Matrix3d weft_weft = weft * weft.transpose();
-  const Matrix3d warp_warp = warp * warp.transpose();
-  const Matrix3d warp_weft = warp * weft.transpose();
-  const auto block = [&](int i, int j) {
-    const double uu = factor * element.weft_weights[i] * element.weft_weights[j];
-    const double vv = factor * element.warp_weights[i] * element.warp_weights[j];
-    const double uv = factor * element.weft_weights[i] * element.warp_weights[j];
-    const double vu = factor * element.warp_weights[i] * element.weft_weights[j];
-    Matrix3d result = (slope[0] * uu + slope[2] * vv) * weft_weft +
-                      (slope[1] * vv + slope[2] * uu) * warp_warp +
-                      (slope[2] * uv + coupling * vu) * warp_weft +
-                      (slope[2] * vu + coupling * uv) * warp_weft.transpose();
-    result.diagonal().array() += stress[0] * uu + stress[1] * vv + stress[2] * (uv + vu);
-    return result;
-  };
-  addElementBlocks(element, block, matrix);
 }
 
 Vector3d clampedToNonNegative(const Vector3d& slope) { return slope.cwiseMax(0.0); }
@@ -199,8 +172,7 @@ void Membrane::assembleElement(const MembraneElement& element, const Positions& 
     slope += clampedToNonNegative(viscous.slope) / times.a;
   }
   const Vector3d geometric = projectStress(stress);
-  addTangent(element, at.weft, at.warp, slope, coupling, geometric,
-             element.area * times.a * times.a, matrix);
+  addTangent(element, at, slope, coupling, geometric, element.area * times.a * times.a, matrix);
 
   const double factor = -element.area * times.a;
   const Vector3d end = factor * (stress + stress_increment);
@@ -237,7 +209,7 @@ void Membrane::assembleNewton(const ForceState& state, const Vector3d* held, dou
     }
     const bool exact = hessian == Hessian::kExact;
     if (!exact) projectMaterial(slope, coupling);
-    addTangent(element, at.weft, at.warp, slope, coupling, exact ? stress : projectStress(stress),
+    addTangent(element, at, slope, coupling, exact ? stress : projectStress(stress),
                element.area * a * a, matrix);
     stress *= -element.area * a;
     addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
@@ -299,29 +271,17 @@ ElementJacobian Membrane::exactJacobian(const MembraneElement& element, const Po
     stress += viscous.stress;
     viscous_slope = viscous.slope;
   }
-  // Column m is the derivative of strain m by the position of particle i, which is also the
-  // derivative of its rate by the velocity; with the velocity's frame it is the derivative of the
-  // rate by the position.
-  const auto gradients = [&](const Frame& f, int i) {
-    const double ru = element.weft_weights[i];
-    const double rv = element.warp_weights[i];
-    Matrix3d columns;
-    columns << ru * f.weft, rv * f.warp, ru * f.warp + rv * f.weft;
-    return columns;
-  };
+  // The derivative of a strain by the position is also that of its rate by the velocity.
   ElementJacobian result;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      const Matrix3d g_i = -element.area * gradients(at, i);
-      const Matrix3d g_j = gradients(at, j);
-      const double ru_i = element.weft_weights[i], ru_j = element.weft_weights[j];
-      const double rv_i = element.warp_weights[i], rv_j = element.warp_weights[j];
-      const double geometric = -element.area * (stress[0] * ru_i * ru_j + stress[1] * rv_i * rv_j +
-                                                stress[2] * (ru_i * rv_j + rv_i * ru_j));
+      const Matrix3d g_i = -element.area * strainGradients(element, at, i);
+      const Matrix3d g_j = strainGradients(element, at, j);
+      const double geometric = -element.area * geometricStiffness(element, stress, i, j);
       result.by_velocity[i][j] = g_i * viscous_slope.asDiagonal() * g_j.transpose();
       result.by_position[i][j] =
           g_i * tangent * g_j.transpose() +
-          g_i * viscous_slope.asDiagonal() * gradients(derivative, j).transpose() +
+          g_i * viscous_slope.asDiagonal() * strainGradients(element, derivative, j).transpose() +
           geometric * Matrix3d::Identity();
     }
   }

@@ -5,10 +5,25 @@
 #include "haptex/cloth/forces/bending/bending_friction.h"
 #include "haptex/cloth/forces/corotational.h"
 #include "haptex/cloth/forces/membrane.h"
+#include "haptex/cloth/forces/membrane_friction.h"
 #include "haptex/cloth/forces/spring_lattice.h"
 
 namespace haptex::cloth {
 namespace {
+
+void requireMembraneHysteresis(const material::Fabric& fabric, const ModelledEffects& effects) {
+  if (effects.elasticity != Elasticity::kGreenLagrange) {
+    throw std::invalid_argument(
+        "hysteresis of stretch and shear is modelled, which only Green-Lagrange elasticity knows");
+  }
+  const auto require = [&](bool stated, const char* key) {
+    if (stated) return;
+    throw std::invalid_argument("hysteresis of stretch and shear is modelled and fabric '" +
+                                fabric.name + "' lacks it: add the key " + key);
+  };
+  require(fabric.resilience.has_value(), "resilience");
+  require(fabric.shear_hysteresis.has_value(), "hysteresis to shear");
+}
 
 void requireHysteresis(const material::Fabric& fabric, const ModelledEffects& effects) {
   if (!effects.bending) {
@@ -29,6 +44,7 @@ void requireModelled(const material::Fabric& fabric, const ModelledEffects& effe
     throw std::invalid_argument(
         "contraction is modelled, which only Green-Lagrange elasticity knows");
   }
+  if (effects.membrane_hysteresis) requireMembraneHysteresis(fabric, effects);
   if (effects.bending_hysteresis) requireHysteresis(fabric, effects);
   if (effects.bending && !fabric.bending) {
     throw std::invalid_argument("bending is modelled and fabric '" + fabric.name +
@@ -54,6 +70,20 @@ void requirePanels(const mesh::ClothMesh& mesh, const std::vector<material::Fabr
   }
 }
 
+void addMembrane(std::vector<MembraneElement> elements, const material::Fabric& fabric,
+                 const ModelledEffects& effects, ForceSum& forces) {
+  const bool hysteresis = effects.membrane_hysteresis && !MembraneFriction::isZero(fabric);
+  if (!hysteresis) {
+    forces.add(std::make_unique<Membrane>(std::move(elements), fabric, effects.viscosity,
+                                          effects.contraction));
+    return;
+  }
+  auto friction = std::make_unique<MembraneFriction>(elements, fabric);
+  forces.add(std::make_unique<Membrane>(std::move(elements), elasticShare(fabric),
+                                        effects.viscosity, effects.contraction));
+  forces.add(std::move(friction));
+}
+
 /// The membrane or the corotational elements of every panel, or the springs of the only one.
 void addElasticity(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                    const ModelledEffects& effects, ForceSum& forces) {
@@ -68,8 +98,7 @@ void addElasticity(const mesh::ClothMesh& mesh, const std::vector<material::Fabr
     if (effects.elasticity == Elasticity::kCorotational) {
       forces.add(std::make_unique<Corotational>(std::move(elements), fabric, effects.viscosity));
     } else {
-      forces.add(std::make_unique<Membrane>(std::move(elements), fabric, effects.viscosity,
-                                            effects.contraction));
+      addMembrane(std::move(elements), fabric, effects, forces);
     }
   }
 }

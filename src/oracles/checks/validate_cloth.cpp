@@ -235,7 +235,10 @@ void validateCloth(const std::string& config_directory, const Sink& sink) {
   validateIntegrators(linear, wool, sink);
   validateAir(linear, sink);
   validateContraction(wool, sink);
-  validateKes(wool, material::loadFabric(config_directory + "/fabrics/denim.yaml"), sink);
+  const Fabric denim = material::loadFabric(config_directory + "/fabrics/denim.yaml");
+  validateKes(wool, denim, sink);
+  const Fabric poplin = material::loadFabric(config_directory + "/fabrics/cotton_poplin.yaml");
+  validateKesHysteresis({wool, denim, poplin}, sink);
 }
 
 }  // namespace haptex::oracles

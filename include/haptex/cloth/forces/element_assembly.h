@@ -99,6 +99,33 @@ inline MembraneStrain greenStrain(const MembraneElement& element,
   return greenStrain(elementFrame(element, positions));
 }
 
+/// The rates (1/s) of the strains at velocities. @param frame of the positions @param rate of the
+/// velocities
+inline MembraneStrain greenStrainRate(const ElementFrame& frame, const ElementFrame& rate) {
+  return {frame.weft.dot(rate.weft), frame.warp.dot(rate.warp),
+          rate.weft.dot(frame.warp) + frame.weft.dot(rate.warp)};
+}
+
+/// Column m is the derivative (1/m) of strain m by the position of corner i. With the frame of the
+/// velocities it is that of the strain's rate.
+inline Eigen::Matrix3d strainGradients(const MembraneElement& element, const ElementFrame& frame,
+                                       int i) {
+  const double ru = element.weft_weights[i], rv = element.warp_weights[i];
+  Eigen::Matrix3d columns;
+  columns << ru * frame.weft, rv * frame.warp, ru * frame.warp + rv * frame.weft;
+  return columns;
+}
+
+/// The derivative (1/m^2) of the strains' gradient by the positions of corners i and j, times the
+/// stress: that times the identity is what turning adds to a tangent.
+inline double geometricStiffness(const MembraneElement& element, const Eigen::Vector3d& stress,
+                                 int i, int j) {
+  const double ru_i = element.weft_weights[i], ru_j = element.weft_weights[j];
+  const double rv_i = element.warp_weights[i], rv_j = element.warp_weights[j];
+  return stress[0] * ru_i * ru_j + stress[1] * rv_i * rv_j +
+         stress[2] * (ru_i * rv_j + rv_i * ru_j);
+}
+
 /// Projects the symmetric tensor [[s0, s2], [s2, s1]] to its nearest positive semidefinite one
 /// (Frobenius norm) by clamping its two eigenvalues in closed form.
 Eigen::Vector3d projectStress(const Eigen::Vector3d& stress);
@@ -120,6 +147,13 @@ void addElementBlocks(const MembraneElement& element, Block&& block,
   matrix.lower(element.slots[1]) += b20;
   matrix.lower(element.slots[2]) += b21;
 }
+
+/// Adds factor * (tangent blocks of one element) to the matrix: the sum over the three strains of
+/// slope g_i g_j^T (strainGradients()), plus that of weft and warp by their coupling, plus the
+/// geometric part.
+void addTangent(const MembraneElement& element, const ElementFrame& frame,
+                const Eigen::Vector3d& slope, double coupling, const Eigen::Vector3d& stress,
+                double factor, linear::SymmetricBlockMatrix& matrix);
 
 /// Distributes the tractions conjugate to U and V (times the rest area) to the particles.
 /// @param target of a particle, what its share is added to

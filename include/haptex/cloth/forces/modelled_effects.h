@@ -25,6 +25,7 @@ struct ModelledEffects {
   bool viscosity = false;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();     ///< m/s^2
   Elasticity elasticity = Elasticity::kGreenLagrange;    ///< against stretch and shear
+  bool membrane_hysteresis = false;                      ///< of stretch and shear, of the fabric
   bool bending = false;                                  ///< by the fabric's rigidity
   BendingSettings bending_settings = BendingSettings();  ///< how, if bending is modelled
   bool bending_hysteresis = false;                       ///< of the fabric, only with bending
@@ -39,10 +40,10 @@ struct ModelledEffects {
 /// @param mesh    without defects
 /// @param fabrics that the panels name
 /// @throws std::invalid_argument if a panel's fabric is not there, the mesh is not what the
-///   elasticity needs (findLatticeSprings(), or several panels of springs), bending, its hysteresis
-///   or contraction is modelled and the fabric has none, contraction is modelled with another
-///   elasticity than Green-Lagrange, hysteresis without bending or with bend springs, or as
-///   Bending, BendingFriction and Aerodynamics
+///   elasticity needs (findLatticeSprings(), or several panels of springs), bending, a hysteresis
+///   or contraction is modelled and the fabric has none, contraction or hysteresis of stretch and
+///   shear is modelled with another elasticity than Green-Lagrange, that of bending without bending
+///   or with bend springs, or as Bending, BendingFriction, MembraneFriction and Aerodynamics
 void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                      const ModelledEffects& effects, ForceSum& forces);
 

@@ -28,10 +28,16 @@ void validateJacobian(const material::Fabric& fabric, cloth::Elasticity elastici
 void validateIntegrators(const material::Fabric& linear, const material::Fabric& wool,
                          const Sink& sink);
 
-/// Parameters that the virtual KES tests measure against those that the fabric file says.
+/// Parameters that the virtual KES tests measure against those that the fabric file says, without a
+/// hysteresis of stretch and shear.
 /// @param anisotropic a fabric that resists bending differently in weft and warp
-void validateKes(const material::Fabric& wool, const material::Fabric& anisotropic,
+void validateKes(const material::Fabric& fabric, const material::Fabric& anisotropic,
                  const Sink& sink);
+
+/// The same parameters of tensile and shear tests, with the hysteresis: of each fabric, and of the
+/// first one with an unusual one.
+/// @param fabrics with a resilience and a hysteresis of shear
+void validateKesHysteresis(const std::vector<material::Fabric>& fabrics, const Sink& sink);
 
 /// A free strip against the coupled equations, and a clamped square with and without contraction.
 /// @param wool with a contraction
