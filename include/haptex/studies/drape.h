@@ -52,8 +52,7 @@ struct DrapeOutcome {
 /// and cylinder are without friction.
 ///
 /// Threads are as stiff as the fabric's, but only so stiff that its own weight stretches them by
-/// 0.01 %: that changes the shape by less than can be measured, while stiffer triangles could not
-/// follow folds that are not much wider than themselves (docs/mechanics.md, Drape).
+/// 0.01 %: stiffer triangles follow folds even less (docs/mechanics.md, Drape, by how much).
 /// @throws std::invalid_argument if the fabric has no bending rigidity, a number of the test is not
 ///   finite and > 0, the support is not smaller than the fabric, or what makeDisc() says
 /// @throws std::runtime_error if a step is not finite
