@@ -1,6 +1,9 @@
-// Drape of two fabrics whose drape was measured: drape coefficient and number of folds over several
-// starts, beside what was measured. bench_drape CSV also writes the first draped shape of each
-// fabric for scripts/plot_drape.
+// Drape of the fabrics whose drape was measured, as a distribution: mean and standard deviation of
+// the drape coefficient and median of the folds over kStarts starts, beside what was measured.
+// drape/<fabric>/coefficient/<what> is the coefficient of one start with another time step (ms),
+// another mesh (triangles), or with one property of the fabric changed, to be compared with that of
+// the same start, drape/<fabric>/coefficient/start_1; likewise folds. bench_drape CSV also writes
+// the first draped shape of each fabric for scripts/plot_drape.
 //
 // Measured: Matsudaira, Masuda, Wada, Yokura 2015, J. Textile Eng. 61(6):69-73, as transcribed in
 // the public repository antonbj3/3fold-motion-engine. The diameters of fabric and support are not
@@ -10,7 +13,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <future>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "haptex/material/fabric_file.h"
 #include "tab_lines.h"
@@ -26,7 +32,15 @@ struct Measured {
 };
 
 constexpr Measured kMeasured[] = {{"cotton_poplin", 82.9, 2}, {"wool_tropical", 49.8, 5}};
-constexpr int kSeeds = 6;
+constexpr int kStarts = 20;
+constexpr int kThreads = 2;  // each drapes every second disc
+
+struct Case {
+  std::string name;  // of a line
+  material::Fabric fabric;
+  studies::DrapeTest test;
+  unsigned seed;
+};
 
 void writeShape(const char* fabric, const mesh::ClothMesh& shape, std::ostream& csv) {
   for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
@@ -37,37 +51,92 @@ void writeShape(const char* fabric, const mesh::ClothMesh& shape, std::ostream& 
   }
 }
 
-void printSpread(const std::string& name, const std::string& triangles, std::vector<double> values,
-                 const char* unit) {
-  std::sort(values.begin(), values.end());
-  double mean = 0.0;
-  for (double value : values) mean += value / static_cast<double>(values.size());
-  bench::printLine(name + "_mean" + triangles, mean, unit);
-  bench::printLine(name + "_least" + triangles, values.front(), unit);
-  bench::printLine(name + "_most" + triangles, values.back(), unit);
+material::StrainStressCurve scaled(const material::StrainStressCurve& curve, double factor) {
+  return material::StrainStressCurve::linear(factor * curve.evaluate(0.0).slope);
+}
+
+/// The starts, and then what is changed one by one.
+std::vector<Case> casesOf(const material::Fabric& fabric) {
+  std::vector<Case> cases;
+  for (int seed = 1; seed <= kStarts; ++seed) {
+    cases.push_back({"start_" + std::to_string(seed), fabric, {}, static_cast<unsigned>(seed)});
+  }
+  const auto add = [&](const std::string& name) -> Case& {
+    cases.push_back({name, fabric, {}, 1});
+    return cases.back();
+  };
+  add("step_2.5").test.time_step = 0.0025;
+  add("step_12.5").test.time_step = 0.0125;
+  add("triangles_5926").test.rings = 33;
+  add("triangles_13049").test.rings = 49;
+  add("lowered_half_as_fast").test.lowering_time *= 2.0;
+  add("lowered_on_a_plane").test.descent = studies::Descent::kOnPlane;
+  add("without_hysteresis").fabric.bending_hysteresis.reset();
+  for (double factor : {0.5, 2.0}) {
+    material::Fabric& changed = add(factor < 1.0 ? "half_the_shear" : "twice_the_shear").fabric;
+    changed.shear.elastic = scaled(changed.shear.elastic, factor);
+  }
+  studies::DrapeTest& cusick = add("disc_300_on_180_mm").test;
+  cusick.fabric_radius = 0.15, cusick.support_radius = 0.09;
+  return cases;
+}
+
+std::vector<studies::DrapeOutcome> drapeAll(const char* fabric, const std::vector<Case>& cases) {
+  std::vector<studies::DrapeOutcome> outcomes(cases.size());
+  const auto work = [&](std::size_t first) {
+    for (std::size_t i = first; i < cases.size(); i += kThreads) {
+      const studies::DrapeOutcome outcome =
+          studies::drape(cases[i].fabric, cases[i].test, cases[i].seed);
+      std::cerr << std::string(fabric) + ' ' + cases[i].name + ": drape coefficient " +
+                       std::to_string(100.0 * outcome.coefficient) + " %, " +
+                       std::to_string(outcome.nodes) + " folds, " +
+                       std::to_string(1e3 * outcome.energy) + " mJ after " +
+                       std::to_string(outcome.time) + " s at " +
+                       std::to_string(1e3 * outcome.fastest) + " mm/s, " +
+                       std::to_string(outcome.inside_support) + " particles in the support\n";
+      outcomes[i] = outcome;
+    }
+  };
+  std::vector<std::future<void>> threads;
+  for (std::size_t i = 0; i < kThreads; ++i) {
+    threads.push_back(std::async(std::launch::async, work, i));
+  }
+  for (std::future<void>& thread : threads) thread.get();
+  return outcomes;
 }
 
 void run(const Measured& measured, std::ostream* csv) {
   const material::Fabric fabric = material::loadFabric(
       std::string(HAPTEX_CONFIG_DIRECTORY "/fabrics/") + measured.file + ".yaml");
-  const std::string name = std::string("drape/") + measured.file;
-  std::vector<double> coefficients, nodes;
-  std::string triangles;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
-    const studies::DrapeOutcome outcome = studies::drape(fabric, {}, seed);
-    triangles = "/" + std::to_string(outcome.shape.triangles.size());
-    std::cerr << measured.file << " start " << seed << " of " << kSeeds << ": drape coefficient "
-              << 100.0 * outcome.coefficient << " %, " << outcome.nodes << " nodes, after "
-              << outcome.time << " s at " << 1e3 * outcome.fastest << " mm/s, "
-              << outcome.inside_support << " particles inside of the support\n";
-    coefficients.push_back(100.0 * outcome.coefficient);
-    nodes.push_back(outcome.nodes);
-    if (csv && seed == 1) writeShape(measured.file, outcome.shape, *csv);
+  const std::vector<Case> cases = casesOf(fabric);
+  const std::vector<studies::DrapeOutcome> outcomes = drapeAll(measured.file, cases);
+  if (csv) writeShape(measured.file, outcomes[0].shape, *csv);
+
+  double mean = 0.0, square = 0.0;
+  std::vector<double> nodes;
+  int inside = 0;
+  for (int i = 0; i < kStarts; ++i) {
+    const double coefficient = 100.0 * outcomes[i].coefficient;
+    mean += coefficient / kStarts;
+    square += coefficient * coefficient / kStarts;
+    nodes.push_back(outcomes[i].nodes);
   }
-  bench::printLine(name + "_coefficient_measured" + triangles, measured.coefficient, "%");
-  printSpread(name + "_coefficient", triangles, coefficients, "%");
-  bench::printLine(name + "_nodes_measured" + triangles, measured.nodes, "1");
-  printSpread(name + "_nodes", triangles, nodes, "1");
+  std::sort(nodes.begin(), nodes.end());
+  for (const studies::DrapeOutcome& outcome : outcomes) {
+    inside = std::max(inside, outcome.inside_support);
+  }
+  const std::string name = std::string("drape/") + measured.file;
+  bench::printLine(name + "/coefficient", mean, "%");
+  bench::printLine(name + "/spread", std::sqrt(std::max(0.0, square - mean * mean)), "%");
+  bench::printLine(name + "/folds", 0.5 * (nodes[(kStarts - 1) / 2] + nodes[kStarts / 2]), "1");
+  bench::printLine(name + "/measured", measured.coefficient, "%");
+  bench::printLine(name + "/folds_measured", measured.nodes, "1");
+  bench::printLine(name + "/inside_support_most", inside, "1");
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (i != 0 && i < kStarts) continue;
+    bench::printLine(name + "/coefficient/" + cases[i].name, 100.0 * outcomes[i].coefficient, "%");
+    bench::printLine(name + "/folds/" + cases[i].name, outcomes[i].nodes, "1");
+  }
 }
 
 }  // namespace
