@@ -59,7 +59,7 @@ class PatchSolver {
   bool has_kept_ = false;
   bool has_direct_ = false;  // of the last system
   int iterations_ = 0;
-  int solved_ = 0;  // systems, one after the other
+  int solved_ = 0;  // systems, one after the other; 2: or more
   Eigen::Vector3d guess_ = Eigen::Vector3d::Zero();
   linear::BlockVector residual_, preconditioned_, direction_, product_;
   linear::BlockVector last_, before_last_;  // solutions
