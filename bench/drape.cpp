@@ -13,11 +13,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <future>
 #include <iostream>
 #include <string>
 #include <vector>
 
+#include "haptex/linear/thread_pool.h"
 #include "haptex/material/fabric_file.h"
 #include "tab_lines.h"
 
@@ -33,7 +33,7 @@ struct Measured {
 
 constexpr Measured kMeasured[] = {{"cotton_poplin", 82.9, 2}, {"wool_tropical", 49.8, 5}};
 constexpr int kStarts = 20;
-constexpr int kThreads = 2;  // each drapes every second disc
+constexpr int kThreads = 2;
 
 struct Case {
   std::string name;  // of a line
@@ -49,10 +49,6 @@ void writeShape(const char* fabric, const mesh::ClothMesh& shape, std::ostream& 
       csv << fabric << ',' << i << ',' << place.x() << ',' << place.y() << ',' << place.z() << '\n';
     }
   }
-}
-
-material::StrainStressCurve scaled(const material::StrainStressCurve& curve, double factor) {
-  return material::StrainStressCurve::linear(factor * curve.evaluate(0.0).slope);
 }
 
 /// The starts, and then what is changed one by one.
@@ -74,7 +70,7 @@ std::vector<Case> casesOf(const material::Fabric& fabric) {
   add("without_hysteresis").fabric.bending_hysteresis.reset();
   for (double factor : {0.5, 2.0}) {
     material::Fabric& changed = add(factor < 1.0 ? "half_the_shear" : "twice_the_shear").fabric;
-    changed.shear.elastic = scaled(changed.shear.elastic, factor);
+    changed.shear.elastic = changed.shear.elastic.scaledBy(factor);
   }
   studies::DrapeTest& cusick = add("disc_300_on_180_mm").test;
   cusick.fabric_radius = 0.15, cusick.support_radius = 0.09;
@@ -83,25 +79,18 @@ std::vector<Case> casesOf(const material::Fabric& fabric) {
 
 std::vector<studies::DrapeOutcome> drapeAll(const char* fabric, const std::vector<Case>& cases) {
   std::vector<studies::DrapeOutcome> outcomes(cases.size());
-  const auto work = [&](std::size_t first) {
-    for (std::size_t i = first; i < cases.size(); i += kThreads) {
-      const studies::DrapeOutcome outcome =
-          studies::drape(cases[i].fabric, cases[i].test, cases[i].seed);
-      std::cerr << std::string(fabric) + ' ' + cases[i].name + ": drape coefficient " +
-                       std::to_string(100.0 * outcome.coefficient) + " %, " +
-                       std::to_string(outcome.nodes) + " folds, " +
-                       std::to_string(1e3 * outcome.energy) + " mJ after " +
-                       std::to_string(outcome.time) + " s at " +
-                       std::to_string(1e3 * outcome.fastest) + " mm/s, " +
-                       std::to_string(outcome.inside_support) + " particles in the support\n";
-      outcomes[i] = outcome;
-    }
-  };
-  std::vector<std::future<void>> threads;
-  for (std::size_t i = 0; i < kThreads; ++i) {
-    threads.push_back(std::async(std::launch::async, work, i));
-  }
-  for (std::future<void>& thread : threads) thread.get();
+  linear::ThreadPool(kThreads).run(static_cast<int>(cases.size()), [&](int i, int /*thread*/) {
+    const Case& of = cases[i];
+    const studies::DrapeOutcome outcome = studies::drape(of.fabric, of.test, of.seed);
+    std::cerr << std::string(fabric) + ' ' + of.name + ": drape coefficient " +
+                     std::to_string(100.0 * outcome.coefficient) + " %, " +
+                     std::to_string(outcome.nodes) + " folds, " +
+                     std::to_string(1e3 * outcome.energy) + " mJ after " +
+                     std::to_string(outcome.time) + " s at " +
+                     std::to_string(1e3 * outcome.fastest) + " mm/s, " +
+                     std::to_string(outcome.inside_support) + " particles in the support\n";
+    outcomes[i] = outcome;
+  });
   return outcomes;
 }
 

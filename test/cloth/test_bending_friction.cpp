@@ -3,14 +3,13 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "derivatives.h"
 #include "fixtures.h"
 #include "force_fixtures.h"
-#include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/cloth/forces/bending/bending_friction.h"
+#include "hysteresis_fixtures.h"
 
 namespace haptex::cloth {
 namespace {
@@ -121,12 +120,7 @@ TEST(BendingFriction, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce)
     for (Vector3d& place : state.positions) {
       place += Vector3d(normal(random), normal(random), normal(random));
     }
-    ClothState followed = state;
-    cloth.remember(followed);
-    int yielding = 0;
-    for (std::size_t i = 0; i < state.memory.size(); ++i) {
-      yielding += followed.memory[i] != state.memory[i];
-    }
+    const int yielding = yieldingIn(cloth, state);
     ASSERT_GT(yielding, 3);
     ASSERT_LT(yielding, static_cast<int>(state.memory.size()) - 3);
     expectExactDerivatives(cloth, state, {0, 7, 12});
@@ -181,27 +175,8 @@ struct FreeStrip {
   }
 };
 
-// Two methods for which the sum of energies must not grow: backward Euler always, the midpoint by
-// its adaptive damping. Both up to what Newton iterations leave open.
 TEST(BendingFriction, EnergyNeverGrows) {
-  for (IntegrationMethod method :
-       {IntegrationMethod::kBackwardEuler, IntegrationMethod::kBackwardMidpoint}) {
-    FreeStrip strip(40.0);
-    StepSettings settings;
-    settings.method = method;
-    settings.tolerance = 1e-9;
-    settings.newton_iterations = 60;
-    Integrator integrator(strip.cloth, settings);
-    double before = strip.energy();
-    const double first = before;
-    for (int step = 0; step < 100; ++step) {
-      ASSERT_TRUE(integrator.step(strip.cloth, strip.state, 2e-3).accepted);
-      const double now = strip.energy();
-      EXPECT_LE(now, before + 1e-7 * first) << step;
-      before = now;
-    }
-    EXPECT_LT(before, 0.5 * first);
-  }
+  expectEnergyNeverGrows([] { return FreeStrip(40.0); }, 2e-3, 0.5);
 }
 
 // Friction holds at most the curvature at which the elastic moment is half of 2HB, 10 /m. One
@@ -231,14 +206,7 @@ TEST(BendingFriction, AReleasedStripStopsCurvedByNoMoreThanFrictionHolds) {
 TEST(BendingFriction, AllMethodsAgreeOnTheMotionOfAStripWithFriction) {
   const auto end = [](IntegrationMethod method, double time_step) {
     FreeStrip strip(30.0);
-    StepSettings settings;
-    settings.method = method;
-    settings.newton_iterations = 8;
-    Integrator integrator(strip.cloth, settings);
-    const int steps = static_cast<int>(std::lround(0.02 / time_step));
-    for (int i = 0; i < steps; ++i) {
-      EXPECT_TRUE(integrator.step(strip.cloth, strip.state, time_step).accepted);
-    }
+    run(strip, method, 8, static_cast<int>(std::lround(0.02 / time_step)), time_step);
     return strip.curvature();
   };
   const double reference = end(IntegrationMethod::kRungeKutta4, 2.5e-5);
@@ -250,12 +218,7 @@ TEST(BendingFriction, AllMethodsAgreeOnTheMotionOfAStripWithFriction) {
 
 TEST(BendingFriction, ARejectedStepLeavesThePastAlone) {
   FreeStrip strip(30.0);
-  const ClothState before = strip.state;
-  strip.cloth.setExternalForce(3, Vector3d::Constant(std::numeric_limits<double>::max()));
-  Integrator integrator(strip.cloth, StepSettings());
-  EXPECT_FALSE(integrator.step(strip.cloth, strip.state, 0.01).accepted);
-  EXPECT_EQ(strip.state.memory, before.memory);
-  EXPECT_EQ(strip.state.positions, before.positions);
+  expectARejectedStepToLeaveThePastAlone(strip);
 }
 
 TEST(BendingFriction, AnotherFabricHasNoPast) {
@@ -281,15 +244,6 @@ TEST(BendingFriction, ThatIsNotModelledIsNotThere) {
   material::Fabric smooth = frictionFabric();
   smooth.bending_hysteresis = {0.0, 0.0};
   EXPECT_EQ(Cloth(square(4), smooth, hysteresis()).forces().find<BendingFriction>(), nullptr);
-}
-
-std::string refusal(const material::Fabric& fabric, const ModelledEffects& effects) {
-  try {
-    const Cloth cloth(square(2), fabric, effects);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
 }
 
 TEST(BendingFriction, RefusesWhatItCannotModel) {

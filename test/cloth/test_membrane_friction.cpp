@@ -2,14 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "derivatives.h"
 #include "fixtures.h"
 #include "force_fixtures.h"
-#include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/cloth/forces/membrane_friction.h"
+#include "hysteresis_fixtures.h"
 
 namespace haptex::cloth {
 namespace {
@@ -174,12 +173,7 @@ ClothState yieldingState(const Cloth& cloth) {
 TEST(MembraneFriction, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce) {
   const Cloth cloth(square(4), withHysteresis(linearFabric()), hysteresis());
   const ClothState state = yieldingState(cloth);
-  ClothState followed = state;
-  cloth.remember(followed);
-  int yielding = 0;
-  for (std::size_t i = 0; i < state.memory.size(); ++i) {
-    yielding += followed.memory[i] != state.memory[i];
-  }
+  const int yielding = yieldingIn(cloth, state);
   ASSERT_GT(yielding, 10);
   ASSERT_LT(yielding, static_cast<int>(state.memory.size()) - 10);
   expectExactDerivatives(cloth, state, {0, 7, 12});
@@ -244,40 +238,15 @@ struct ReleasedSheet {
   double energy() const { return cloth.potentialEnergy(state) + cloth.kineticEnergy(state); }
 };
 
-// As for bending: up to what Newton iterations leave open.
 TEST(MembraneFriction, EnergyNeverGrows) {
-  for (IntegrationMethod method :
-       {IntegrationMethod::kBackwardEuler, IntegrationMethod::kBackwardMidpoint}) {
-    ReleasedSheet sheet;
-    StepSettings settings;
-    settings.method = method;
-    settings.tolerance = 1e-9;
-    settings.newton_iterations = 60;
-    Integrator integrator(sheet.cloth, settings);
-    double before = sheet.energy();
-    const double first = before;
-    for (int step = 0; step < 100; ++step) {
-      ASSERT_TRUE(integrator.step(sheet.cloth, sheet.state, 2e-4).accepted);
-      const double now = sheet.energy();
-      EXPECT_LE(now, before + 1e-7 * first) << step;
-      before = now;
-    }
-    EXPECT_LT(before, first);
-  }
+  expectEnergyNeverGrows([] { return ReleasedSheet(); }, 2e-4, 0.0);
 }
 
 // Every method carries the past from step to step: what they converge to is the same motion.
 TEST(MembraneFriction, AllMethodsAgreeOnTheMotionOfASheetWithFriction) {
   const auto end = [](IntegrationMethod method, double time_step) {
     ReleasedSheet sheet;
-    StepSettings settings;
-    settings.method = method;
-    settings.newton_iterations = 8;
-    Integrator integrator(sheet.cloth, settings);
-    const int steps = static_cast<int>(std::lround(2e-3 / time_step));
-    for (int i = 0; i < steps; ++i) {
-      EXPECT_TRUE(integrator.step(sheet.cloth, sheet.state, time_step).accepted);
-    }
+    run(sheet, method, 8, static_cast<int>(std::lround(2e-3 / time_step)), time_step);
     return sheet.state.positions[2];
   };
   const Vector3d start = ReleasedSheet().state.positions[2];
@@ -295,13 +264,7 @@ TEST(MembraneFriction, AVibrationDiesAwayFasterThanWithoutIt) {
   const auto left = [](const ModelledEffects& effects) {
     ReleasedSheet sheet(effects);
     const double first = sheet.energy();
-    StepSettings settings;
-    settings.method = IntegrationMethod::kTrBdf2;
-    settings.newton_iterations = 4;
-    Integrator integrator(sheet.cloth, settings);
-    for (int i = 0; i < 200; ++i) {
-      EXPECT_TRUE(integrator.step(sheet.cloth, sheet.state, 1e-4).accepted);
-    }
+    run(sheet, IntegrationMethod::kTrBdf2, 4, 200, 1e-4);
     return sheet.energy() / first;
   };
   EXPECT_LT(left(hysteresis()), 0.8 * left({}));
@@ -309,12 +272,7 @@ TEST(MembraneFriction, AVibrationDiesAwayFasterThanWithoutIt) {
 
 TEST(MembraneFriction, ARejectedStepLeavesThePastAlone) {
   ReleasedSheet sheet;
-  const ClothState before = sheet.state;
-  sheet.cloth.setExternalForce(3, Vector3d::Constant(std::numeric_limits<double>::max()));
-  Integrator integrator(sheet.cloth, StepSettings());
-  EXPECT_FALSE(integrator.step(sheet.cloth, sheet.state, 0.01).accepted);
-  EXPECT_EQ(sheet.state.memory, before.memory);
-  EXPECT_EQ(sheet.state.positions, before.positions);
+  expectARejectedStepToLeaveThePastAlone(sheet);
 }
 
 TEST(MembraneFriction, ThatIsNotModelledIsNotThere) {
@@ -325,15 +283,6 @@ TEST(MembraneFriction, ThatIsNotModelledIsNotThere) {
   smooth.resilience = {1.0, 1.0};
   smooth.shear_hysteresis = {0.0, 0.0};
   EXPECT_EQ(Cloth(square(4), smooth, hysteresis()).forces().find<MembraneFriction>(), nullptr);
-}
-
-std::string refusal(const material::Fabric& fabric, const ModelledEffects& effects) {
-  try {
-    const Cloth cloth(square(2), fabric, effects);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
 }
 
 TEST(MembraneFriction, RefusesWhatItCannotModel) {

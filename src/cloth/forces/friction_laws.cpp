@@ -17,17 +17,16 @@ const double kLargeShear = std::sin(5.0 * kDegree);
 ThreadFriction::ThreadFriction(material::StrainStressCurve curve, double resilience)
     : curve_(std::move(curve)), share_(share(resilience)) {}
 
-bool ThreadFriction::isSlack(double strain) const {
+ThreadFriction::Work ThreadFriction::workAt(double strain) const {
+  const double energy = curve_.energy(strain);
   // Work below 0 is that of a curve that pushes when it is stretched.
-  return strain <= 0.0 || curve_.energy(strain) < 0.0;
-}
-
-double ThreadFriction::work(double strain) const {
-  return isSlack(strain) ? kLeastWork : kLeastWork + curve_.energy(strain);
+  const bool slack = strain <= 0.0 || energy < 0.0;
+  return {energy, slack, slack ? kLeastWork : kLeastWork + energy};
 }
 
 FrictionResponse ThreadFriction::respond(double strain, double remembered) const {
-  const double beyond = work(strain) - remembered, most = kYieldShare * remembered;
+  const Work work = workAt(strain);
+  const double beyond = work.counted - remembered, most = kYieldShare * remembered;
   FrictionResponse response;
   double force, tangent, secant;  // by the work, which friction resists as a block on a spring
   if (std::abs(beyond) > most) {
@@ -41,11 +40,11 @@ FrictionResponse ThreadFriction::respond(double strain, double remembered) const
     response.energy = 0.5 * force * beyond;
   }
   const auto [stress, slope] = curve_.evaluate(strain);
-  if (isSlack(strain)) {
+  if (work.slack) {
     response.stress = share_ * stress;
     response.tangent = share_ * slope;
     response.secant = std::max(0.0, response.tangent);
-    response.energy += share_ * curve_.energy(strain);
+    response.energy += share_ * work.energy;
     return response;
   }
   response.stress = force * stress;
@@ -54,10 +53,12 @@ FrictionResponse ThreadFriction::respond(double strain, double remembered) const
   return response;
 }
 
-double ThreadFriction::forgotten(double strain) const { return work(strain) / (1.0 + kYieldShare); }
+double ThreadFriction::forgotten(double strain) const {
+  return workAt(strain).counted / (1.0 + kYieldShare);
+}
 
 double ThreadFriction::follow(double strain, double remembered) const {
-  const double now = work(strain);
+  const double now = workAt(strain).counted;
   return std::clamp(remembered, now / (1.0 + kYieldShare), now / (1.0 - kYieldShare));
 }
 

@@ -37,16 +37,24 @@ class ThreadFriction {
   /// r of a resilience from TensileResilience::kLeast to 1: from 0.495 to 0.
   static double share(double resilience) { return 0.5 * (1.0 + kYieldShare) * (1.0 - resilience); }
 
+  /// @param curve      s, the fabric's own
+  /// @param resilience from TensileResilience::kLeast to 1, not checked: MembraneFriction does
   ThreadFriction(material::StrainStressCurve curve, double resilience);
 
+  /// @param strain Green-Lagrange, no unit @param remembered P, J/m^2, > 0
   FrictionResponse respond(double strain, double remembered) const;
-  /// What is remembered (J/m^2) by a fabric that was stretched to here for the first time.
+  /// P (J/m^2) of a fabric that was stretched to here for the first time.
   double forgotten(double strain) const;
+  /// P (J/m^2) after a step that has ended at the strain.
   double follow(double strain, double remembered) const;
 
  private:
-  bool isSlack(double strain) const;
-  double work(double strain) const;  // Q
+  struct Work {
+    double energy;   // J/m^2, of the curve
+    bool slack;      // the thread does not pull
+    double counted;  // Q, J/m^2
+  };
+  Work workAt(double strain) const;
 
   material::StrainStressCurve curve_;
   double share_;
@@ -60,10 +68,14 @@ class ShearFriction {
  public:
   static constexpr double kYieldStrain = 0.005;  ///< U.V, 0.29 degrees
 
+  /// @param hysteresis finite and >= 0, not checked: MembraneFriction does
   explicit ShearFriction(const material::ShearHysteresis& hysteresis);
 
+  /// @param strain U.V, no unit @param remembered p, likewise
   FrictionResponse respond(double strain, double remembered) const;
+  /// p where there is no friction.
   double forgotten(double strain) const { return strain; }
+  /// p after a step that has ended at the strain.
   double follow(double strain, double remembered) const;
 
  private:
