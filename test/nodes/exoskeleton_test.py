@@ -12,7 +12,7 @@ import rospy
 import rostest
 import tf2_ros
 from geometry_msgs.msg import PoseStamped, TwistStamped, Vector3, WrenchStamped
-from haptex.msg import OperatingState, ServoForce
+from haptex.msg import OperatingState, ServoForce, ServoForces
 from haptex.srv import InjectFault
 from ros_fixtures import WAIT, Diagnostics, NodeTest, process_of
 from sensor_msgs.msg import JointState
@@ -168,6 +168,39 @@ class Exoskeleton(NodeTest):
         self.eventually(lambda: difference(self.felt.force, HELD) < CLOSE, 'the force felt')
         self.assertEqual(self.measured.last.header.frame_id, 'hand_base')
         self.assertLess(abs((rospy.Time.now() - self.measured.last.header.stamp).to_sec()), 0.5)
+
+    def count_out_of_order(self):
+        return int(self.diagnostics.values(FORCE)['commands dropped: out of order'])
+
+    def test_forces_of_both_fingers_in_one_message(self):
+        """Beside the same forces one by one, which are not counted as out of order."""
+        publisher = rospy.Publisher('exoskeleton/servo_cf', ServoForces, queue_size=1,
+                                    tcp_nodelay=True)
+        self.addCleanup(publisher.unregister)
+        thumb = Listener('thumb/measured_cf', WrenchStamped)
+        self.addCleanup(thumb.close)
+        forces = [ServoForce(force=HELD), ServoForce(force=Vector3(0.0, 0.0, 0.5 * HELD.z))]
+
+        def reached():
+            for force in forces:
+                force.header.frame_id = 'hand_base'
+                force.header.stamp = rospy.Time.now()
+            publisher.publish(ServoForces(forces=forces))
+            self.commander.publish(forces[0])
+            time.sleep(0.003)
+            if not self.state.last or self.state.last.state != 'ENABLED':
+                self.recover()
+            return (difference(self.measured.force, HELD) < CLOSE and
+                    difference(thumb.force, forces[1].force) < CLOSE)
+
+        self.eventually(reached, 'the forces of both fingers')
+        out_of_order = self.count_out_of_order()
+        messages = 500
+        for _ in range(messages):
+            reached()
+        time.sleep(1.1)  # the next diagnostics
+        # Not none: one may have come after the next message.
+        self.assertLess(self.count_out_of_order() - out_of_order, messages // 10)
 
     def test_fingertip_is_where_tf_says(self):
         buffer = tf2_ros.Buffer()

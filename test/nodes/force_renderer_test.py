@@ -14,7 +14,7 @@ import roslib.packages
 import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
-from haptex.msg import ClothState, Contact, ContactForces, ServoForce
+from haptex.msg import ClothState, Contact, ContactForces, ServoForce, ServoForces
 from haptex.srv import SetFabric
 from ros_fixtures import WAIT, Diagnostics, DeviceTest, process_of
 
@@ -107,6 +107,12 @@ class ForceRenderer(DeviceTest):
         forces = self.one('cloth/contact_forces', ContactForces)
         self.assertGreater(len(forces.triangles), 0)
         self.assertEqual(len(forces.stiffness), 9 * len(forces.triangles))
+
+    def test_forces_of_both_fingers_come_in_one_message_too(self):
+        both = self.one('exoskeleton/servo_cf', ServoForces)
+        for force in both.forces:
+            self.assertEqual(force.header.frame_id, 'hand_base')
+            self.assertEqual(force.header.stamp, both.forces[0].header.stamp)
 
     def test_commands_come_a_thousand_times_a_second(self):
         begin = len(self.commanded['index'].series)

@@ -8,12 +8,13 @@
 namespace haptex::realtime {
 
 /// Of SCHED_FIFO, from 1 to 99. On the force path, from the device's position to its force, the
-/// loops of device and driver come first, then the threads of the sockets between driver and force
-/// renderer, then the force renderer's loop, which computes for longest. What brings other messages
-/// comes after them, and before everything ordinary, such as diagnostics, markers and a recorder.
+/// loops of device and driver come first, then the force renderer's loop, then the threads of the
+/// sockets between them: one that interrupted a loop while it publishes would wait for roscpp's
+/// lock, which the loop holds. What brings other messages comes after them, and before everything
+/// ordinary, such as diagnostics, markers and a recorder.
 constexpr int kLoopPriority = 80;
+constexpr int kForcePriority = 76;
 constexpr int kSocketPriority = 75;
-constexpr int kForcePriority = 70;
 constexpr int kMessagePriority = 20;
 
 /// Asks for SCHED_FIFO for a thread.

@@ -106,6 +106,7 @@ void DriverNode::stop() {
   const Time end = realtime::steadyNow() + kEndPatience;
   while (loop_.status().motors_on && realtime::steadyNow() < end)
     std::this_thread::sleep_for(kEndLook);
+  both_forces_subscriber_.shutdown();
   for (FingerTopics& topics : fingers_.values) topics.forces.shutdown();
   loop_thread_.stop();
   publishing_thread_.join();
@@ -123,15 +124,25 @@ void DriverNode::advertiseTopics() {
         node_.advertise<geometry_msgs::TwistStamped>(topic(finger, "measured_cv"), kMeasuredQueue);
     topics.wrench =
         node_.advertise<geometry_msgs::WrenchStamped>(topic(finger, "measured_cf"), kMeasuredQueue);
+    // Only the latest force counts.
     using Event = const ros::MessageEvent<haptex::ServoForce const>&;
     const boost::function<void(Event)> take = [this, finger](Event event) {
-      receiveForce(finger, event);
+      receiveForce(finger, *event.getConstMessage(), event.getPublisherName(), false);
     };
-    // Only the latest force counts.
     topics.forces = force_node_.subscribe<haptex::ServoForce, Event>(
         topic(finger, "servo_cf"), 1, take, ros::VoidConstPtr(),
         ros::TransportHints().tcpNoDelay());
   }
+  using Event = const ros::MessageEvent<haptex::ServoForces const>&;
+  const boost::function<void(Event)> take_both = [this](Event event) {
+    for (const Finger finger : kFingers) {
+      receiveForce(finger, event.getConstMessage()->forces[static_cast<std::size_t>(finger)],
+                   event.getPublisherName(), true);
+    }
+  };
+  both_forces_subscriber_ = force_node_.subscribe<haptex::ServoForces, Event>(
+      "exoskeleton/servo_cf", 1, take_both, ros::VoidConstPtr(),
+      ros::TransportHints().tcpNoDelay());
   marker_publisher_ =
       node_.advertise<visualization_msgs::MarkerArray>("exoskeleton/force_markers", 2);
   joint_publisher_ = node_.advertise<sensor_msgs::JointState>("joint_states", 10);
@@ -155,21 +166,23 @@ void DriverNode::subscriberGone(const ros::SingleSubscriberPublisher& subscriber
   }
 }
 
-void DriverNode::receiveForce(Finger finger,
-                              const ros::MessageEvent<haptex::ServoForce const>& event) {
-  const haptex::ServoForceConstPtr& message = event.getConstMessage();
+void DriverNode::receiveForce(Finger finger, const haptex::ServoForce& message,
+                              const std::string& commander, bool with_both) {
   const Time arrival = realtime::steadyNow();
   const ros::Time now = ros::Time::now();
   FingerTopics& topics = fingers_[finger];
   std::string why;
   {
     const std::lock_guard<std::mutex> lock(commanders_mutex_);
-    if (const auto command = topics.filter.receive(*message, now, arrival)) {
-      loop_.command(finger, *command, arrival, timeOf(message->measured, now, arrival));
-      commanders_.commanded(finger, event.getPublisherName());
+    const bool other_way = with_both != topics.came_with_both;
+    if (other_way && message.header.stamp == topics.filter.lastStamp()) return;  // the same force
+    if (const auto command = topics.filter.receive(message, now, arrival)) {
+      loop_.command(finger, *command, arrival, timeOf(message.measured, now, arrival));
+      commanders_.commanded(finger, commander);
+      topics.came_with_both = with_both;
       return;
     }
-    why = topics.filter.explain(*message, now);
+    why = topics.filter.explain(message, now);
   }
   ROS_WARN_THROTTLE(1.0, "%s/servo_cf dropped: %s", name(finger), why.c_str());
   const std::lock_guard<std::mutex> lock(topics.mutex);

@@ -82,7 +82,6 @@ ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
       transform_listener_(transforms_, input_node_, false),
       tactile_(parameters.tactile),
       loop_(parameters.radii),
-      fingers_{{{FingerTopics(node, Finger::kIndex), FingerTopics(node, Finger::kThumb)}}},
       diagnostics_(node, private_node),
       supplier_(node, LayerBuilder(parameters.scene_path), loop_),
       loop_thread_(simulation::ForceLoop::kPeriod, [this](Time now) { work(now); },
@@ -91,8 +90,8 @@ ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
     ROS_WARN("The loop runs without SCHED_FIFO, on a busy machine it will be late: %s",
              loop_thread_.refusedScheduler().c_str());
   }
+  advertise();
   subscribe();
-  marker_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("contact/markers", 2);
   marker_timer_ = node_.createSteadyTimer(
       ros::WallDuration(kMarkerPeriod), [this](const ros::SteadyTimerEvent&) { publishMarkers(); });
   addDiagnostics();
@@ -114,10 +113,25 @@ void ForceRendererNode::stop() {
   input_thread_.stop();
 }
 
-ForceRendererNode::FingerTopics::FingerTopics(ros::NodeHandle node, Finger finger)
-    // Only the latest force counts.
-    : force(node.advertise<haptex::ServoForce>(topic(finger, "servo_cf"), 1)),
-      contact(node.advertise<haptex::Contact>(topic(finger, "contact"), kContactQueue)) {}
+void ForceRendererNode::advertise() {
+  // Only the latest force counts.
+  both_forces_publisher_ = advertiseTo<haptex::ServoForces>(
+      node_, "exoskeleton/servo_cf", both_forces_subscribers_, [this] { findWhoTakesSingles(); });
+  for (const Finger finger : kFingers) {
+    FingerTopics& topics = fingers_[finger];
+    topics.force =
+        advertiseTo<haptex::ServoForce>(node_, topic(finger, "servo_cf"), topics.force_subscribers,
+                                        [this] { findWhoTakesSingles(); });
+    topics.contact = node_.advertise<haptex::Contact>(topic(finger, "contact"), kContactQueue);
+  }
+  marker_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("contact/markers", 2);
+}
+
+void ForceRendererNode::findWhoTakesSingles() {
+  for (FingerTopics& topics : fingers_.values) {
+    topics.force_wanted = !topics.force_subscribers.areAllAmong(both_forces_subscribers_);
+  }
+}
 
 void ForceRendererNode::subscribe() {
   device_node_.setCallbackQueue(&device_queue_);
@@ -257,21 +271,31 @@ void ForceRendererNode::work(Time now) {
   }
   loop_.tick(now);
   const ros::Time stamp = ros::Time::now();
-  for (const Finger finger : kFingers) publishForce(finger, stamp);
+  publishForces(stamp);
   for (const Finger finger : kFingers) {
     if (contact_due) publishContact(finger, stamp);
   }
   tick_durations_.add(realtime::steadyNow() - now);
 }
 
-void ForceRendererNode::publishForce(Finger finger, const ros::Time& stamp) {
-  FingerTopics& topics = fingers_[finger];
-  if (topics.force.getNumSubscribers() == 0) return;
-  const simulation::ForceLoop::Rendered& rendered = loop_.rendered(finger);
-  const boost::shared_ptr<haptex::ServoForce>& message = topics.force_messages.next();
-  fillServoForce(rendered.contact, stopping_ ? 0.0 : rendered.gain, loop_.hand(), stamp, *message);
-  message->measured.fromNSec(static_cast<std::uint64_t>(rendered.measured.count()));
-  topics.force.publish(message);
+/// Both in one message: every message of 1 kHz takes a thread of the sockets of both sides out of
+/// its sleep.
+void ForceRendererNode::publishForces(const ros::Time& stamp) {
+  const boost::shared_ptr<haptex::ServoForces>& both = both_forces_messages_.next();
+  for (const Finger finger : kFingers) {
+    const simulation::ForceLoop::Rendered& rendered = loop_.rendered(finger);
+    haptex::ServoForce& force = both->forces[static_cast<std::size_t>(finger)];
+    fillServoForce(rendered.contact, stopping_ ? 0.0 : rendered.gain, loop_.hand(), stamp, force);
+    force.measured.fromNSec(static_cast<std::uint64_t>(rendered.measured.count()));
+  }
+  if (both_forces_publisher_.getNumSubscribers() > 0) both_forces_publisher_.publish(both);
+  for (const Finger finger : kFingers) {
+    FingerTopics& topics = fingers_[finger];
+    if (!topics.force_wanted) continue;
+    const boost::shared_ptr<haptex::ServoForce>& message = topics.force_messages.next();
+    *message = both->forces[static_cast<std::size_t>(finger)];
+    topics.force.publish(message);
+  }
 }
 
 void ForceRendererNode::publishContact(Finger finger, const ros::Time& stamp) {

@@ -4,6 +4,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <haptex/Fingertips.h>
 #include <haptex/ServoForce.h>
+#include <haptex/ServoForces.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
@@ -36,10 +37,11 @@ struct DriverNodeParameters {
   static DriverNodeParameters read(const ros::NodeHandle& private_node);
 };
 
-/// Below the namespace of `node`, for each finger: subscribes to <finger>/servo_cf (ServoForce);
-/// advertises exoskeleton/fingertips (Fingertips) and <finger>/measured_cf (geometry_msgs), one
-/// message for every state of the device, <finger>/measured_cp and measured_cv at 250 Hz,
-/// joint_states at 100 Hz, exoskeleton/force_markers (visualization_msgs/MarkerArray, 25 Hz) and
+/// Below the namespace of `node`, for each finger: subscribes to <finger>/servo_cf (ServoForce),
+/// and to exoskeleton/servo_cf (ServoForces), which says the same of both; advertises
+/// exoskeleton/fingertips (Fingertips) and <finger>/measured_cf (geometry_msgs), one message for
+/// every state of the device, <finger>/measured_cp and measured_cv at 250 Hz, joint_states at 100
+/// Hz, exoskeleton/force_markers (visualization_msgs/MarkerArray, 25 Hz) and
 /// exoskeleton/operating_state (latched); nothing is measured before the device is homed. Services
 /// exoskeleton/enable, disable, pause, home, clear_fault (std_srvs/Trigger). Every change of the
 /// operating state is said on the console, and the state with why there is no force is a text in
@@ -69,10 +71,11 @@ class DriverNode {
     ros::Publisher twist;
     ros::Publisher wrench;
     ros::Subscriber forces;
-    ServoForceFilter filter;  // guarded by commanders_mutex_, but for its counts
-    std::mutex mutex;         // guards the next
-    std::string last_drop;    // why the last command was dropped
-    Time last_drop_time{0};   // when
+    ServoForceFilter filter;      // guarded by commanders_mutex_, but for its counts
+    bool came_with_both = false;  // the last command; guarded likewise
+    std::mutex mutex;             // guards the next
+    std::string last_drop;        // why the last command was dropped
+    Time last_drop_time{0};       // when
     bool has_dropped = false;
   };
 
@@ -80,7 +83,8 @@ class DriverNode {
              DriverNodeParameters parameters);
 
   void advertiseTopics();
-  void receiveForce(Finger finger, const ros::MessageEvent<haptex::ServoForce const>& event);
+  void receiveForce(Finger finger, const haptex::ServoForce& message, const std::string& commander,
+                    bool with_both);
   void subscriberGone(const ros::SingleSubscriberPublisher& subscriber);
 
   void publishFingertips(const exoskeleton::DriverSnapshot& snapshot);  // on the loop's thread
@@ -111,6 +115,7 @@ class DriverNode {
   ros::NodeHandle node_;
   ros::NodeHandle force_node_;  // whose callbacks run where the messages arrive
   ImmediateQueue force_queue_;
+  ros::Subscriber both_forces_subscriber_;
   std::mutex commanders_mutex_;  // guards the next, and the filters of the fingers
   exoskeleton::CommanderWatch commanders_;
 

@@ -48,6 +48,9 @@ class ServoForceFilter {
   std::optional<exoskeleton::ForceCommand> receive(const haptex::ServoForce& message,
                                                    const ros::Time& now, base::Time steady_now);
 
+  /// By the same thread: of the last command taken.
+  const ros::Time& lastStamp() const { return last_stamp_; }
+
   /// By the same thread: the commander has died. What it had stamped before and comes only now is
   /// dropped.
   void commanderDied(const ros::Time& now, base::Time steady_now) {

@@ -10,6 +10,7 @@
 #include <haptex/Contact.h>
 #include <haptex/Fingertips.h>
 #include <haptex/ServoForce.h>
+#include <haptex/ServoForces.h>
 #include <ros/ros.h>
 #include <std_msgs/Header.h>
 #include <tf2_ros/buffer.h>
@@ -27,6 +28,7 @@
 #include "haptex/nodes/common/loop_diagnostics.h"
 #include "haptex/nodes/common/message_pool.h"
 #include "haptex/nodes/common/message_threads.h"
+#include "haptex/nodes/common/subscriber_names.h"
 #include "haptex/nodes/force_renderer/contact_markers.h"
 #include "haptex/nodes/force_renderer/fingertip_filter.h"
 #include "haptex/nodes/force_renderer/patch_supplier.h"
@@ -52,9 +54,10 @@ struct ForceRendererParameters {
 /// Below the namespace of `node`: subscribes to cloth/mesh, cloth/state, cloth/heartbeat,
 /// exoskeleton/fingertips and, for each finger, <finger>/measured_cp and measured_cv, which count
 /// where a device has no exoskeleton/fingertips; needs the transform of hand_base to world and the
-/// service proximity/query; advertises <finger>/servo_cf (ServoForce) at 1 kHz and <finger>/contact
-/// (Contact) at 250 Hz, cloth/contact_forces (ContactForces) once per state of the cloth that is
-/// touched, and contact/markers (visualization_msgs/MarkerArray, 30 Hz), for subscribers only.
+/// service proximity/query; advertises exoskeleton/servo_cf (ServoForces) and, for nodes that do
+/// not subscribe to that, <finger>/servo_cf (ServoForce) at 1 kHz, <finger>/contact (Contact) at
+/// 250 Hz, cloth/contact_forces (ContactForces) once per state of the cloth that is touched, and
+/// contact/markers (visualization_msgs/MarkerArray, 30 Hz), for subscribers only.
 ///
 /// The loop of 1 kHz runs on a thread of its own, which exoskeleton/fingertips wakes up, and waits
 /// for none of the others: one takes what comes in from the cloth and tf, one asks the proximity
@@ -74,11 +77,11 @@ class ForceRendererNode {
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
   struct FingerTopics {
-    FingerTopics(ros::NodeHandle node, Finger finger);
-
     ros::Subscriber pose;
     ros::Subscriber twist;
+    SubscriberNames force_subscribers;
     ros::Publisher force;
+    std::atomic<bool> force_wanted{false};  // by a node that does not take both forces at once
     ros::Publisher contact;
     FingertipFilter filter;
     std::atomic<std::uint64_t> poses{0};  // taken
@@ -91,6 +94,8 @@ class ForceRendererNode {
   ForceRendererNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                     const ForceRendererParameters& parameters);
 
+  void advertise();
+  void findWhoTakesSingles();
   void subscribe();
   void subscribeToFinger(Finger finger);
 
@@ -106,7 +111,7 @@ class ForceRendererNode {
 
   // On the loop's thread.
   void work(Time now);
-  void publishForce(Finger finger, const ros::Time& stamp);
+  void publishForces(const ros::Time& stamp);
   void publishContact(Finger finger, const ros::Time& stamp);
 
   void publishMarkers();
@@ -127,6 +132,9 @@ class ForceRendererNode {
   const bool tactile_;  // the scene lists it
   simulation::ForceLoop loop_;
   base::PerFinger<FingerTopics> fingers_;
+  SubscriberNames both_forces_subscribers_;
+  ros::Publisher both_forces_publisher_;
+  MessagePool<haptex::ServoForces> both_forces_messages_;  // of the loop's thread
   realtime::DurationHistogram tick_durations_;
   int ticks_to_contact_ = 0;  // of the loop's thread
   ros::Subscriber fingertip_subscriber_;
