@@ -1,7 +1,9 @@
 #include "haptex/proximity/element_pair.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "haptex/proximity/triangle_edges.h"
 
@@ -11,6 +13,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 using Places = std::array<Vector3d, 4>;
+
+constexpr double kSafety = 1e-9;  // far more than the rounding of distances
 
 Places placesOf(const ElementPair& pair, const MeshElements& elements,
                 const std::vector<Vector3d>& positions) {
@@ -110,6 +114,27 @@ PairDistance edgeEdgeDistance(const Places& places) { return SegmentSearch(place
 PairDistance distanceOf(ElementPairKind kind, const Places& places) {
   return kind == ElementPairKind::kVertexTriangle ? vertexTriangleDistance(places)
                                                   : edgeEdgeDistance(places);
+}
+
+bool isSurelyApart(ElementPairKind kind, const Places& places, double distance) {
+  const bool is_face = kind == ElementPairKind::kVertexTriangle;
+  const Vector3d normal = is_face ? (places[2] - places[1]).cross(places[3] - places[1])
+                                  : (places[1] - places[0]).cross(places[3] - places[2]);
+  // Whatever the rounding of the normal, all places of one element have to be on one side.
+  const int first_end = is_face ? 1 : 2;
+  double least = std::numeric_limits<double>::infinity(), most = -least, size = 0.0;
+  for (int i = 0; i < first_end; ++i) {
+    for (int j = first_end; j < 4; ++j) {
+      const Vector3d offset = places[j] - places[i];
+      const double height = normal.dot(offset);
+      least = std::min(least, height);
+      most = std::max(most, height);
+      size = std::max(size, offset.squaredNorm());
+    }
+  }
+  const double clear = std::max(least, -most);
+  const double wanted = (1.0 + kSafety) * distance + kSafety * std::sqrt(size);
+  return clear > 0.0 && clear * clear > wanted * wanted * normal.squaredNorm();
 }
 
 std::vector<ElementPair> nearPairsByBruteForce(const MeshElements& elements,

@@ -61,6 +61,12 @@ PairDistance vertexTriangleDistance(const std::array<Eigen::Vector3d, 4>& places
 PairDistance edgeEdgeDistance(const std::array<Eigen::Vector3d, 4>& places);
 PairDistance distanceOf(ElementPairKind kind, const std::array<Eigen::Vector3d, 4>& places);
 
+/// Whether a plane between the elements, along the triangle or both edges, tells that they are
+/// farther apart than a distance (m), by more than distanceOf() may be off. Faster than that; false
+/// says nothing.
+bool isSurelyApart(ElementPairKind kind, const std::array<Eigen::Vector3d, 4>& places,
+                   double distance);
+
 /// All pairs that are not adjacent and at most `distance` (m) apart, ascending, by asking all: the
 /// oracle of SelfProximity.
 std::vector<ElementPair> nearPairsByBruteForce(const MeshElements& elements,
