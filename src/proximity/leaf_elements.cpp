@@ -5,6 +5,25 @@
 #include <limits>
 
 namespace haptex::proximity {
+namespace {
+
+using Floats = ElementBox::Floats;
+
+inline bool overlap(const ElementBox& a, const ElementBox& b) {
+  const auto apart = (a.least > b.most) | (b.least > a.most);
+  std::int64_t bits[2];
+  std::memcpy(bits, &apart, sizeof(bits));
+  return (bits[0] | bits[1]) == 0;
+}
+
+inline bool isAdjacent(ElementPairKind kind, const LeafElement& a, const LeafElement& b) {
+  const auto has = [&b](int vertex) {
+    return vertex == b.corners[0] || vertex == b.corners[1] || vertex == b.corners[2];
+  };
+  return has(a.corners[0]) || (kind == ElementPairKind::kEdgeEdge && has(a.corners[1]));
+}
+
+}  // namespace
 
 LeafElements::LeafElements(const KdopHierarchy& hierarchy, const MeshElements& elements) {
   std::vector<bool> has_vertex(hierarchy.positions().size(), false);
@@ -63,20 +82,6 @@ void LeafElements::begin(const KdopHierarchy& hierarchy, double distance) {
   ++step_;
   const double margin = kSinglePrecisionMargin;
   reach_ = static_cast<float>((1.0 + margin) * distance + margin * hierarchy.extent());
-}
-
-bool LeafElements::overlap(const Box& a, const Box& b) {
-  const auto apart = (a.least > b.most) | (b.least > a.most);
-  std::int64_t bits[2];
-  std::memcpy(bits, &apart, sizeof(bits));
-  return (bits[0] | bits[1]) == 0;
-}
-
-bool LeafElements::isAdjacent(ElementPairKind kind, const Element& a, const Element& b) {
-  const auto has = [&b](int vertex) {
-    return vertex == b.corners[0] || vertex == b.corners[1] || vertex == b.corners[2];
-  };
-  return has(a.corners[0]) || (kind == ElementPairKind::kEdgeEdge && has(a.corners[1]));
 }
 
 /// Boxes of all elements of a leaf and around them, unless they are fitted.

@@ -223,8 +223,8 @@ TEST(SelfProximity, AnswersTheSameWhateverCameBefore) {
   std::size_t pairs = 0;
   SelfProximityCost cost, cost_anew;
   for (int step = 0; step < 80; ++step) {
-    // Rolls up and unrolls.
-    const double curvature = 60.0 * std::sin(0.08 * step) + 1e-3;
+    // Rolls up and unrolls slowly.
+    const double curvature = 60.0 * std::sin(0.8 + 0.01 * step);
     Positions positions = reference;
     for (Vector3d& x : positions) {
       const double angle = curvature * x.x(), radius = 1.0 / curvature - 0.001 * angle;

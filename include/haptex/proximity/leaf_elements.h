@@ -9,6 +9,17 @@
 
 namespace haptex::proximity {
 
+/// A box with faces along the axes: x, y, z and 0 (m), as the local positions of the hierarchy.
+struct ElementBox {
+  typedef float Floats __attribute__((vector_size(16)));
+  Floats least, most;
+};
+
+struct LeafElement {
+  int index;                   ///< of the vertex, edge or triangle
+  std::array<int, 3> corners;  ///< vertices, the last one repeated
+};
+
 /// Every vertex and every edge belongs to one leaf: to the first that has a triangle with it. So
 /// any two elements meet in one pair of leaves, and if they are near, so are the volumes of the
 /// leaves.
@@ -28,23 +39,15 @@ class LeafElements {
                       std::vector<ElementPair>& found);
 
  private:
-  typedef float Floats __attribute__((vector_size(16)));
-  struct Box {
-    Floats least, most;  // m, as the local positions of the hierarchy
-  };
+  using Box = ElementBox;
   enum Part { kVertices, kEdges, kTriangles, kParts };
-  struct Element {
-    int index;                   // of the vertex, edge or triangle
-    std::array<int, 3> corners;  // vertices, the last one repeated
-  };
+  using Element = LeafElement;
   // Of a part of a leaf, those that reach into a box.
   struct Chosen {
     std::vector<Element> element;
     std::vector<Box> box;
   };
 
-  static bool overlap(const Box& a, const Box& b);
-  static bool isAdjacent(ElementPairKind kind, const Element& a, const Element& b);
   int beginOf(int leaf, int part) const { return begin_[kParts * std::size_t(leaf) + part]; }
   void fit(const KdopHierarchy& hierarchy, int leaf);
   void choose(int leaf, const Box& within, Chosen* chosen) const;
