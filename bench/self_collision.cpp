@@ -48,10 +48,10 @@ struct Sheet {
   Positions rest;
 };
 
-/// A sheet of wool that hangs by its top edge and has come to rest.
+/// A sheet of a linear fabric that hangs by its top edge and has come to rest.
 struct HangingSheet {
   explicit HangingSheet(const Sheet& sheet)
-      : cloth(sheet.mesh, material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), {}),
+      : cloth(sheet.mesh, material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/linear.yaml"), {}),
         integrator(cloth, settings()),
         state(cloth.initialState()) {
     for (const int particle : mesh::sideParticles(sheet.mesh, mesh::Side::kTop)) {

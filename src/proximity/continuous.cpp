@@ -30,29 +30,30 @@ class ContactSearch {
     }
   }
 
-  /// Depth first through the halves of the time, the earlier one first.
+  /// Depth first through the halves of the time, the earlier one first. The directions tried
+  /// are those at begin and end of the interval.
   std::optional<double> run() {
     double time = 0.0, length = 1.0;
+    Vector3d at_begin = directionAt(time), at_end = directionAt(time + length);
     for (int tested = 0; tested < kMostIntervals; ++tested) {
-      if (areApart(time, time + length)) {
-        time += length;
-        if (time >= 1.0) return {};
+      const double end = time + length;
+      if (separate(at_begin, time, end) || separate(at_end, time, end)) {
+        if (end >= 1.0) return {};
+        time = end;
         // A second half ends the interval above, too.
         while (std::fmod(time, 2.0 * length) == 0.0) length *= 2.0;
+        at_begin = at_end;
+        at_end = directionAt(time + length);
         continue;
       }
       length *= 0.5;
       if (length < kShortestInterval) return time;
+      at_end = directionAt(time + length);
     }
     return time;
   }
 
  private:
-  bool areApart(double begin, double end) const {
-    return separate(directionAt(begin), begin, end) || separate(directionAt(end), begin, end) ||
-           separate(directionAt(0.5 * (begin + end)), begin, end);
-  }
-
   /// Between the nearest points, or normal to both elements where they touch. Any direction is
   /// right, this one is good.
   Vector3d directionAt(double time) const {
