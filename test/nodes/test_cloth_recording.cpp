@@ -28,11 +28,12 @@ class TestBag {
   void write(const std::string& topic, const Message& message) {
     const auto mode = fs::exists(path()) ? rosbag::bagmode::Append : rosbag::bagmode::Write;
     rosbag::Bag bag(path(), mode);
-    bag.write(topic, ros::Time(1.0), message);
+    bag.write(topic, ros::Time(++messages_), message);
   }
 
  private:
   fs::path directory_;
+  int messages_ = 0;
 };
 
 ClothMesh meshOf(const std::vector<uint32_t>& triangles) {

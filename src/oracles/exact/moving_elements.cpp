@@ -19,7 +19,8 @@ struct Polynomial {
   /// Times 2^(kDegree bits), at time / 2^bits: a whole number.
   Whole at(Whole time, int bits) const {
     Whole sum = 0;
-    for (int i = kDegree; i >= 0; --i) sum = sum * time + (factors[i] << (bits * (kDegree - i)));
+    for (int i = kDegree; i >= 0; --i)
+      sum = sum * time + factors[i] * (Whole{1} << (bits * (kDegree - i)));
     return sum;
   }
   /// Not less than the largest slope between 0 and 1.
