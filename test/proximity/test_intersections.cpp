@@ -173,7 +173,7 @@ TEST(Intersections, OfSheetsAreCounted) {
 }
 
 TEST(Intersections, SweepFindsWhatAllPairsHave) {
-  const mesh::ClothMesh mesh = sheet(8);
+  const mesh::ClothMesh mesh = sheet(6);
   for (const auto& state : oracles::deformedSheets(mesh)) {
     std::vector<TrianglePair> expected;
     for (int i = 0; i < static_cast<int>(mesh.triangles.size()); ++i) {
