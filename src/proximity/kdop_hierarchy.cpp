@@ -14,10 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Heights are sums of three numbers, each rounded to single precision, and so is the sum: they are
-// off by at most 6 * 2^-24 = 3.6e-7 of the largest term. The margin is relative to all that went
-// into a comparison, and larger.
-constexpr double kMargin = 1e-6;
+constexpr double kMargin = kSinglePrecisionMargin;
 
 void requireTriangles(const std::vector<std::array<int, 3>>& triangles, std::size_t vertices) {
   if (triangles.empty()) throw std::invalid_argument("a hierarchy needs at least one triangle");
@@ -242,6 +239,17 @@ void KdopHierarchy::computeLeast(const Body& body, double distance,
       of_part[opposite ? padded + axis : axis] =
           static_cast<float>(height - length * distance - margin - kMargin * length * distance);
     }
+  }
+}
+
+void KdopHierarchy::computePairLimits(double distance, std::vector<float>& limits) const {
+  const std::size_t padded = static_cast<std::size_t>(groups_) * kernels::kGroup;
+  limits.assign(2 * padded, -std::numeric_limits<float>::infinity());
+  const auto& axes = kdopAxes(kind_);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const double length = axes[i].norm();
+    limits[i] = limits[padded + i] =
+        static_cast<float>(-(1.0 + kMargin) * length * distance - 6.0 * kMargin * extent_);
   }
 }
 

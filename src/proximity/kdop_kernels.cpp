@@ -190,6 +190,31 @@ template <int kGroups, int kLanes>
   return tested;
 }
 
+template <int kGroups, int kLanes>
+[[gnu::always_inline]] inline std::uint32_t nearPairs(const VolumeTree& tree,
+                                                      const VolumePair* pairs, int count,
+                                                      const float* limits) {
+  constexpr int kAxes = kGroups * kGroup;
+  std::uint32_t near = 0;
+  for (int i = 0; i < count; ++i) {
+    const float* first = tree.heights + 2 * std::ptrdiff_t{kAxes} * pairs[i].first;
+    const float* second = tree.heights + 2 * std::ptrdiff_t{kAxes} * pairs[i].second;
+    decltype(Floats<kLanes>{} < Floats<kLanes>{}) apart{};
+    for (int h = 0; h < 2 * kAxes; h += kLanes) {
+      Floats<kLanes> height, opposite, limit;
+      load(first + h, height);
+      load(second + (h < kAxes ? h + kAxes : h - kAxes), opposite);
+      load(limits + h, limit);
+      apart |= height + opposite < limit;
+    }
+    std::int64_t bits[kLanes / 2], any = 0;
+    std::memcpy(bits, &apart, sizeof(bits));
+    for (std::int64_t pair : bits) any |= pair;
+    near |= static_cast<std::uint32_t>(any == 0) << i;
+  }
+  return near;
+}
+
 // Two wrappers, because a template cannot be given the attribute.
 template <int kGroups, int kLanes>
 struct Baseline {
@@ -200,6 +225,10 @@ struct Baseline {
   static int visitNearest(const VolumeTree& tree, const NarrowingSearch& search,
                           const Visitor& visitor) {
     return kernels::visitNearest<kGroups, kLanes>(tree, search, visitor);
+  }
+  static std::uint32_t nearPairs(const VolumeTree& tree, const VolumePair* pairs, int count,
+                                 const float* limits) {
+    return kernels::nearPairs<kGroups, kLanes>(tree, pairs, count, limits);
   }
 };
 
@@ -219,6 +248,13 @@ struct Avx2 {
                                                       const Visitor& visitor) {
     return kernels::visitNearest<kGroups, kLanes>(tree, search, visitor);
   }
+  [[gnu::target("avx2,fma")]] static std::uint32_t nearPairs(const VolumeTree& tree,
+                                                             const VolumePair* pairs, int count,
+                                                             const float* limits) {
+    // A register must not reach over the end of the axes.
+    return kernels::nearPairs < kGroups,
+           kGroups % 2 == 0 ? kLanes : kGroup > (tree, pairs, count, limits);
+  }
 };
 #endif
 
@@ -232,11 +268,14 @@ bool hasAvx2() {
 
 template <template <int, int> class Set, int kLanes>
 const Kernels* kernelsOf() {
-  static const Kernels kernels[] = {
-      {Set<1, kLanes>::refit, Set<1, kLanes>::visit, Set<1, kLanes>::visitNearest},
-      {Set<2, kLanes>::refit, Set<2, kLanes>::visit, Set<2, kLanes>::visitNearest},
-      {Set<3, kLanes>::refit, Set<3, kLanes>::visit, Set<3, kLanes>::visitNearest},
-      {Set<4, kLanes>::refit, Set<4, kLanes>::visit, Set<4, kLanes>::visitNearest}};
+  static const Kernels kernels[] = {{Set<1, kLanes>::refit, Set<1, kLanes>::visit,
+                                     Set<1, kLanes>::visitNearest, Set<1, kLanes>::nearPairs},
+                                    {Set<2, kLanes>::refit, Set<2, kLanes>::visit,
+                                     Set<2, kLanes>::visitNearest, Set<2, kLanes>::nearPairs},
+                                    {Set<3, kLanes>::refit, Set<3, kLanes>::visit,
+                                     Set<3, kLanes>::visitNearest, Set<3, kLanes>::nearPairs},
+                                    {Set<4, kLanes>::refit, Set<4, kLanes>::visit,
+                                     Set<4, kLanes>::visitNearest, Set<4, kLanes>::nearPairs}};
   return kernels;
 }
 

@@ -5,6 +5,7 @@
 #include "fixtures.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "haptex/proximity/rigid_obstacle.h"
+#include "haptex/proximity/self_proximity.h"
 
 namespace haptex::proximity {
 namespace {
@@ -50,6 +51,29 @@ TEST(ProximityAllocation, ClosestPointOfAnObstacleDoesNotAllocate) {
   }
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(before, 0) << "the count does not work";
+}
+
+TEST(ProximityAllocation, LookingForSelfPairsDoesNotAllocateOnceItHasSeenAsMany) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  const mesh::ClothMesh mesh = sheet(20);
+  KdopHierarchy hierarchy(mesh.triangles, restPositions(mesh));
+  SelfProximity self(hierarchy, restPositions(mesh), 0.001);
+  std::vector<NearPair> found;
+  std::vector<double> bounds;
+  const auto states = oracles::deformedSheets(mesh);
+  const auto find_all = [&] {
+    for (const auto& state : states) {
+      hierarchy.refit(state.positions);
+      self.find(found, &bounds);
+    }
+  };
+  find_all();
+  find_all();  // both halves of the front
+  const long before = allocations;
+  find_all();
+  EXPECT_EQ(allocations - before, 0);
 }
 
 }  // namespace

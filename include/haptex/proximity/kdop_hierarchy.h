@@ -23,6 +23,11 @@ struct HierarchySettings {
   InstructionSet instruction_set = bestInstructionSet();
 };
 
+/// What is compared in single precision has a margin of this fraction of all that went into it.
+/// Heights are sums of three numbers, each rounded to single precision, and so is the sum: they are
+/// off by at most 6 * 2^-24 = 3.6e-7 of the largest term.
+constexpr double kSinglePrecisionMargin = 1e-6;
+
 /// Work done by queries.
 struct QueryCost {
   std::int64_t volumes = 0;    ///< tested
@@ -87,13 +92,29 @@ class KdopHierarchy {
   /// @throws std::out_of_range if there is no such volume
   Kdop volume(int level, int index) const;
 
+  // For traversals other than queries: volumes are numbered breadth first.
+
+  kernels::VolumeTree tree() const { return {heights_.data(), first_leaf_}; }
+  const kernels::Kernels& kernels() const { return *kernels_; }
+  /// Groups of axes, see kdop_kernels.h.
+  int groups() const { return groups_; }
+  int leaves() const { return first_leaf_ + 1; }
+  /// The triangles of leaf i of leaves() are those of order() from leafBegin(i) to leafBegin(i +
+  /// 1).
+  int leafBegin(int leaf) const;
+  const std::vector<int>& order() const { return order_; }
+  /// Limits for Kernels::nearPairs() of volumes that may be up to a distance (m) apart.
+  void computePairLimits(double distance, std::vector<float>& limits) const;
+  /// Positions relative to one of them, x, y, z and a number without meaning for each (m).
+  const std::vector<float>& localPositions() const { return particles_; }
+  /// Largest coordinate of the local positions (m).
+  double extent() const { return extent_; }
+
  private:
   class Search;
 
   void build(const std::vector<Eigen::Vector3d>& positions);
   void listLeafParticles();
-  int leaves() const { return first_leaf_ + 1; }
-  int leafBegin(int leaf) const;
   void computeLeast(const Body& body, double distance, std::vector<float>& least) const;
 
   std::vector<std::array<int, 3>> triangles_;

@@ -5,6 +5,8 @@
 // kGroup. Then uniting two volumes is one maximum, and telling two volumes apart one comparison.
 #pragma once
 
+#include <cstdint>
+
 #include "haptex/proximity/kdop.h"
 
 namespace haptex::proximity {
@@ -59,6 +61,11 @@ struct NarrowingSearch {
   const float* reach;            ///< m, may be lowered by the visitor
 };
 
+/// Two volumes of one tree.
+struct VolumePair {
+  int first, second;
+};
+
 struct Kernels {
   void (*refit)(const RefitData& data);
   /// Visits all leaves near a body. @returns how many volumes were tested
@@ -66,6 +73,12 @@ struct Kernels {
   /// Visits near leaves, the nearer half of each volume first.
   int (*visitNearest)(const VolumeTree& tree, const NarrowingSearch& search,
                       const Visitor& visitor);
+  /// Which of at most 32 pairs of volumes are near each other, the first in the lowest bit: no
+  /// height of the one and height of the other along the opposite normal have a sum below the
+  /// limit.
+  /// @param limits m |n|, 2 * groups * kGroup, minus infinity for padding
+  std::uint32_t (*nearPairs)(const VolumeTree& tree, const VolumePair* pairs, int count,
+                             const float* limits);
 };
 
 /// @param groups 1 to 4
