@@ -12,7 +12,6 @@
 namespace haptex::nodes {
 namespace {
 
-using base::Finger;
 using base::kFingers;
 using base::Time;
 using diagnostic_msgs::DiagnosticStatus;

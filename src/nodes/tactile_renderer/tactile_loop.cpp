@@ -6,7 +6,6 @@
 namespace haptex::nodes {
 namespace {
 
-using base::Finger;
 using base::kFingers;
 
 const tactile::ArrayLimits& sound(const tactile::ArrayLimits& limits) {
