@@ -183,8 +183,10 @@ void HapticLayer::stepPatch() {
   const Particles particles{patch_->positions(), patch_->velocities(), patch_->areas(),
                             patch_->freeCount()};
   for (const Finger finger : kFingers) {
+    fillContact(finger, patch_->contact(finger).touched(), particles);
+  }
+  for (const Finger finger : kFingers) {
     const std::vector<TouchedParticle>& touched = patch_->contact(finger).touched();
-    fillContact(finger, touched, particles);
     FingertipContact& contact = contacts_[finger];
     if (!contact.touching) continue;
     contact.stiffness = stiffness_.of(finger);
@@ -193,7 +195,7 @@ void HapticLayer::stepPatch() {
     // next if less holds it. Equilibrium takes some more steps for it.
     Matrix3d stiffness = Matrix3d::Zero();
     for (const TouchedParticle& point : touched) stiffness += point.tangent;
-    const Vector3d ahead = aheadOf(contact, stiffness);
+    const Vector3d ahead = aheadOf(finger, stiffness);
     const RefinedCut& cut = patch_->cut();
     sendBack(
         contact, touched, [this](int particle) { return patch_->restCoordinates(particle); },
@@ -206,14 +208,28 @@ void HapticLayer::stepPatch() {
 }
 
 /// How far the fingertip will have taken its contact along when the large-scale layer has made its
-/// next step. A fingertip that withdraws takes no more than its force away.
-Vector3d HapticLayer::aheadOf(const FingertipContact& contact, const Matrix3d& stiffness) const {
+/// next step. A fingertip that withdraws takes no more than its force away, but for what the other
+/// one pushes after it.
+Vector3d HapticLayer::aheadOf(Finger finger, const Matrix3d& stiffness) const {
   if (!settings_.predict) return Vector3d::Zero();
-  const Vector3d ahead = motion_.period() * contact.velocity;
+  const FingertipContact& contact = contacts_[finger];
+  const Vector3d followed = -motion_.period() * followingSpeed(finger) * contact.normal;
+  const Vector3d ahead = motion_.period() * contact.velocity - followed;
   // Friction may pull a fingertip at rest along the mean normal.
   const double now = std::max(0.0, -contact.normal.dot(contact.force));
   const double change = contact.normal.dot(stiffness * ahead);
-  return change < -now ? Vector3d(now / -change * ahead) : ahead;
+  return followed + (change < -now ? Vector3d(now / -change * ahead) : ahead);
+}
+
+/// How fast (m/s) the fingertip withdraws and the other one, on the other side of the cloth,
+/// follows it: the cloth between the fingers of a pinch goes along with them.
+double HapticLayer::followingSpeed(Finger finger) const {
+  const FingertipContact& contact = contacts_[finger];
+  const FingertipContact& other =
+      contacts_[finger == Finger::kIndex ? Finger::kThumb : Finger::kIndex];
+  if (!other.touching || contact.normal.dot(other.normal) >= 0.0) return 0.0;
+  return std::max(
+      0.0, std::min(-contact.normal.dot(contact.velocity), -contact.normal.dot(other.velocity)));
 }
 
 void HapticLayer::stepWholeCloth() {

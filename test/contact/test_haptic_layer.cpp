@@ -222,6 +222,38 @@ TEST_F(HapticLayerTest, RefusesStatesThatAreNoneAndKeepsTheOneItHas) {
   EXPECT_TRUE(layer_.contacts()[Finger::kIndex].touching);
 }
 
+TEST_F(HapticLayerTest, LoadsGoAheadWithBothFingertipsOfAPinchThatMove) {
+  constexpr double kPeriod = 0.02;  // s, of receiveRest()
+  receiveRest();
+  Fingertip index = pressingMiddle(), thumb = index;
+  thumb.position.x() = -index.position.x();  // the sheet lies in x = 0
+  step({index, thumb}, 300);
+  // Of the places that the loads refer to from their places on the cloth, which rests.
+  const auto largest_shift_from = [&](const Vector3d& shift) {
+    double most = layer_.loads().empty() ? 1.0 : 0.0;
+    for (const cloth::PointLoad& load : layer_.loads()) {
+      Vector3d place = Vector3d::Zero();
+      for (int i = 0; i < 3; ++i) {
+        place += load.weights[i] * mesh_.initial_positions[mesh_.triangles[load.triangle][i]];
+      }
+      most = std::max(most, (load.position - place - shift).norm());
+    }
+    return most;
+  };
+  EXPECT_LT(largest_shift_from(Vector3d::Zero()), 1e-12);
+  // Together, to the index's side and away from it: the cloth goes along.
+  for (const double speed : {0.1, -0.1}) {
+    index.velocity.x() = thumb.velocity.x() = speed;
+    step({index, thumb});
+    EXPECT_LT(largest_shift_from({kPeriod * speed, 0.0, 0.0}), 1e-12);
+  }
+  // One that withdraws alone takes no more than its force away.
+  index.velocity.x() = 0.1;
+  thumb.velocity.x() = 0.0;
+  step({index, thumb});
+  EXPECT_LT(largest_shift_from(Vector3d::Zero()), 0.5 * kPeriod * 0.1);
+}
+
 TEST_F(HapticLayerTest, RefusesAFabricWithoutWhatContactNeeds) {
   material::Fabric fabric = wool();
   fabric.bending.reset();

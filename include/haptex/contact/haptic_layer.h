@@ -123,7 +123,8 @@ class HapticLayer {
   template <typename RestOf, typename LoadOf>
   void sendBack(FingertipContact& contact, const std::vector<TouchedParticle>& touched,
                 const RestOf& rest_of, const LoadOf& load_of);
-  Eigen::Vector3d aheadOf(const FingertipContact& contact, const Eigen::Matrix3d& stiffness) const;
+  Eigen::Vector3d aheadOf(base::Finger finger, const Eigen::Matrix3d& stiffness) const;
+  double followingSpeed(base::Finger finger) const;
 
   HapticSettings settings_;
   mesh::ClothMesh mesh_;
