@@ -185,7 +185,8 @@ TEST_F(ADriverLoop, LatchesAFaultWhenThePortVanishesAndWorksAgainWhenItIsBack) {
   EXPECT_NE(loop_.portTrouble().find(port_), std::string::npos) << loop_.portTrouble();
   device = std::make_unique<LivingDevice>(port_);  // switched on anew: its counts start over
   ASSERT_TRUE(eventually([](const DriverSnapshot& now) { return !now.operating_state.is_homed; }));
-  EXPECT_EQ(loop_.status().link_statistics.handshakes, 2u);
+  // One more where the machine stood still for so long that the link was taken for lost.
+  EXPECT_GE(loop_.status().link_statistics.handshakes, 2u);
   EXPECT_EQ(loop_.ask(DriverRequest::kClearFault), "");
   EXPECT_NE(loop_.ask(DriverRequest::kEnable), "");  // nobody knows where the fingers are
   EXPECT_TRUE(feelsThreeNewtons());
