@@ -6,8 +6,8 @@
 //   force              largest of both fingers' forces together, in one layer
 //   <rate>/force       the same in two layers with so many large-scale states a second
 //   <rate>/error       largest difference from one layer, in any millisecond
-// Patches are refined once, not twice as shipped, so that the whole cloth takes 5 s instead of 100;
-// in one layer what is lifted and lowered makes the same forces to 5 %.
+// Patches are refined once, not twice as shipped, because the whole cloth is as fine: then
+// all takes half a minute. In one layer what is lifted and lowered makes the same forces to 5 %.
 #include <algorithm>
 #include <cmath>
 #include <string>

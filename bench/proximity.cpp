@@ -29,7 +29,6 @@ constexpr double kFingertipRadius = 0.012;  // m
 constexpr int kPlaces = 500;
 constexpr double kRefitMargin = 1e-3;  // m, by which leaves might lag behind
 constexpr double kMinTime = 0.04;      // s per repetition
-constexpr int kRepetitions = 5;
 
 /// A sheet, where it is, and where it is asked about.
 struct Case {
@@ -66,15 +65,8 @@ HierarchySettings settingsOf(KdopKind kind, int triangles_per_leaf) {
   return {kind, triangles_per_leaf, bestInstructionSet()};
 }
 
-void add(const std::string& name, std::function<void(benchmark::State&)> run) {
-  benchmark::RegisterBenchmark(name.c_str(), std::move(run))
-      ->MinTime(kMinTime)
-      ->Repetitions(kRepetitions)
-      ->Unit(benchmark::kMillisecond);
-}
-
 void addRefit(const std::string& name, const Case& c, const HierarchySettings& settings) {
-  add(name, [&c, settings](benchmark::State& run) {
+  bench::add(name, kMinTime, [&c, settings](benchmark::State& run) {
     KdopHierarchy hierarchy(c.mesh.triangles, c.rest, settings);
     for (auto _ : run) hierarchy.refit(c.positions);
   });
@@ -83,7 +75,7 @@ void addRefit(const std::string& name, const Case& c, const HierarchySettings& s
 /// One iteration is one query, at the next place.
 void addQuery(const std::string& name, const Case& c, const HierarchySettings& settings,
               const std::vector<Cursor>& cursors, const Range& range) {
-  add(name, [&c, settings, cursors, range](benchmark::State& run) {
+  bench::add(name, kMinTime, [&c, settings, cursors, range](benchmark::State& run) {
     KdopHierarchy hierarchy(c.mesh.triangles, c.rest, settings);
     hierarchy.refit(c.positions);
     std::vector<NearElement> found;
@@ -117,14 +109,14 @@ std::vector<Cursor> capsules(const Positions& places) {
 
 template <typename Volume>
 void addFcl(const std::string& suffix, const Case& c) {
-  add("proximity/build" + suffix + "/" + c.name, [&c](benchmark::State& run) {
+  bench::add("proximity/build" + suffix + "/" + c.name, kMinTime, [&c](benchmark::State& run) {
     for (auto _ : run) oracles::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
   });
-  add("proximity/refit" + suffix + "/" + c.name, [&c](benchmark::State& run) {
+  bench::add("proximity/refit" + suffix + "/" + c.name, kMinTime, [&c](benchmark::State& run) {
     oracles::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
     for (auto _ : run) sheet.refit(c.positions);
   });
-  add("proximity/query" + suffix + "/" + c.name, [&c](benchmark::State& run) {
+  bench::add("proximity/query" + suffix + "/" + c.name, kMinTime, [&c](benchmark::State& run) {
     const oracles::FclSheet<Volume> sheet(c.mesh.triangles, c.positions);
     std::size_t next = 0;
     for (auto _ : run) {
@@ -137,7 +129,7 @@ void addFcl(const std::string& suffix, const Case& c) {
 /// Which leaves moved by more than a margin since the last refit: the least that refitting only
 /// those would have to find out first, each time the positions change.
 void addMotionCheck(const Case& c) {
-  add("proximity/motion_check/" + c.name, [&c](benchmark::State& run) {
+  bench::add("proximity/motion_check/" + c.name, kMinTime, [&c](benchmark::State& run) {
     Positions fitted = c.positions;
     std::vector<char> moved(fitted.size());
     for (auto _ : run) {
@@ -152,7 +144,7 @@ void addMotionCheck(const Case& c) {
 
 void addCase(const Case& c) {
   const HierarchySettings standard;
-  add("proximity/build/" + c.name, [&c](benchmark::State& run) {
+  bench::add("proximity/build/" + c.name, kMinTime, [&c](benchmark::State& run) {
     for (auto _ : run) KdopHierarchy hierarchy(c.mesh.triangles, c.rest);
   });
   addRefit("proximity/refit/" + c.name, c, standard);

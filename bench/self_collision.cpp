@@ -26,14 +26,6 @@ constexpr double kSide = 0.2;           // m
 constexpr double kStep = 0.0125;        // s
 constexpr double kDistanceShare = 0.2;  // of a cell's width, up to which pairs are near
 constexpr double kMinTime = 0.1;        // s per repetition
-constexpr int kRepetitions = 5;
-
-void add(const std::string& name, std::function<void(benchmark::State&)> run) {
-  benchmark::RegisterBenchmark(name.c_str(), std::move(run))
-      ->MinTime(kMinTime)
-      ->Repetitions(kRepetitions)
-      ->Unit(benchmark::kMillisecond);
-}
 
 struct Sheet {
   explicit Sheet(int cells_of_a_side)
@@ -76,14 +68,14 @@ struct HangingSheet {
 };
 
 void addFind(const std::string& name, const Sheet& sheet, const Positions& positions) {
-  add(name, [&sheet, positions](benchmark::State& run) {
+  bench::add(name, kMinTime, [&sheet, positions](benchmark::State& run) {
     KdopHierarchy hierarchy(sheet.mesh.triangles, sheet.rest);
     SelfProximity self(hierarchy, sheet.rest, sheet.distance());
     hierarchy.refit(positions);
     std::vector<NearPair> found;
     for (auto _ : run) self.find(found);
   });
-  add(name + "_bounds", [&sheet, positions](benchmark::State& run) {
+  bench::add(name + "_bounds", kMinTime, [&sheet, positions](benchmark::State& run) {
     KdopHierarchy hierarchy(sheet.mesh.triangles, sheet.rest);
     SelfProximity self(hierarchy, sheet.rest, sheet.distance());
     hierarchy.refit(positions);
@@ -143,11 +135,11 @@ int main(int argc, char** argv) {
   HangingSheet hanging(small);
   const Positions at_rest = hanging.state.positions;
   addFind("self_collision/flat", small, at_rest);
-  add("self_collision/refit", [&](benchmark::State& run) {
+  bench::add("self_collision/refit", kMinTime, [&](benchmark::State& run) {
     KdopHierarchy hierarchy(small.mesh.triangles, small.rest);
     for (auto _ : run) hierarchy.refit(at_rest);
   });
-  add("self_collision/step", [&](benchmark::State& run) {
+  bench::add("self_collision/step", kMinTime, [&](benchmark::State& run) {
     for (auto _ : run) hanging.step();
   });
   const char* const kCrumpled[] = {"crumpled_1", "crumpled_to_a_ball", "folded_twice"};
@@ -155,7 +147,7 @@ int main(int argc, char** argv) {
     addFind(std::string("self_collision/") + state, large,
             oracles::deformedSheet(large.mesh, state));
   }
-  add("self_collision/refit_large", [&](benchmark::State& run) {
+  bench::add("self_collision/refit_large", kMinTime, [&](benchmark::State& run) {
     const Positions positions = oracles::deformedSheet(large.mesh, "crumpled_1");
     KdopHierarchy hierarchy(large.mesh.triangles, large.rest);
     for (auto _ : run) hierarchy.refit(positions);

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace haptex::bench {
@@ -50,6 +52,15 @@ class TabReporter : public benchmark::BenchmarkReporter {
   std::map<std::string, double> times_;
   bool failed_ = false;
 };
+
+/// A benchmark for TabReporter whose five repetitions take at least `min_time` (s) each.
+inline void add(const std::string& name, double min_time,
+                std::function<void(benchmark::State&)> run) {
+  benchmark::RegisterBenchmark(name.c_str(), std::move(run))
+      ->MinTime(min_time)
+      ->Repetitions(5)
+      ->Unit(benchmark::kMillisecond);
+}
 
 /// main() of a benchmark: runs all registered ones through the reporter.
 inline int runAll(int argc, char** argv) {

@@ -29,7 +29,9 @@ class SegmentSearch {
   explicit SegmentSearch(const Places& places) : p_(places) {}
 
   PairDistance run() {
-    inside();
+    if (const auto inside = nearestInside(p_[0], p_[1], p_[2], p_[3])) {
+      consider((*inside)[0], (*inside)[1]);
+    }
     for (int end = 0; end < 2; ++end) {
       consider(end, nearestFraction(p_[end], p_[2], p_[3]));
       consider(nearestFraction(p_[2 + end], p_[0], p_[1]), end);
@@ -45,21 +47,6 @@ class SegmentSearch {
     if (!(square < square_)) return;
     square_ = square;
     fractions_ = {s, t};
-  }
-
-  // Orthogonalised like the edges of triangle_pair.cpp.
-  void inside() {
-    const Vector3d way = p_[1] - p_[0], other_way = p_[3] - p_[2], offset = p_[2] - p_[0];
-    const double square = way.squaredNorm();
-    if (square <= 0.0) return;
-    const Vector3d across = other_way - (other_way.dot(way) / square) * way;
-    const Vector3d offset_across = offset - (offset.dot(way) / square) * way;
-    const double across_square = across.squaredNorm();
-    if (across_square <= 0.0) return;
-    const double t = -offset_across.dot(across) / across_square;
-    if (!(t >= 0.0 && t <= 1.0)) return;
-    const double s = (offset + t * other_way).dot(way) / square;
-    if (s >= 0.0 && s <= 1.0) consider(s, t);
   }
 
   const Places& p_;

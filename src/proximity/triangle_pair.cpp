@@ -88,19 +88,11 @@ class PairSearch {
 
   // Inside of both edges; their ends are corners.
   void edgeAndEdge(int i, int j) {
-    const Vector3d way = first_[(i + 1) % 3] - first_[i];
-    const Vector3d other_way = second_[(j + 1) % 3] - second_[j];
-    const Vector3d offset = second_[j] - first_[i];
-    const double square = way.squaredNorm();
-    if (square <= 0.0) return;
-    const Vector3d across = other_way - (other_way.dot(way) / square) * way;
-    const Vector3d offset_across = offset - (offset.dot(way) / square) * way;
-    const double across_square = across.squaredNorm();
-    if (across_square <= 0.0) return;
-    const double t = -offset_across.dot(across) / across_square;
-    if (!isFraction(t)) return;
-    const double s = (offset + t * other_way).dot(way) / square;
-    if (isFraction(s)) consider(edgeWeights(i, s), onEdge(first_, i, s), onEdge(second_, j, t));
+    const auto inside =
+        nearestInside(first_[i], first_[(i + 1) % 3], second_[j], second_[(j + 1) % 3]);
+    if (!inside) return;
+    const auto [s, t] = *inside;
+    consider(edgeWeights(i, s), onEdge(first_, i, s), onEdge(second_, j, t));
   }
 
   void cornerAndFace(int i) {

@@ -39,6 +39,7 @@ class TestBag {
 ClothMesh meshOf(const std::vector<uint32_t>& triangles) {
   ClothMesh mesh;
   mesh.triangles = triangles;
+  mesh.rest_weft_coordinates = mesh.rest_warp_coordinates = {0.0, 0.0, 0.0, 0.0};
   return mesh;
 }
 
@@ -86,9 +87,14 @@ TEST(ClothRecording, RefusesWhatIsNoRecordingOfOneCloth) {
     bag.write("/cloth/mesh", meshOf({0, 2, 1}));
     expectRefused(bag, "the triangles change");
   }
+  {
+    TestBag bag;
+    bag.write("/cloth/mesh", meshOf({0, 1, 2, 3}));
+    expectRefused(bag, "three per triangle");
+  }
   TestBag bag;
-  bag.write("/cloth/mesh", meshOf({0, 1, 2, 3}));
-  expectRefused(bag, "three per triangle");
+  bag.write("/cloth/mesh", meshOf({0, 1, 4}));
+  expectRefused(bag, "triangles[2] = 4: there are 4 particles");
 }
 
 }  // namespace

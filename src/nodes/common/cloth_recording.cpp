@@ -9,6 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/nodes/common/proximity_messages.h"
+
 namespace haptex::nodes {
 namespace {
 
@@ -34,16 +36,13 @@ std::string topicOf(const rosbag::Bag& bag, const std::string& name) {
   throw std::invalid_argument(message.str());
 }
 
+/// @throws std::invalid_argument naming the bag
 Triangles trianglesOf(const ClothMesh& mesh, const std::string& bag) {
-  if (mesh.triangles.size() % 3 != 0) {
-    throw std::invalid_argument(bag + ": " + std::to_string(mesh.triangles.size()) +
-                                " particle indices in a mesh: must be three per triangle");
+  try {
+    return restMesh(mesh).triangles;
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(bag + ": " + error.what());
   }
-  Triangles triangles(mesh.triangles.size() / 3);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    triangles[i / 3][i % 3] = static_cast<int>(mesh.triangles[i]);
-  }
-  return triangles;
 }
 
 Triangles readTriangles(const rosbag::Bag& bag) {

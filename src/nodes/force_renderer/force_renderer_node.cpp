@@ -115,13 +115,13 @@ void ForceRendererNode::stop() {
 
 void ForceRendererNode::advertise() {
   // Only the latest force counts.
-  both_forces_publisher_ = advertiseTo<haptex::ServoForces>(
+  both_forces_publisher_ = advertiseLatest<haptex::ServoForces>(
       node_, "exoskeleton/servo_cf", both_forces_subscribers_, [this] { findWhoTakesSingles(); });
   for (const Finger finger : kFingers) {
     FingerTopics& topics = fingers_[finger];
-    topics.force =
-        advertiseTo<haptex::ServoForce>(node_, topic(finger, "servo_cf"), topics.force_subscribers,
-                                        [this] { findWhoTakesSingles(); });
+    topics.force = advertiseLatest<haptex::ServoForce>(node_, topic(finger, "servo_cf"),
+                                                       topics.force_subscribers,
+                                                       [this] { findWhoTakesSingles(); });
     topics.contact = node_.advertise<haptex::Contact>(topic(finger, "contact"), kContactQueue);
   }
   marker_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("contact/markers", 2);

@@ -36,11 +36,12 @@ class SubscriberNames {
   std::vector<std::string> nodes_;  // once for every subscription
 };
 
-/// Advertises a topic of which only the latest message counts. @param changed called when a
-/// subscriber has come or gone, from the node's callback queue; names has been told before
+/// Advertises a topic of which only the latest message counts, and keeps the names of its
+/// subscribers. @param names has to outlive the publisher @param changed called when a subscriber
+/// has come or gone, from the node's callback queue; names has been told before
 template <typename Message, typename Changed>
-ros::Publisher advertiseTo(ros::NodeHandle& node, const std::string& topic, SubscriberNames& names,
-                           const Changed& changed) {
+ros::Publisher advertiseLatest(ros::NodeHandle& node, const std::string& topic,
+                               SubscriberNames& names, const Changed& changed) {
   const auto joined = [&names, changed](const ros::SingleSubscriberPublisher& subscriber) {
     names.joined(subscriber.getSubscriberName());
     changed();
