@@ -16,13 +16,6 @@ constexpr double kShortestPeriod = 1e-3;  // s
 constexpr double kFastest = 1e3;          // m/s
 const std::vector<std::string> kShapes = {"sphere", "box", "capsule", "mesh"};
 
-Eigen::Vector3d readVector(const YamlValue& value) {
-  const auto components = value.items(3);
-  Eigen::Vector3d vector;
-  for (int i = 0; i < 3; ++i) vector[i] = components[i].number();
-  return vector;
-}
-
 Eigen::Vector3d readPosition(const YamlValue& value) {
   const Eigen::Vector3d position = readVector(value);
   for (int i = 0; i < 3; ++i) {

@@ -113,11 +113,6 @@ bool allowsAnyCells(const YamlValue& scene) {
                       [](const YamlValue& item) { return item.isMap(); });
 }
 
-Eigen::Vector3d readVector(const YamlValue& value) {
-  const auto components = value.items(3);
-  return {components[0].number(), components[1].number(), components[2].number()};
-}
-
 double readNotNegative(const YamlValue& value) {
   const double number = value.number();
   if (number < 0.0) value.refuse("must be a finite number >= 0");

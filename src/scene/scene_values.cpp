@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <set>
+#include <vector>
 
 namespace haptex::scene {
 namespace {
@@ -41,6 +42,11 @@ std::string resolveFile(const YamlValue& value, const std::string& kind,
                  path.string());
   }
   return path.string();
+}
+
+Eigen::Vector3d readVector(const YamlValue& value) {
+  const std::vector<YamlValue> components = value.items(3);
+  return {components[0].number(), components[1].number(), components[2].number()};
 }
 
 double readSize(const YamlValue& value) {

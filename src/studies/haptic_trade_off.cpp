@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <sstream>
 #include <stdexcept>
 
 #include "haptex/base/quantity.h"
+#include "haptex/simulation/step_cost.h"
 
 namespace haptex::studies {
 namespace {
@@ -19,13 +19,6 @@ using Eigen::Vector3d;
 constexpr double kGrowth = 1.25;
 
 using Forces = base::PerFinger<Vector3d>;
-
-/// s, processor time of the calling thread: other programs do not count.
-double threadSeconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// How many times `part` fits into `whole`.
 int wholeMultiple(const char* name, double whole, double part) {
@@ -133,9 +126,9 @@ HapticCost measureTouch(const oracles::PrescribedTouch& touch, const HapticPoint
   double total_time = 0.0;
   for (int tick = 1; tick <= ticks; ++tick) {
     const oracles::Fingertips fingertips = touch.fingertips(tick * h);
-    const double begin = threadSeconds();
+    const double begin = simulation::threadSeconds();
     loop.step(fingertips);
-    const double taken = threadSeconds() - begin;
+    const double taken = simulation::threadSeconds() - begin;
     total_time += taken;
     const bool alone = (tick - 1) % ticks_per_step != 0;  // without a large-scale step
     if (alone && loop.layer().particleCount() > 0) tick_times.push_back(taken);

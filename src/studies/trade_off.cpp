@@ -1,7 +1,6 @@
 #include "haptex/studies/trade_off.h"
 
 #include <cmath>
-#include <ctime>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -12,6 +11,7 @@
 #include "haptex/kes/equilibrium.h"
 #include "haptex/oracles/experiments/hanging_strip.h"
 #include "haptex/oracles/experiments/obstacle_scenes.h"
+#include "haptex/simulation/step_cost.h"
 
 namespace haptex::studies {
 namespace {
@@ -43,12 +43,6 @@ int cyclesOf(Motion motion) {
     default:
       return kDrapeCycles;
   }
-}
-
-double threadSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 const TradeOffPoint& requireSound(const TradeOffPoint& point) {
@@ -183,7 +177,7 @@ class MotionRun {
   }
 
   bool advance(double& seconds) {
-    const double start = threadSeconds();
+    const double start = simulation::threadSeconds();
     bool accepted = true;
     const double h = point_.timeStep();
     for (int i = 0; accepted && i < point_.steps_per_cycle; ++i) {
@@ -191,7 +185,7 @@ class MotionRun {
       accepted = collision_ ? collision_->step(cloth_, integrator_, state_, h).accepted
                             : integrator_.step(cloth_, state_, h).accepted;
     }
-    seconds += threadSeconds() - start;
+    seconds += simulation::threadSeconds() - start;
     return accepted;
   }
 

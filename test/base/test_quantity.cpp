@@ -6,7 +6,7 @@
 
 #include "haptex/base/quantity.h"
 
-namespace haptex::base {
+namespace haptex::base::test_quantity {
 namespace {
 
 TEST(Quantity, FailsBeyondItsToleranceAndOnNaN) {
@@ -38,4 +38,4 @@ TEST(Quantity, PrintsSixFieldsSeparatedByTabs) {
 }
 
 }  // namespace
-}  // namespace haptex::base
+}  // namespace haptex::base::test_quantity

@@ -5,7 +5,7 @@
 #include "haptex/base/repeatable_random.h"
 #include "haptex/base/require.h"
 
-namespace haptex::base {
+namespace haptex::base::test_require {
 namespace {
 
 TEST(Require, NamesFunctionParameterValueAndRange) {
@@ -41,4 +41,4 @@ TEST(RepeatableRandom, StaysInItsRanges) {
 }
 
 }  // namespace
-}  // namespace haptex::base
+}  // namespace haptex::base::test_require

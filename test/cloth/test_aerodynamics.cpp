@@ -7,7 +7,7 @@
 #include "fixtures.h"
 #include "force_fixtures.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_aerodynamics {
 namespace {
 
 using Eigen::Matrix3d;
@@ -263,4 +263,4 @@ TEST(Aerodynamics, RefusesWhatIsNotPhysical) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_aerodynamics

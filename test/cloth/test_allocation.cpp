@@ -8,7 +8,7 @@
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_allocation {
 namespace {
 
 class StepAllocation : public testing::TestWithParam<
@@ -145,4 +145,4 @@ TEST(StepAllocation, TheCounterCounts) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_allocation

@@ -7,7 +7,7 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/cloth/dynamics/stage_solver.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_backward_euler {
 namespace {
 
 using Eigen::Vector3d;
@@ -317,4 +317,4 @@ TEST(BackwardEuler, DocumentedDefaultsHold) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_backward_euler

@@ -10,7 +10,7 @@
 #include "haptex/cloth/forces/bending/bending_stencils.h"
 #include "haptex/linear/block_cholesky.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_bending {
 namespace {
 
 using Eigen::Vector3d;
@@ -343,4 +343,4 @@ TEST(NonNegativeLeastSquares, FindsTheNearestPointOfTheCone) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_bending

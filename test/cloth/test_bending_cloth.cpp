@@ -9,7 +9,7 @@
 #include "force_fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_bending_cloth {
 namespace {
 
 using Eigen::Vector3d;
@@ -192,4 +192,4 @@ TEST(BendingCloth, AnIntegratorOfAnotherPatternIsRefused) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_bending_cloth

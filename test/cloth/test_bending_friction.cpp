@@ -11,7 +11,7 @@
 #include "haptex/cloth/forces/bending/bending_friction.h"
 #include "hysteresis_fixtures.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_bending_friction {
 namespace {
 
 using Eigen::Vector3d;
@@ -273,4 +273,4 @@ TEST(BendingFriction, RefusesWhatItCannotModel) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_bending_friction

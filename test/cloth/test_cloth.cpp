@@ -6,7 +6,7 @@
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/cloth.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_cloth {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -170,4 +170,4 @@ TEST(Cloth, JacobianRowsAreSortedAndHoldEveryNeighbour) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_cloth

@@ -7,7 +7,7 @@
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_contacts {
 namespace {
 
 using Eigen::Vector3d;
@@ -191,4 +191,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, ImplicitContacts,
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_contacts

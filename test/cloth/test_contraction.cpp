@@ -9,7 +9,7 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/contraction.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_contraction {
 namespace {
 
 using Eigen::Vector3d;
@@ -198,4 +198,4 @@ TEST(Contraction, IsRefusedWhereTheFabricHasNone) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_contraction

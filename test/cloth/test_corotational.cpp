@@ -6,7 +6,7 @@
 #include "elasticity_fixtures.h"
 #include "haptex/cloth/dynamics/cloth.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_corotational {
 namespace {
 
 using Eigen::Vector2d;
@@ -69,4 +69,4 @@ TEST(Corotational, AffineDeformationHasNoInteriorForces) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_corotational

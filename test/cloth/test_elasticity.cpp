@@ -11,7 +11,7 @@
 #include "force_fixtures.h"
 #include "haptex/cloth/dynamics/cloth.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_elasticity {
 namespace {
 
 using Eigen::Matrix3d;
@@ -290,4 +290,4 @@ TEST_P(EveryElasticity, TakesTheCurvesOfAnotherFabric) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_elasticity

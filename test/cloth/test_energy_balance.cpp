@@ -8,7 +8,7 @@
 #include "haptex/cloth/dynamics/energy_balance.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_energy_balance {
 namespace {
 
 using Eigen::Vector3d;
@@ -238,4 +238,4 @@ TEST(EnergyBalance, CountsTheWorkOfBodiesThatMove) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_energy_balance

@@ -4,7 +4,7 @@
 
 #include "haptex/cloth/dynamics/friction_loads.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_friction_loads {
 namespace {
 
 // N(w) = N(0) + L w where contacts load each other as along a rope: the Neumann series of its
@@ -36,4 +36,4 @@ TEST(FrictionLoads, FindWhatTakingTheLastLoadsWouldMissByFar) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_friction_loads

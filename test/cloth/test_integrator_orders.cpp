@@ -7,7 +7,7 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "integrator_fixtures.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_integrator_orders {
 namespace {
 
 using Eigen::Vector3d;
@@ -181,4 +181,4 @@ TEST_P(OrderOfOtherModels, ConvergesWithItsOrder) {
 // ---- Attachments, momentum, energy.
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_integrator_orders

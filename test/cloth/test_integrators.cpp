@@ -11,7 +11,7 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "integrator_fixtures.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_integrators {
 namespace {
 
 using Eigen::Vector3d;
@@ -333,4 +333,4 @@ TEST_P(EveryIntegrator, ReportsWhatItSolved) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_integrators

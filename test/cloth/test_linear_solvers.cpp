@@ -9,7 +9,7 @@
 #include "haptex/linear/conjugate_gradient.h"
 #include "haptex/linear/linear_solver.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_linear_solvers {
 namespace {
 
 TEST(SymmetricBlockMatrix, MultipliesLikeItsDenseForm) {
@@ -293,4 +293,4 @@ TEST(SymmetricBlockMatrix, HasTheBlocksOfFurtherPairsForBothSolvers) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_linear_solvers

@@ -11,7 +11,7 @@
 #include "haptex/cloth/forces/membrane.h"
 #include "membrane_fixtures.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_membrane {
 namespace {
 
 using Eigen::Matrix3d;
@@ -281,4 +281,4 @@ TEST(Membrane, NewtonFeelsNoViscosityInARigidRotation) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_membrane

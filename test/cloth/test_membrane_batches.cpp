@@ -10,7 +10,7 @@
 #include "haptex/cloth/forces/membrane.h"
 #include "membrane_fixtures.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_membrane_batches {
 namespace {
 
 using Eigen::Vector3d;
@@ -155,4 +155,4 @@ TEST_P(StepInBatches, HidesNoNumberThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_membrane_batches

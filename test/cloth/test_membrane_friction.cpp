@@ -10,7 +10,7 @@
 #include "haptex/cloth/forces/membrane_friction.h"
 #include "hysteresis_fixtures.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_membrane_friction {
 namespace {
 
 using Eigen::Vector3d;
@@ -317,4 +317,4 @@ TEST(MembraneFriction, RefusesWhatItCannotModel) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_membrane_friction

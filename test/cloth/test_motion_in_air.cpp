@@ -9,7 +9,7 @@
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_motion_in_air {
 namespace {
 
 using Eigen::Vector3d;
@@ -120,4 +120,4 @@ TEST(Aerodynamics, AStormAtLongStepsStaysFinite) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_motion_in_air

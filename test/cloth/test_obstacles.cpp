@@ -13,7 +13,7 @@
 #include "haptex/mesh/obj_file.h"
 #include "haptex/scene/scene.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_obstacles {
 namespace {
 
 namespace fs = std::filesystem;
@@ -316,4 +316,4 @@ TEST(ShippedScenes, WoolAmongObstaclesHasOneOfEachKind) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_obstacles

@@ -7,7 +7,7 @@
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_panels {
 namespace {
 
 using Eigen::Vector2d;
@@ -163,4 +163,4 @@ TEST(Panels, ThatCannotBeModelledAreRefused) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_panels

@@ -6,7 +6,7 @@
 #include "force_fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_point_loads {
 namespace {
 
 using Eigen::Matrix3d;
@@ -337,4 +337,4 @@ TEST(PointLoads, KeepTheSystemDefiniteWithinTheTolerancesOfTheirStiffness) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_point_loads

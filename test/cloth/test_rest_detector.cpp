@@ -6,7 +6,7 @@
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/rest_detector.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_rest_detector {
 namespace {
 
 using Eigen::Vector3d;
@@ -111,4 +111,4 @@ TEST(RestDetector, PathsAndGustsDisturbUntilTheyEnd) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_rest_detector

@@ -8,7 +8,7 @@
 #include "force_fixtures.h"
 #include "haptex/cloth/dynamics/cloth.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_spring_lattice {
 namespace {
 
 using Eigen::Vector2d;
@@ -186,4 +186,4 @@ TEST(SpringLattice, NeedsARigidityForBendSprings) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_spring_lattice

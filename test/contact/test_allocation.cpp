@@ -5,7 +5,7 @@
 #include "fixtures.h"
 #include "haptex/contact/obstacle_collision.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_allocation {
 namespace {
 
 TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
@@ -80,4 +80,4 @@ TEST(ContactAllocation, StepsAmongObstaclesAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_allocation

@@ -5,7 +5,7 @@
 
 #include "fixtures.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_condensed_stiffness {
 namespace {
 
 using base::Finger;
@@ -113,4 +113,4 @@ TEST_F(CondensedStiffnessTest, IsZeroAsSoonAsAFingertipTouchesNoMore) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_condensed_stiffness

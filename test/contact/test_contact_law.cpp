@@ -8,7 +8,7 @@
 #include "haptex/contact/contact_law.h"
 #include "haptex/material/compression.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_contact_law {
 namespace {
 
 using material::Compression;
@@ -164,4 +164,4 @@ TEST(ContactLaw, RefusesPulpsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_contact_law

@@ -5,7 +5,7 @@
 
 #include "haptex/contact/contactors.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_contactors {
 namespace {
 
 using tactile::ArrayPlacement;
@@ -205,4 +205,4 @@ TEST(ArrayOnFabric, IsZeroWithoutContact) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_contactors

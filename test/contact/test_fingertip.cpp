@@ -7,7 +7,7 @@
 
 #include "haptex/contact/fingertip.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_fingertip {
 namespace {
 
 Fingertip sound() {
@@ -106,4 +106,4 @@ TEST(Fingertip, RefusesRadiiOutOfRange) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_fingertip

@@ -6,7 +6,7 @@
 
 #include "fixtures.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_haptic_layer {
 namespace {
 
 using base::Finger;
@@ -288,4 +288,4 @@ TEST_F(HapticLayerTest, InAWholeClothSceneTheLargeScaleParticlesAreTouched) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_haptic_layer

@@ -9,7 +9,7 @@
 
 #include "haptex/contact/haptic_settings.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_haptic_settings {
 namespace {
 
 using Layer = HapticSettings::Layer;
@@ -125,4 +125,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_haptic_settings

@@ -2,7 +2,7 @@
 
 #include "haptex/contact/large_scale_motion.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_large_scale_motion {
 namespace {
 
 using Eigen::Vector3d;
@@ -45,4 +45,4 @@ TEST(LargeScaleMotion, AStateThatComesEarlyIsApproachedFromWhereItIs) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_large_scale_motion

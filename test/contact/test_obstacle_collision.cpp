@@ -8,7 +8,7 @@
 #include "haptex/contact/obstacle_collision.h"
 #include "haptex/contact/obstacles.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_obstacle_collision {
 namespace {
 
 using cloth::ClothState;
@@ -148,4 +148,4 @@ TEST(ObstacleCollision, NeedsACoefficientOfFriction) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_obstacle_collision

@@ -10,7 +10,7 @@
 #include "haptex/contact/obstacles.h"
 #include "haptex/scene/scene.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_obstacles {
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,4 +49,4 @@ TEST(MakeObstacle, RefusesWhatTheSceneFileWouldNotHaveLetThrough) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_obstacles

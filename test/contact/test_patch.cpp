@@ -5,7 +5,7 @@
 
 #include "fixtures.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_patch {
 namespace {
 
 using base::Finger;
@@ -206,4 +206,4 @@ TEST_F(PatchTest, SaysWhenAStepIsNotFiniteAndStartsAgain) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_patch

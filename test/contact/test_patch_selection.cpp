@@ -2,7 +2,7 @@
 
 #include "haptex/contact/patch_selection.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_patch_selection {
 namespace {
 
 using Elements = std::vector<int>;
@@ -102,4 +102,4 @@ TEST(SearchVolume, ReachesFromTheFingertipToWhereItWillBe) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_patch_selection

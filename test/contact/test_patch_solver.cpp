@@ -9,7 +9,7 @@
 #include "haptex/contact/patch_solver.h"
 #include "haptex/linear/block_cholesky.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_patch_solver {
 namespace {
 
 using Eigen::Matrix3d;
@@ -165,4 +165,4 @@ TEST_F(PatchSolverTest, RefusesWhatIsNotPositiveDefiniteOrNotFiniteAndGoesOnAfte
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_patch_solver

@@ -5,7 +5,7 @@
 #include "fixtures.h"
 #include "haptex/contact/refined_cut.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_refined_cut {
 namespace {
 
 double signedArea(const mesh::ClothMesh& mesh, int triangle) {
@@ -164,4 +164,4 @@ TEST(MeshTopology, NeighboursAreMutualAndTheBorderHasNone) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_refined_cut

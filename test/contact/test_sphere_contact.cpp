@@ -5,7 +5,7 @@
 #include "fixtures.h"
 #include "haptex/contact/sphere_contact.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_sphere_contact {
 namespace {
 
 using Eigen::Matrix3d;
@@ -195,4 +195,4 @@ TEST_F(SphereContactTest, FrictionOfASlippingParticleIsConstantAlongTheSlipInThe
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_sphere_contact

@@ -2,7 +2,7 @@
 
 #include "fixtures.h"
 
-namespace haptex::contact {
+namespace haptex::contact::test_whole_cloth_contact {
 namespace {
 
 using base::Finger;
@@ -74,4 +74,4 @@ TEST_F(WholeClothContactTest, ForgetsTheContactOfAnAbsentFingertip) {
 }
 
 }  // namespace
-}  // namespace haptex::contact
+}  // namespace haptex::contact::test_whole_cloth_contact

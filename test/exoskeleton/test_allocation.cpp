@@ -9,7 +9,7 @@
 #include "haptex/exoskeleton/emulator/emulated_device.h"
 #include "shipped_urdf.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_allocation {
 namespace {
 
 TEST(ExoskeletonAllocation, KinematicsDoNotAllocateAfterConstruction) {
@@ -82,4 +82,4 @@ TEST(ExoskeletonAllocation, TheControllersTickDoesNotAllocateWhateverHappens) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_allocation

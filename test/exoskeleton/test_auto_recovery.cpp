@@ -4,7 +4,7 @@
 #include "haptex/base/workload.h"
 #include "haptex/exoskeleton/control/auto_recovery.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_auto_recovery {
 namespace {
 
 using std::chrono::milliseconds;
@@ -141,4 +141,4 @@ TEST(AutoRecovery, HomesOnlyADeviceThatHasLostItsCalibration) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_auto_recovery

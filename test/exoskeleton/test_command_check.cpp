@@ -8,7 +8,7 @@
 
 #include "haptex/exoskeleton/control/command_check.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_command_check {
 namespace {
 
 using Eigen::Matrix3d;
@@ -114,4 +114,4 @@ TEST(CommandCheck, NamesTheFirstNumberThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_command_check

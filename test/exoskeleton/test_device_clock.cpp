@@ -2,7 +2,7 @@
 
 #include "haptex/exoskeleton/protocol/device_clock.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_device_clock {
 namespace {
 
 using std::chrono::milliseconds;
@@ -109,4 +109,4 @@ TEST(DeviceClock, NoticesOneThatStartsOverAfterTheDriverStoodStill) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_device_clock

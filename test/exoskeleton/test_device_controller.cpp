@@ -10,7 +10,7 @@
 #include "controlled_device.h"
 #include "haptex/exoskeleton/control/device_controller.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_device_controller {
 namespace {
 
 using Eigen::Vector3d;
@@ -395,4 +395,4 @@ TEST(DeviceController, RefusesAnUrdfWithoutTheFingers) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_device_controller

@@ -4,7 +4,7 @@
 
 #include "controlled_device.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_device_faults {
 namespace {
 
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
@@ -166,4 +166,4 @@ TEST(DeviceFaults, AFaultFromOutsideIsLatched) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_device_faults

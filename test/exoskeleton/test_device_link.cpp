@@ -4,7 +4,7 @@
 #include "haptex/exoskeleton/protocol/firmware_model.h"
 #include "serial_fixtures.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_device_link {
 namespace {
 
 const Identity kDevice{kProtocolVersion, 3, 77, kCountsPerRevolution};
@@ -233,4 +233,4 @@ TEST(DeviceLink, DescribesEveryStatusDifferently) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_device_link

@@ -8,7 +8,7 @@
 #include "haptex/exoskeleton/control/driver_loop.h"
 #include "haptex/realtime/steady_clock.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_driver_allocation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -51,4 +51,4 @@ TEST(DriverAllocation, TheLoopDoesNotAllocateWhileItRendersAForce) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_driver_allocation

@@ -16,7 +16,7 @@
 #include "haptex/realtime/periodic_thread.h"
 #include "haptex/realtime/steady_clock.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_driver_loop {
 namespace {
 
 using namespace std::chrono_literals;
@@ -246,4 +246,4 @@ TEST(FixedText, KeepsShortTextsAndTheBeginOfLongOnes) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_driver_loop

@@ -6,7 +6,7 @@
 #include "emulator_fixtures.h"
 #include "haptex/exoskeleton/emulator/emulated_device.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_emulated_device {
 namespace {
 
 using Eigen::Vector3d;
@@ -213,4 +213,4 @@ TEST(EmulatedDevice, RefusesAUrdfThatIsNone) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_emulated_device

@@ -9,7 +9,7 @@
 #include "emulator_fixtures.h"
 #include "haptex/exoskeleton/emulator/emulated_finger.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_emulated_finger {
 namespace {
 
 using Eigen::Matrix3d;
@@ -250,4 +250,4 @@ INSTANTIATE_TEST_SUITE_P(Both, EmulatedFingerOf, testing::ValuesIn(kFingers),
                          [](const auto& info) { return std::string(name(info.param)); });
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_emulated_finger

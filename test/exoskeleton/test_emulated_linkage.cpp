@@ -10,7 +10,7 @@
 #include "emulator_fixtures.h"
 #include "haptex/exoskeleton/emulator/emulated_linkage.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_emulated_linkage {
 namespace {
 
 using Eigen::Vector3d;
@@ -169,4 +169,4 @@ TEST(EmulatedLinkage, RefusesAChainThatIsNotAFinger) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_emulated_linkage

@@ -5,7 +5,7 @@
 
 #include "emulator_line.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_emulator {
 namespace {
 
 using std::chrono::milliseconds;
@@ -162,4 +162,4 @@ TEST_F(EmulatorLine, MotorsAreOffWhileThePowerIs) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_emulator

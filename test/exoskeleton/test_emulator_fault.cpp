@@ -6,7 +6,7 @@
 
 #include "haptex/exoskeleton/emulator/emulator_fault.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_emulator_fault {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -88,4 +88,4 @@ TEST(EmulatorFault, IsDescribedByNameAndDirection) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_emulator_fault

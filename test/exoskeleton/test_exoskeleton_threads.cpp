@@ -19,7 +19,7 @@
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/realtime/triple_buffer.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_exoskeleton_threads {
 namespace {
 
 using namespace std::chrono_literals;
@@ -190,4 +190,4 @@ TEST(ExoskeletonThreads, TheLoopTicksOnWhileEverybodyWantsSomething) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_exoskeleton_threads

@@ -8,7 +8,7 @@
 #include "haptex/exoskeleton/emulator/fault_injector.h"
 #include "serial_fixtures.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_fault_injector {
 namespace {
 
 constexpr Time kForever = Time::max();
@@ -246,4 +246,4 @@ TEST(FaultInjector, AStallIsThereForAllFramesOrForNone) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_fault_injector

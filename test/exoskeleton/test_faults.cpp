@@ -15,7 +15,7 @@
 #include "haptex/oracles/experiments/stalled_hold.h"
 #include "shipped_urdf.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_faults {
 namespace {
 
 using Eigen::Vector3d;
@@ -312,4 +312,4 @@ TEST(Faults, TheMotorsAreOffWithinTenMillisecondsAfterTheDriversDeath) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_faults

@@ -10,7 +10,7 @@
 #include "shipped_urdf.h"
 #include "urdf_poses.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_finger_kinematics {
 namespace {
 
 using Eigen::Vector3d;
@@ -281,4 +281,4 @@ TEST(FingerKinematics, KeepsItsChainWhenMoved) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_finger_kinematics

@@ -5,7 +5,7 @@
 #include "emulator_fixtures.h"
 #include "haptex/exoskeleton/control/fingertip_reach.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_fingertip_reach {
 namespace {
 
 using Eigen::Vector3d;
@@ -78,4 +78,4 @@ INSTANTIATE_TEST_SUITE_P(Both, FingertipReachOf, testing::ValuesIn(kFingers),
                          [](const auto& info) { return std::string(name(info.param)); });
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_fingertip_reach

@@ -6,7 +6,7 @@
 #include "haptex/exoskeleton/protocol/firmware_model.h"
 #include "serial_fixtures.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_firmware_model {
 namespace {
 
 constexpr int kSteps = 1000;
@@ -284,4 +284,4 @@ TEST(FirmwareModel, ObeysAgainAfterALineThatWasSilentForAnyTime) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_firmware_model

@@ -4,7 +4,7 @@
 
 #include "haptex/exoskeleton/control/force_command.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_force_command {
 namespace {
 
 using Eigen::Vector3d;
@@ -56,4 +56,4 @@ TEST(ForceCommand, IsFiniteOnlyIfEveryNumberIs) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_force_command

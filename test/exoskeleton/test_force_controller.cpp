@@ -10,7 +10,7 @@
 #include "controlled_device.h"
 #include "haptex/exoskeleton/control/force_controller.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_force_controller {
 namespace {
 
 using Eigen::Matrix3d;
@@ -360,4 +360,4 @@ TEST(ForceControlOfTheDevice, WithoutADesiredForceTheFingerMovesFreely) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_force_controller

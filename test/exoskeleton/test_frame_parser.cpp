@@ -3,7 +3,7 @@
 #include "haptex/exoskeleton/protocol/frame_parser.h"
 #include "serial_fixtures.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_frame_parser {
 namespace {
 
 std::vector<ByteVector> someStates(std::size_t count) {
@@ -115,4 +115,4 @@ TEST(FrameParser, ForgetsAnUnfinishedFrameIfAsked) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_frame_parser

@@ -5,7 +5,7 @@
 
 #include "haptex/exoskeleton/emulator/hand_motion.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_hand_motion {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -83,4 +83,4 @@ TEST(HandMotion, SaysWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_hand_motion

@@ -11,7 +11,7 @@
 
 #include "haptex/exoskeleton/emulator/hand_path.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_hand_path {
 namespace {
 
 namespace fs = std::filesystem;
@@ -214,4 +214,4 @@ TEST(HandPath, RefusesKeyFramesThatAreNoSequence) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_hand_path

@@ -13,7 +13,7 @@
 #include "shipped_urdf.h"
 #include "urdf_poses.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_hand_urdf {
 namespace {
 
 using Eigen::Isometry3d;
@@ -256,4 +256,4 @@ TEST(HandUrdf, AFingerBentBackwardsWouldTouchTheDevice) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_hand_urdf

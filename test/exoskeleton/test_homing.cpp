@@ -5,7 +5,7 @@
 
 #include "haptex/exoskeleton/control/homing.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_homing {
 namespace {
 
 using std::chrono::milliseconds;
@@ -147,4 +147,4 @@ TEST(Homing, GivesNoTorqueUnlessItRuns) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_homing

@@ -5,7 +5,7 @@
 
 #include "emulator_line.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_injected_faults {
 namespace {
 
 using std::chrono::milliseconds;
@@ -169,4 +169,4 @@ TEST_F(EmulatorLine, SaturatedSensorsReadTheEndOfTheirRange) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_injected_faults

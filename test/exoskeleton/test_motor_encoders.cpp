@@ -6,7 +6,7 @@
 
 #include "haptex/exoskeleton/control/motor_encoders.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_motor_encoders {
 namespace {
 
 using Counts = std::array<std::int32_t, kMotors>;
@@ -123,4 +123,4 @@ TEST(MotorEncoders, LostReadingsDoNotDisturbTheVelocity) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_motor_encoders

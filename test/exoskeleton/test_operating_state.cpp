@@ -4,7 +4,7 @@
 
 #include "haptex/exoskeleton/control/operating_state.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_operating_state {
 namespace {
 
 /// A machine in this mode, homed and with a device, as a person would bring it there.
@@ -124,4 +124,4 @@ TEST(OperatingState, NamesAreThoseOfCrtk) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_operating_state

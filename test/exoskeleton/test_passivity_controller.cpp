@@ -6,7 +6,7 @@
 
 #include "haptex/exoskeleton/control/passivity_controller.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_passivity_controller {
 namespace {
 
 using Eigen::Vector3d;
@@ -97,4 +97,4 @@ TEST(PassivityController, CalmsASpringThatLateForcesMakeUnstable) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_passivity_controller

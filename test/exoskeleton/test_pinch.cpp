@@ -5,7 +5,7 @@
 #include "haptex/oracles/experiments/pinch.h"
 #include "shipped_urdf.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_pinch {
 namespace {
 
 using oracles::findPinch;
@@ -61,4 +61,4 @@ TEST(Pinch, RefusesAUrdfWithoutATactileFrameAtTheTip) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_pinch

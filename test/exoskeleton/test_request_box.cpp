@@ -5,7 +5,7 @@
 #include "haptex/exoskeleton/control/request_box.h"
 #include "haptex/realtime/steady_clock.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_request_box {
 namespace {
 
 using namespace std::chrono_literals;
@@ -51,4 +51,4 @@ TEST(RequestBox, WaitsForALoopThatIsAtIt) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_request_box

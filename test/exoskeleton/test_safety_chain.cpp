@@ -8,7 +8,7 @@
 
 #include "haptex/exoskeleton/control/safety_chain.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_safety_chain {
 namespace {
 
 using Eigen::Vector3d;
@@ -376,4 +376,4 @@ TEST(SafetyChain, WhateverHappensTheWatchdogEndsIt) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_safety_chain

@@ -10,7 +10,7 @@
 #include "haptex/exoskeleton/protocol/serial_port.h"
 #include "serial_fixtures.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_serial_allocation {
 namespace {
 
 TEST(SerialAllocation, NeitherEndOfTheLineAllocatesWhateverArrives) {
@@ -82,4 +82,4 @@ TEST(SerialAllocation, NeitherReadingNorWritingALineAllocates) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_serial_allocation

@@ -8,7 +8,7 @@
 #include "haptex/exoskeleton/protocol/serial_port.h"
 #include "serial_fixtures.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_serial_frame {
 namespace {
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
@@ -315,4 +315,4 @@ TEST(SerialFrame, SequenceNumbersGoRoundAndLateOnesAreOld) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_serial_frame

@@ -11,7 +11,7 @@
 #include "haptex/exoskeleton/protocol/firmware_model.h"
 #include "serial_fixtures.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_serial_fuzz {
 namespace {
 
 // Six standard deviations above what the checksum lets through, and a few for small numbers.
@@ -275,4 +275,4 @@ TEST(SerialFuzz, BothEndsSurviveAndTheTorqueNeverOutlivesTheDriver) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_serial_fuzz

@@ -20,7 +20,7 @@
 #include "haptex/exoskeleton/protocol/serial_port.h"
 #include "serial_fixtures.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_serial_port {
 namespace {
 
 constexpr int kLongEnough = 10000;  // ms, for the system to bring bytes that were written
@@ -338,4 +338,4 @@ TEST(PseudoTerminal, SaysWhyALinkCannotBeMade) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_serial_port

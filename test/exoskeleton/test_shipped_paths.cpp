@@ -10,7 +10,7 @@
 #include "haptex/exoskeleton/emulator/hand_path.h"
 #include "shipped_urdf.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_shipped_paths {
 namespace {
 
 namespace fs = std::filesystem;
@@ -140,4 +140,4 @@ TEST(ShippedPaths, DemoPinchesLiftsStretchesSlidesAndRubsWithTheForcesThatItSays
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_shipped_paths

@@ -5,7 +5,7 @@
 #include "haptex/exoskeleton/control/safety_chain.h"
 #include "haptex/exoskeleton/control/smooth_command.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::exoskeleton::test_smooth_command {
 namespace {
 
 using Eigen::Matrix3d;
@@ -111,4 +111,4 @@ TEST(SmoothCommand, RecoversFromACommandThatOverflows) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::exoskeleton::test_smooth_command

@@ -8,7 +8,7 @@
 #include "haptex/kes/virtual_test.h"
 #include "haptex/material/fabric_file.h"
 
-namespace haptex::kes {
+namespace haptex::kes::test_virtual_kes {
 namespace {
 
 material::Fabric shipped(const std::string& name) {
@@ -166,4 +166,4 @@ TEST(VirtualKes, RefusesTestsThatDoNotExistAndFabricsThatLackWhatTheyAreAbout) {
 }
 
 }  // namespace
-}  // namespace haptex::kes
+}  // namespace haptex::kes::test_virtual_kes

@@ -11,7 +11,7 @@
 #include "haptex/linear/ordering.h"
 #include "haptex/linear/separator.h"
 
-namespace haptex::linear {
+namespace haptex::linear::test_block_cholesky {
 namespace {
 
 TEST(Elimination, SupernodesPartitionTheColumnsAndHoldTheWholePattern) {
@@ -216,4 +216,4 @@ TEST(BlockCholesky, RefusesInSinglePrecisionWhatItRefusesInDouble) {
 }
 
 }  // namespace
-}  // namespace haptex::linear
+}  // namespace haptex::linear::test_block_cholesky

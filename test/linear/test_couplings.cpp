@@ -10,7 +10,7 @@
 #include "haptex/linear/conjugate_gradient.h"
 #include "haptex/linear/linear_solver.h"
 
-namespace haptex::linear {
+namespace haptex::linear::test_couplings {
 namespace {
 
 using cloth::stacked;
@@ -326,4 +326,4 @@ TEST(Couplings, AreSolvedInDoublePrecisionWhereSinglePrecisionFailsInALargePatte
 }
 
 }  // namespace
-}  // namespace haptex::linear
+}  // namespace haptex::linear::test_couplings

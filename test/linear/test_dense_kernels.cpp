@@ -5,7 +5,7 @@
 #include "../cloth/fixtures.h"
 #include "haptex/linear/dense_kernels.h"
 
-namespace haptex::linear {
+namespace haptex::linear::test_dense_kernels {
 namespace {
 
 TEST(DenseKernels, SubtractTheProductForEverySizeOfRemainder) {
@@ -174,4 +174,4 @@ TEST(DenseKernels, SubstituteThroughPanelsOfEveryHeight) {
 }
 
 }  // namespace
-}  // namespace haptex::linear
+}  // namespace haptex::linear::test_dense_kernels

@@ -7,7 +7,7 @@
 
 #include "haptex/linear/dense_kernels.h"
 
-namespace haptex::linear {
+namespace haptex::linear::test_instruction_sets {
 namespace {
 
 template <typename T>
@@ -104,4 +104,4 @@ TEST(InstructionSets, DoublePrecisionHasNoneOfTheWidest) {
 }
 
 }  // namespace
-}  // namespace haptex::linear
+}  // namespace haptex::linear::test_instruction_sets

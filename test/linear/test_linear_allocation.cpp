@@ -5,7 +5,7 @@
 #include "coupled_system.h"
 #include "haptex/linear/linear_solver.h"
 
-namespace haptex::linear {
+namespace haptex::linear::test_linear_allocation {
 namespace {
 
 constexpr int kCouplings = 60;
@@ -72,4 +72,4 @@ TEST(LinearAllocation, SolvesWithCouplingsAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace haptex::linear
+}  // namespace haptex::linear::test_linear_allocation

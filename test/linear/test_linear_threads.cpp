@@ -7,7 +7,7 @@
 
 #include "haptex/linear/thread_pool.h"
 
-namespace haptex::linear {
+namespace haptex::linear::test_linear_threads {
 namespace {
 
 TEST(LinearThreads, EveryTaskIsDoneOnceAndSeenByTheCaller) {
@@ -44,4 +44,4 @@ TEST(LinearThreads, PoolsComeAndGoWithAndWithoutWork) {
 }
 
 }  // namespace
-}  // namespace haptex::linear
+}  // namespace haptex::linear::test_linear_threads

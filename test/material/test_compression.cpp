@@ -8,7 +8,7 @@
 
 #include "haptex/material/compression.h"
 
-namespace haptex::material {
+namespace haptex::material::test_compression {
 namespace {
 
 double pressureAt(const Compression& compression, double thickness) {
@@ -161,4 +161,4 @@ TEST(CompressionFromPoints, RefusesPointsThatAreNoCompression) {
 }
 
 }  // namespace
-}  // namespace haptex::material
+}  // namespace haptex::material::test_compression

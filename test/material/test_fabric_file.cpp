@@ -9,7 +9,7 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/material/strain_measures.h"
 
-namespace haptex::material {
+namespace haptex::material::test_fabric_file {
 namespace {
 
 TEST(FabricFile, ReadsEveryProperty) {
@@ -174,4 +174,4 @@ TEST(FabricFile, AcceptsViscousCurvesThatDissipate) {
 }
 
 }  // namespace
-}  // namespace haptex::material
+}  // namespace haptex::material::test_fabric_file

@@ -7,7 +7,7 @@
 #include "fabric_file_fixtures.h"
 #include "haptex/material/fabric_file.h"
 
-namespace haptex::material {
+namespace haptex::material::test_fabric_file_refusals {
 namespace {
 
 class FabricFileRefuses : public testing::TestWithParam<Refusal> {};
@@ -333,4 +333,4 @@ TEST(FabricFile, RefusesAnEmptyFile) {
 }
 
 }  // namespace
-}  // namespace haptex::material
+}  // namespace haptex::material::test_fabric_file_refusals

@@ -14,7 +14,7 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/material/strain_measures.h"
 
-namespace haptex::material {
+namespace haptex::material::test_shipped_fabrics {
 namespace {
 
 const std::filesystem::path kFabrics = HAPTEX_CONFIG_DIRECTORY "/fabrics";
@@ -261,4 +261,4 @@ TEST(ShippedFabrics, ViscosityIsAHundredthOfASecondTimesTheInitialSlope) {
 }
 
 }  // namespace
-}  // namespace haptex::material
+}  // namespace haptex::material::test_shipped_fabrics

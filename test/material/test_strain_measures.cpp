@@ -7,7 +7,7 @@
 
 #include "haptex/material/strain_measures.h"
 
-namespace haptex::material {
+namespace haptex::material::test_strain_measures {
 namespace {
 
 TEST(StrainMeasures, GreenStrainIsExact) {
@@ -90,4 +90,4 @@ TEST(StrainMeasures, RefusesSamplesByIndexAndValue) {
 }
 
 }  // namespace
-}  // namespace haptex::material
+}  // namespace haptex::material::test_strain_measures

@@ -12,7 +12,7 @@
 
 #include "haptex/material/strain_stress_curve.h"
 
-namespace haptex::material {
+namespace haptex::material::test_strain_stress_curve {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -378,4 +378,4 @@ TEST(StrainStressCurve, AllowsJumpsWithinItsToleranceOnly) {
 }
 
 }  // namespace
-}  // namespace haptex::material
+}  // namespace haptex::material::test_strain_stress_curve

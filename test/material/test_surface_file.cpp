@@ -11,7 +11,7 @@
 #include "fabric_file_fixtures.h"
 #include "haptex/material/fabric_file.h"
 
-namespace haptex::material {
+namespace haptex::material::test_surface_file {
 namespace {
 
 const std::string kKesValues = "SMD: 4e-6, MMD: 0.016";
@@ -255,4 +255,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace haptex::material
+}  // namespace haptex::material::test_surface_file

@@ -7,7 +7,7 @@
 
 #include "haptex/mesh/mesh.h"
 
-namespace haptex::mesh {
+namespace haptex::mesh::test_mesh {
 namespace {
 
 double totalArea(const ClothMesh& mesh) {
@@ -160,4 +160,4 @@ TEST(Disc, IsSoundRoundAndOfNearlyEqualTriangles) {
 }
 
 }  // namespace
-}  // namespace haptex::mesh
+}  // namespace haptex::mesh::test_mesh

@@ -9,7 +9,7 @@
 
 #include "haptex/mesh/obj_file.h"
 
-namespace haptex::mesh {
+namespace haptex::mesh::test_obj_file {
 namespace {
 
 class TemporaryObj {
@@ -152,4 +152,4 @@ TEST(ObjFile, NamesTheFileThatCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace haptex::mesh
+}  // namespace haptex::mesh::test_obj_file

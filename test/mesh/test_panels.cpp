@@ -4,7 +4,7 @@
 
 #include "haptex/mesh/mesh.h"
 
-namespace haptex::mesh {
+namespace haptex::mesh::test_panels {
 namespace {
 
 using Eigen::Vector2d;
@@ -77,4 +77,4 @@ TEST(Panels, DefectsAreNamed) {
 }
 
 }  // namespace
-}  // namespace haptex::mesh
+}  // namespace haptex::mesh::test_panels

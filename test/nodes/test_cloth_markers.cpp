@@ -10,7 +10,7 @@
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/colour_map.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_cloth_markers {
 namespace {
 
 using visualization_msgs::Marker;
@@ -98,4 +98,4 @@ TEST(ClothMarkers, AreAllStampedAndInTheFixedFrame) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_cloth_markers

@@ -8,7 +8,7 @@
 
 #include "cloth_proximity_fixtures.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_cloth_proximity {
 namespace {
 
 TEST_F(ClothProximityTest, AnswersWhatBruteForceFindsForEveryShape) {
@@ -203,4 +203,4 @@ TEST_F(ClothProximityTest, SceneHasTheTrianglesAndTheVolumesAskedFor) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_cloth_proximity

@@ -1,7 +1,7 @@
 // Which meshes and states the proximity service takes, and what it answers from.
 #include "cloth_proximity_fixtures.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_cloth_proximity_messages {
 namespace {
 
 TEST_F(ClothProximityTest, RefusesWhileThereIsNoCloth) {
@@ -135,4 +135,4 @@ TEST_F(ClothProximityTest, RefitsOnlyWhenSomebodyAsksAboutANewState) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_cloth_proximity_messages

@@ -8,7 +8,7 @@
 
 #include "haptex/nodes/common/cloth_recording.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_cloth_recording {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ TEST(ClothRecording, RefusesWhatIsNoRecordingOfOneCloth) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_cloth_recording

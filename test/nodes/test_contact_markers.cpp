@@ -5,7 +5,7 @@
 
 #include "haptex/nodes/force_renderer/contact_markers.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_contact_markers {
 namespace {
 
 using base::Finger;
@@ -94,4 +94,4 @@ TEST(ContactMarkers, NameTheRateOfEveryLoopAndTheForceOfEveryFinger) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_contact_markers

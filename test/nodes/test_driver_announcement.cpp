@@ -6,7 +6,7 @@
 #include "haptex/exoskeleton/control/driver_announcement.h"
 #include "haptex/nodes/common/hand_markers.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_driver_announcement {
 namespace {
 
 using base::Finger;
@@ -70,4 +70,4 @@ TEST(CommanderWatch, KnowsTheDeathOfTheOneWhoCommandedLastOnce) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_driver_announcement

@@ -6,7 +6,7 @@
 #include "../exoskeleton/shipped_urdf.h"
 #include "haptex/nodes/common/driver_messages.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_driver_messages {
 namespace {
 
 using base::Finger;
@@ -161,4 +161,4 @@ TEST(AngularVelocity, OfAHardlyMovingFingerIsAsExact) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_driver_messages

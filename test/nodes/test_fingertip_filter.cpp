@@ -7,7 +7,7 @@
 
 #include "haptex/nodes/force_renderer/fingertip_filter.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_fingertip_filter {
 namespace {
 
 using base::Time;
@@ -110,4 +110,4 @@ TEST(FingertipFilter, BelievesADriverThatWasStartedAnew) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_fingertip_filter

@@ -6,7 +6,7 @@
 
 #include "haptex/nodes/common/hand_markers.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_hand_markers {
 namespace {
 
 using base::Finger;
@@ -119,4 +119,4 @@ TEST(TargetMarkers, TheHandCanBeDraggedAndTurned) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_hand_markers

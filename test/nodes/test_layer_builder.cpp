@@ -5,7 +5,7 @@
 #include "haptex/nodes/force_renderer/layer_builder.h"
 #include "haptex/scene/scene.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_layer_builder {
 namespace {
 
 const std::string kScene = std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/scenes/wool_sample.yaml";
@@ -68,4 +68,4 @@ TEST(LayerBuilder, RefusesAMeshWithDefects) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_layer_builder

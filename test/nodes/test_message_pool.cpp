@@ -2,7 +2,7 @@
 
 #include "haptex/nodes/common/message_pool.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_message_pool {
 namespace {
 
 TEST(MessagePool, GivesTheSameMessagesInTurnWhileNobodyHoldsThem) {
@@ -24,4 +24,4 @@ TEST(MessagePool, LeavesAMessageToWhoeverHoldsIt) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_message_pool

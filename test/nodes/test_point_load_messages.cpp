@@ -8,7 +8,7 @@
 #include "haptex/nodes/cloth_simulation/point_load_messages.h"
 #include "haptex/nodes/common/cloth_messages.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_point_load_messages {
 namespace {
 
 constexpr std::size_t kTriangles = 32;  // of simulation::smallSimulation()
@@ -108,4 +108,4 @@ TEST(StateMessage, NamesTheAttachedParticles) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_point_load_messages

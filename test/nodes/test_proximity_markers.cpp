@@ -9,7 +9,7 @@
 #include "haptex/nodes/common/marker_shapes.h"
 #include "haptex/nodes/proximity/proximity_markers.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_proximity_markers {
 namespace {
 
 using proximity::Sphere;
@@ -246,4 +246,4 @@ TEST(ProximityMarkers, AreAllStampedInTheFixedFrameAndNamedOnce) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_proximity_markers

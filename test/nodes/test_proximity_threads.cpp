@@ -8,7 +8,7 @@
 #include "haptex/nodes/proximity/cloth_proximity.h"
 #include "proximity_fixtures.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_proximity_threads {
 namespace {
 
 using Clock = ClothProximity::Clock;
@@ -128,4 +128,4 @@ TEST(ProximityThreads, SurvivesMeshesThatChangeDuringQueries) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_proximity_threads

@@ -7,7 +7,7 @@
 
 #include "haptex/nodes/force_renderer/renderer_messages.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_renderer_messages {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -281,4 +281,4 @@ TEST(RendererMessages, SelectsWhatAnAnswerFoundAndRefusesTrianglesThatDoNotExist
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_renderer_messages

@@ -11,7 +11,7 @@
 #include "haptex/nodes/cloth_simulation/runtime_quality.h"
 #include "haptex/scene/quality_file.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_runtime_quality {
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,4 +127,4 @@ TEST_F(RuntimeQualityOfAScene, APresetMayBeReducedForABudgetOfAtMostFourFifthsOf
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_runtime_quality

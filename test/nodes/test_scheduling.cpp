@@ -6,7 +6,7 @@
 
 #include "haptex/realtime/scheduling.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_scheduling {
 namespace {
 
 cpu_set_t processorsOf(pthread_t thread) {
@@ -65,4 +65,4 @@ TEST(OrdinaryScope, GivesThePriorityBackAtItsEnd) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_scheduling

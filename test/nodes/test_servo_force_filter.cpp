@@ -4,7 +4,7 @@
 
 #include "haptex/nodes/exoskeleton_driver/servo_force_filter.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_servo_force_filter {
 namespace {
 
 using base::Time;
@@ -196,4 +196,4 @@ TEST_F(AServoForceFilter, RecoversAfterAClockThatWasSetBack) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_servo_force_filter

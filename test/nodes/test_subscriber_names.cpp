@@ -2,7 +2,7 @@
 
 #include "haptex/nodes/common/subscriber_names.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_subscriber_names {
 namespace {
 
 TEST(SubscriberNames, AreAllAmongOthersWhereThereAreNone) {
@@ -37,4 +37,4 @@ TEST(SubscriberNames, CountsTwoSubscriptionsOfANode) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_subscriber_names

@@ -4,7 +4,7 @@
 
 #include "haptex/nodes/tactile_renderer/surface_choice.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_surface_choice {
 namespace {
 
 const std::string kFabrics = std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/fabrics/";
@@ -94,4 +94,4 @@ TEST(SurfaceChoice, RefusesABrokenFabricAtTheStart) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_surface_choice

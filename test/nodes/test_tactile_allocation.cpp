@@ -5,7 +5,7 @@
 #include "haptex/nodes/tactile_renderer/tactile_loop.h"
 #include "tactile_fixtures.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_tactile_allocation {
 namespace {
 
 using base::Finger;
@@ -34,4 +34,4 @@ TEST(TactileAllocation, StepsDoNotAllocateWhileAFingertipComesSlidesAndGoes) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_tactile_allocation

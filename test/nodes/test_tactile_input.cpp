@@ -5,7 +5,7 @@
 #include "haptex/nodes/tactile_renderer/tactile_input.h"
 #include "tactile_fixtures.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_tactile_input {
 namespace {
 
 using namespace std::chrono_literals;
@@ -78,4 +78,4 @@ TEST(TactileInput, DropsAndCountsWhatIsNotBelievedWithoutLosingTheRest) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_tactile_input

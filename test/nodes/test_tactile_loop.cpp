@@ -3,7 +3,7 @@
 #include "haptex/nodes/tactile_renderer/tactile_loop.h"
 #include "tactile_fixtures.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_tactile_loop {
 namespace {
 
 using namespace std::chrono_literals;
@@ -80,4 +80,4 @@ TEST(TactileLoop, KeepsToTheLimitsOfTheArray) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_tactile_loop

@@ -10,7 +10,7 @@
 #include "haptex/nodes/tactile_renderer/tactile_messages.h"
 #include "haptex/tactile/contactor_array.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_tactile_markers {
 namespace {
 
 using base::Finger;
@@ -116,4 +116,4 @@ TEST(TactileMarkers, CaptionsNameFingerChannelLargestAmplitudeAndScale) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_tactile_markers

@@ -7,7 +7,7 @@
 
 #include "tactile_fixtures.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_tactile_messages {
 namespace {
 
 using base::Finger;
@@ -116,4 +116,4 @@ TEST(TactileMessages, TellAStepInMicrometresAndBecomeZeroAgain) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_tactile_messages

@@ -14,7 +14,7 @@
 #include "haptex/nodes/tactile_renderer/sound_request.h"
 #include "haptex/nodes/tactile_renderer/tactile_recording.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_tactile_sound {
 namespace {
 
 namespace fs = std::filesystem;
@@ -276,4 +276,4 @@ TEST(SoundRequest, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_tactile_sound

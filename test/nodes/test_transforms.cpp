@@ -6,7 +6,7 @@
 
 #include "haptex/nodes/common/transforms.h"
 
-namespace haptex::nodes {
+namespace haptex::nodes::test_transforms {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -93,4 +93,4 @@ TEST(Transforms, RefusesTimesThatTfDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace haptex::nodes
+}  // namespace haptex::nodes::test_transforms

@@ -4,7 +4,7 @@
 #include "haptex/material/linear_fabric.h"
 #include "haptex/oracles/experiments/capstan.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_capstan {
 namespace {
 
 CapstanCase stiffStrip(double friction, double wrap) {
@@ -52,4 +52,4 @@ TEST(Capstan, TensionGrowsAsTheEquationSays) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_capstan

@@ -4,7 +4,7 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/experiments/contact_scenes.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_contact_scenes {
 namespace {
 
 using base::Finger;
@@ -136,4 +136,4 @@ TEST(HapticLoop, AFingertipThatIsAbsentDoesNotTouch) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_contact_scenes

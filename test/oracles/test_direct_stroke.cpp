@@ -3,7 +3,7 @@
 #include "haptex/oracles/experiments/direct_stroke.h"
 #include "haptex/oracles/experiments/known_surfaces.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_direct_stroke {
 namespace {
 
 using Eigen::Vector2d;
@@ -86,4 +86,4 @@ TEST(LongStrokes, FeelAWaveThroughTheFiltersButForTheWidthOfTheirLines) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_direct_stroke

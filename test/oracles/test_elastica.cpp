@@ -8,7 +8,7 @@
 #include "haptex/base/workload.h"
 #include "haptex/oracles/exact/elastica.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_elastica {
 namespace {
 
 /// A chain of equal links that are joined by torsion springs, half a link from the clamp: the
@@ -135,4 +135,4 @@ TEST(Elastica, RefusesWeightsOutOfItsDomain) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_elastica

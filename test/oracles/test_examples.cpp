@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_examples {
 namespace {
 
 struct Outcome {
@@ -55,4 +55,4 @@ TEST(Examples, RefuseAFabricThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_examples

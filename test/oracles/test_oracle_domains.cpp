@@ -22,7 +22,7 @@
 #include "haptex/oracles/experiments/standard_stroke.h"
 #include "haptex/oracles/experiments/strip_statics.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_oracle_domains {
 namespace {
 
 using cloth::IntegrationMethod;
@@ -328,4 +328,4 @@ TEST(Domains, ClothSwingOfTheLargestAmplitudeHasItsLength) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_oracle_domains

@@ -10,7 +10,7 @@
 #include "haptex/material/compression.h"
 #include "haptex/oracles/exact/pinched_sheet.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_pinched_sheet {
 namespace {
 
 using contact::ContactLaw;
@@ -133,4 +133,4 @@ TEST(PinchedSheet, RefusesSpheresThatAreNone) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_pinched_sheet

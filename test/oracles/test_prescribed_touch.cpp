@@ -5,7 +5,7 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/experiments/prescribed_touch.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_prescribed_touch {
 namespace {
 
 using base::Finger;
@@ -117,4 +117,4 @@ TEST(OnLines, KeepsPlacesAndAttachments) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_prescribed_touch

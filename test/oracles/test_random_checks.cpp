@@ -11,7 +11,7 @@
 #include "haptex/oracles/exact/amplification.h"
 #include "haptex/oracles/experiments/free_strip.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_random_checks {
 namespace {
 
 std::string linesOf(const std::string& room, std::uint64_t seed, const std::string& kind = "") {
@@ -194,4 +194,4 @@ TEST(ValidateProgram, RefusesOtherArguments) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_random_checks

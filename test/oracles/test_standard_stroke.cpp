@@ -4,7 +4,7 @@
 
 #include "haptex/oracles/experiments/standard_stroke.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_standard_stroke {
 namespace {
 
 TEST(RankCorrelation, IsThatOfTheRanks) {
@@ -50,4 +50,4 @@ TEST(StandardStrokes, AreTheMeanOfFourDirections) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_standard_stroke

@@ -5,7 +5,7 @@
 #include "haptex/oracles/exact/elastica.h"
 #include "haptex/oracles/experiments/strip_statics.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_strip_statics {
 namespace {
 
 TEST(StripStatics, TheCatenaryHasTheLengthOfTheStrip) {
@@ -29,4 +29,4 @@ TEST(StripStatics, ACantileverConvergesUnderRefinement) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_strip_statics

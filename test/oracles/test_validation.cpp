@@ -11,7 +11,7 @@
 #include "haptex/oracles/experiments/cloth_swing.h"
 #include "haptex/oracles/experiments/hanging_strip.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_validation {
 namespace {
 
 TEST(ClothSwing, IsBackAfterASecondAndOppositeAfterHalfOfIt) {
@@ -171,4 +171,4 @@ TEST(Validation, ExoskeletonNamesTheUrdfThatItCannotRead) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_validation

@@ -7,7 +7,7 @@
 #include "haptex/exoskeleton/emulator/hand_path.h"
 #include "haptex/oracles/experiments/virtual_wall.h"
 
-namespace haptex::oracles {
+namespace haptex::oracles::test_virtual_wall {
 namespace {
 
 using base::Finger;
@@ -54,4 +54,4 @@ TEST(VirtualWall, RefusesNumbersThatNoWallHas) {
 }
 
 }  // namespace
-}  // namespace haptex::oracles
+}  // namespace haptex::oracles::test_virtual_wall

@@ -7,7 +7,7 @@
 #include "haptex/proximity/rigid_obstacle.h"
 #include "haptex/proximity/self_proximity.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_allocation {
 namespace {
 
 TEST(ProximityAllocation, NeitherRefitNorQueryAllocatesAfterTheFirst) {
@@ -77,4 +77,4 @@ TEST(ProximityAllocation, LookingForSelfPairsDoesNotAllocateOnceItHasSeenAsMany)
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_allocation

@@ -5,7 +5,7 @@
 #include "haptex/oracles/exact/moving_elements.h"
 #include "haptex/proximity/continuous.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_continuous {
 namespace {
 
 using Eigen::Vector3d;
@@ -110,4 +110,4 @@ TEST(ContinuousDetection, FollowsElementsThatTurnAroundEachOther) {
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_continuous

@@ -11,7 +11,7 @@
 #include "haptex/proximity/exact_orientation.h"
 #include "haptex/proximity/intersections.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_intersections {
 namespace {
 
 using Eigen::Vector3d;
@@ -202,4 +202,4 @@ TEST(Intersections, RefuseWhatIsNoMesh) {
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_intersections

@@ -6,7 +6,7 @@
 
 #include "haptex/proximity/kdop.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_kdop {
 namespace {
 
 using Eigen::Vector3d;
@@ -104,4 +104,4 @@ TEST(Kdop, VolumeOfAPointHasNoFaces) {
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_kdop

@@ -8,7 +8,7 @@
 #include "fixtures.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_kdop_hierarchy {
 namespace {
 
 using Eigen::Vector3d;
@@ -281,4 +281,4 @@ TEST(KdopHierarchy, HasNoVolumesBeyondItsLevels) {
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_kdop_hierarchy

@@ -8,7 +8,7 @@
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "haptex/proximity/rigid_obstacle.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_obstacle_query {
 namespace {
 
 using Eigen::Vector3d;
@@ -87,4 +87,4 @@ TEST(ObstacleQuery, TellsTheNearestPointOfTheElement) {
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_obstacle_query

@@ -12,7 +12,7 @@
 #include "exact_distance.h"
 #include "haptex/proximity/rigid_obstacle.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_rigid_obstacle {
 namespace {
 
 using Eigen::Vector3d;
@@ -377,4 +377,4 @@ TEST(RigidObstacle, RefusesPosesThatAreNotRigid) {
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_rigid_obstacle

@@ -8,7 +8,7 @@
 #include "fixtures.h"
 #include "haptex/proximity/self_proximity.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_self_proximity {
 namespace {
 
 using Eigen::Vector2d;
@@ -282,4 +282,4 @@ TEST(SelfProximity, RefusesDistancesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_self_proximity

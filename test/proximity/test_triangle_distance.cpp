@@ -9,7 +9,7 @@
 #include "haptex/proximity/cursor.h"
 #include "haptex/proximity/triangle_distance.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_triangle_distance {
 namespace {
 
 using Eigen::Vector3d;
@@ -145,4 +145,4 @@ TEST(Cursor, MessageNamesTheValueAndWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_triangle_distance

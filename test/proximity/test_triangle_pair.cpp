@@ -6,7 +6,7 @@
 #include "exact_distance.h"
 #include "haptex/proximity/triangle_pair.h"
 
-namespace haptex::proximity {
+namespace haptex::proximity::test_triangle_pair {
 namespace {
 
 using Eigen::Vector3d;
@@ -80,4 +80,4 @@ TEST(TrianglePair, TrianglesThatPierceEachOtherHaveNoDistance) {
 }
 
 }  // namespace
-}  // namespace haptex::proximity
+}  // namespace haptex::proximity::test_triangle_pair

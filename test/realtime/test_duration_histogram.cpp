@@ -6,7 +6,7 @@
 
 #include "haptex/realtime/duration_histogram.h"
 
-namespace haptex::realtime {
+namespace haptex::realtime::test_duration_histogram {
 namespace {
 
 using base::Time;
@@ -85,4 +85,4 @@ TEST(DurationHistogram, RefusesSharesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace haptex::realtime
+}  // namespace haptex::realtime::test_duration_histogram

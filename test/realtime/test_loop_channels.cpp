@@ -8,7 +8,7 @@
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/realtime/triple_buffer.h"
 
-namespace haptex::realtime {
+namespace haptex::realtime::test_loop_channels {
 namespace {
 
 using namespace std::chrono_literals;
@@ -69,4 +69,4 @@ TEST(Semaphore, WaitsNoLongerThanItIsToldTo) {
 }
 
 }  // namespace
-}  // namespace haptex::realtime
+}  // namespace haptex::realtime::test_loop_channels

@@ -13,7 +13,7 @@
 #include "haptex/realtime/scheduling.h"
 #include "haptex/realtime/steady_clock.h"
 
-namespace haptex::realtime {
+namespace haptex::realtime::test_periodic_thread {
 namespace {
 
 using base::Time;
@@ -159,4 +159,4 @@ TEST(PeriodicThread, RefusesPeriodsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace haptex::realtime
+}  // namespace haptex::realtime::test_periodic_thread

@@ -4,7 +4,7 @@
 
 #include "haptex/realtime/rate_meter.h"
 
-namespace haptex::realtime {
+namespace haptex::realtime::test_rate_meter {
 namespace {
 
 using namespace std::chrono_literals;
@@ -19,4 +19,4 @@ TEST(RateMeter, CountsPerSecondOnceASecondHasPassed) {
 }
 
 }  // namespace
-}  // namespace haptex::realtime
+}  // namespace haptex::realtime::test_rate_meter

@@ -10,7 +10,7 @@
 
 #include "haptex/scene/quality_file.h"
 
-namespace haptex::scene {
+namespace haptex::scene::test_quality_file {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ TEST(ShippedPresets, LoadAndAreOrderedFromTheCheapestToTheMostAccurate) {
 }
 
 }  // namespace
-}  // namespace haptex::scene
+}  // namespace haptex::scene::test_quality_file

@@ -12,7 +12,7 @@
 #include "haptex/scene/scene.h"
 #include "scene_fixtures.h"
 
-namespace haptex::scene {
+namespace haptex::scene::test_scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -289,4 +289,4 @@ TEST(ShippedScenes, WoolSampleIsTheTwoHundredMillimetreSquare) {
 }
 
 }  // namespace
-}  // namespace haptex::scene
+}  // namespace haptex::scene::test_scene

@@ -8,7 +8,7 @@
 
 #include "haptex/scene/scene_fabric.h"
 
-namespace haptex::scene {
+namespace haptex::scene::test_scene_fabric {
 namespace {
 
 const std::string kConfig = HAPTEX_CONFIG_DIRECTORY;
@@ -98,4 +98,4 @@ TEST(ShippedScenes, HaveFabricsWithWhatTheyList) {
 }
 
 }  // namespace
-}  // namespace haptex::scene
+}  // namespace haptex::scene::test_scene_fabric

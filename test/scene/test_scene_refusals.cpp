@@ -6,7 +6,7 @@
 
 #include "scene_fixtures.h"
 
-namespace haptex::scene {
+namespace haptex::scene::test_scene_refusals {
 namespace {
 
 struct Refusal {
@@ -183,4 +183,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace haptex::scene
+}  // namespace haptex::scene::test_scene_refusals

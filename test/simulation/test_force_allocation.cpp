@@ -4,7 +4,7 @@
 #include "../malloc_counter.h"
 #include "force_loop_fixtures.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_force_allocation {
 namespace {
 
 TEST(ForceAllocation, TheLoopDoesNotAllocateWhileAFingertipComesTouchesAndGoes) {
@@ -28,4 +28,4 @@ TEST(ForceAllocation, TheLoopDoesNotAllocateWhileAFingertipComesTouchesAndGoes) 
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_force_allocation

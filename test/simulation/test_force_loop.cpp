@@ -6,7 +6,7 @@
 
 #include "force_loop_fixtures.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_force_loop {
 namespace {
 
 using base::Finger;
@@ -239,4 +239,4 @@ TEST(ForceLoop, AReplacedLayerStartsWithoutForceAndRises) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_force_loop

@@ -8,7 +8,7 @@
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/simulation/force_loop.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_force_threads {
 namespace {
 
 using base::Finger;
@@ -50,4 +50,4 @@ TEST(ForceThreads, PosesAreWholeWhoeverBringsThem) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_force_threads

@@ -5,7 +5,7 @@
 
 #include "haptex/simulation/frame_follower.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_frame_follower {
 namespace {
 
 using base::seconds;
@@ -124,4 +124,4 @@ TEST(FrameFollower, DoesNotFlyOffAfterAPauseOrARepeatedStamp) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_frame_follower

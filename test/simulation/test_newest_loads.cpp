@@ -2,7 +2,7 @@
 
 #include "haptex/simulation/newest_loads.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_newest_loads {
 namespace {
 
 using std::chrono::milliseconds;
@@ -65,4 +65,4 @@ TEST(NewestLoads, EndWhenCleared) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_newest_loads

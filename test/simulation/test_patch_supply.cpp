@@ -6,7 +6,7 @@
 #include "haptex/mesh/mesh.h"
 #include "haptex/simulation/patch_supply.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_patch_supply {
 namespace {
 
 using base::Finger;
@@ -101,4 +101,4 @@ TEST_F(PatchSupplyTest, NothingNearIsNoPatch) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_patch_supply

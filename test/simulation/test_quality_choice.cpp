@@ -8,7 +8,7 @@
 #include "haptex/simulation/quality_choice.h"
 #include "haptex/simulation/studied_fabrics.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_quality_choice {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -218,4 +218,4 @@ TEST(Reductions, KeepTheStepsOfExplicitMethods) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_quality_choice

@@ -10,7 +10,7 @@
 
 #include "haptex/simulation/quality_controller.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_quality_controller {
 namespace {
 
 constexpr double kCycle = 0.0125;                                     // s
@@ -239,4 +239,4 @@ TEST(QualityController, RefusesWhatIsNoCostBudgetCycleOrQuality) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_quality_controller

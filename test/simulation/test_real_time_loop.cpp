@@ -9,7 +9,7 @@
 #include "haptex/simulation/real_time_loop.h"
 #include "small_scene.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_real_time_loop {
 namespace {
 
 void ignore(const SimulatedCloth& /*simulation*/, double /*until_next*/) {}
@@ -214,4 +214,4 @@ TEST(RealTimeLoop, CountsTheWaitForItsTurnAsComputingTime) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_real_time_loop

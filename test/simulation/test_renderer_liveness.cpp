@@ -5,7 +5,7 @@
 
 #include "haptex/simulation/renderer_liveness.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_renderer_liveness {
 namespace {
 
 using base::Finger;
@@ -238,4 +238,4 @@ TEST(RendererLiveness, SaysWhichSourceIsSilentAndForHowLong) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_renderer_liveness

@@ -10,7 +10,7 @@
 
 #include "haptex/simulation/scene_explanation.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_scene_explanation {
 namespace {
 
 std::vector<std::string> listedIn(const scene::Scene& scene) {
@@ -190,4 +190,4 @@ TEST_F(ExplainedScene, IsRefusedAsTheNodesRefuseIt) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_scene_explanation

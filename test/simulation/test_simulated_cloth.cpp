@@ -7,7 +7,7 @@
 #include "haptex/simulation/simulated_cloth.h"
 #include "small_scene.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_simulated_cloth {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -133,4 +133,4 @@ TEST(SimulatedCloth, AnotherFabricAndAResetForgetHowTheClothWasBent) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_simulated_cloth

@@ -7,7 +7,7 @@
 #include "haptex/simulation/simulated_cloth.h"
 #include "small_scene.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_sleeping_cloth {
 namespace {
 
 using Eigen::Vector3d;
@@ -205,4 +205,4 @@ TEST(SleepingCloth, DoesNotSleepWhileSomethingOutsideMoves) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_sleeping_cloth

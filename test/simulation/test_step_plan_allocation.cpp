@@ -4,7 +4,7 @@
 #include "../malloc_counter.h"
 #include "step_plans.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_step_plan_allocation {
 namespace {
 
 TEST(StepPlanAllocation, StepsAndChangesAllocateNothing) {
@@ -30,4 +30,4 @@ TEST(StepPlanAllocation, StepsAndChangesAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_step_plan_allocation

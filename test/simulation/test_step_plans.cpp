@@ -6,7 +6,7 @@
 
 #include "step_plans.h"
 
-namespace haptex::simulation {
+namespace haptex::simulation::test_step_plans {
 namespace {
 
 void runSteps(SimulatedCloth& simulation, int count) {
@@ -210,4 +210,4 @@ TEST(StepPlans, RefusesSeveralStepsAtOnceInSeveralSubsteps) {
 }
 
 }  // namespace
-}  // namespace haptex::simulation
+}  // namespace haptex::simulation::test_step_plans

@@ -9,7 +9,7 @@
 #include "haptex/studies/drape.h"
 #include "haptex/studies/drape_shadow.h"
 
-namespace haptex::studies {
+namespace haptex::studies::test_drape {
 namespace {
 
 material::Fabric wool() {
@@ -153,4 +153,4 @@ TEST(CountNodes, CountsWhatStandsOut) {
 }
 
 }  // namespace
-}  // namespace haptex::studies
+}  // namespace haptex::studies::test_drape

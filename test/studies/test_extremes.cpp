@@ -7,7 +7,7 @@
 #include "haptex/studies/extreme_shrink.h"
 #include "haptex/studies/stability_map.h"
 
-namespace haptex::studies {
+namespace haptex::studies::test_extremes {
 namespace {
 
 using cloth::IntegrationMethod;
@@ -131,4 +131,4 @@ TEST(StabilityLimit, OfExplicitMethodsIsThatOfTheory) {
 }
 
 }  // namespace
-}  // namespace haptex::studies
+}  // namespace haptex::studies::test_extremes

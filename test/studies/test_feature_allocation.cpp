@@ -11,7 +11,7 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/studies/feature_scenes.h"
 
-namespace haptex::studies {
+namespace haptex::studies::test_feature_allocation {
 
 void PrintTo(const Feature& feature, std::ostream* stream) { *stream << feature.name; }
 
@@ -122,4 +122,4 @@ TEST(StepCost, OfASceneAgainstItselfIsTheSame) {
 }
 
 }  // namespace
-}  // namespace haptex::studies
+}  // namespace haptex::studies::test_feature_allocation

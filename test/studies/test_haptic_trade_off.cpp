@@ -5,7 +5,7 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/studies/haptic_trade_off.h"
 
-namespace haptex::studies {
+namespace haptex::studies::test_haptic_trade_off {
 namespace {
 
 /// The press into the taut wool sample, and a little of the rest after it.
@@ -91,4 +91,4 @@ TEST(HapticTradeOff, WhatAnotherBeatsIsNotOnTheFront) {
 }
 
 }  // namespace
-}  // namespace haptex::studies
+}  // namespace haptex::studies::test_haptic_trade_off

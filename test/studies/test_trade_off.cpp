@@ -12,7 +12,7 @@
 #include "haptex/studies/quality_choice.h"
 #include "haptex/studies/trade_off_study.h"
 
-namespace haptex::studies {
+namespace haptex::studies::test_trade_off {
 namespace {
 
 material::Fabric shipped(const std::string& name) {
@@ -266,4 +266,4 @@ TEST(Qualities, AreWrittenAsYaml) {
 }
 
 }  // namespace
-}  // namespace haptex::studies
+}  // namespace haptex::studies::test_trade_off

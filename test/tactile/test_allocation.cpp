@@ -5,7 +5,7 @@
 #include "fixtures.h"
 #include "haptex/tactile/drive_waveform.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_allocation {
 namespace {
 
 TEST(TactileAllocation, AStepAllocatesNothing) {
@@ -36,4 +36,4 @@ TEST(TactileAllocation, AStepAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_allocation

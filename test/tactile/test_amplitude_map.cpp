@@ -9,7 +9,7 @@
 
 #include "haptex/tactile/amplitude_map.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_amplitude_map {
 namespace {
 
 using Eigen::Vector2d;
@@ -96,4 +96,4 @@ TEST(AmplitudeMap, RefusesBadSizesAndValues) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_amplitude_map

@@ -5,7 +5,7 @@
 
 #include "haptex/tactile/channels.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_channels {
 namespace {
 
 TEST(Channels, GainIsOneAtTheChannelsFrequencyAndZeroAtRest) {
@@ -40,4 +40,4 @@ TEST(Channels, EachFeelsItsOwnFrequencyBest) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_channels

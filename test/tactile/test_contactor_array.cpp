@@ -5,7 +5,7 @@
 #include "fixtures.h"
 #include "haptex/tactile/contactor_array.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_contactor_array {
 namespace {
 
 /// A wave felt at 100 Hz by the stroke of touch(), in both channels.
@@ -163,4 +163,4 @@ TEST(ArrayLimits, RefusalsNameLimitValueAndWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_contactor_array

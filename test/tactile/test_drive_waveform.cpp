@@ -6,7 +6,7 @@
 #include "fixtures.h"
 #include "haptex/tactile/drive_waveform.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_drive_waveform {
 namespace {
 
 constexpr double kRates[] = {44100.0, 48000.0, 1000.0, 8000.0, 777.7};
@@ -124,4 +124,4 @@ TEST(DriveWaveform, RefusesRatesThatCannotCarryTheChannels) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_drive_waveform

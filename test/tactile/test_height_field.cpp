@@ -5,7 +5,7 @@
 
 #include "fixtures.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_height_field {
 namespace {
 
 std::string refusalOf(const HeightField& field) {
@@ -39,4 +39,4 @@ TEST(HeightField, RefusalsNameFieldValueAndWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_height_field

@@ -16,7 +16,7 @@
 #include "haptex/tactile/height_file.h"
 #include "temporary_file.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_height_file {
 namespace {
 
 struct PngKind {
@@ -210,4 +210,4 @@ TEST(HeightFile, RefusesSpacingsAndHeightsThatAreNotPositive) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_height_file

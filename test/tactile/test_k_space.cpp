@@ -6,7 +6,7 @@
 #include "fixtures.h"
 #include "haptex/tactile/k_space.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_k_space {
 namespace {
 
 /// Power by wave numbers over the field, of a wave and its opposite together: the warp's are >= 0.
@@ -155,4 +155,4 @@ TEST(KSpace, RefusesFieldsThatAreNotSound) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_k_space

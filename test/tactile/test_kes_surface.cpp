@@ -9,7 +9,7 @@
 
 #include "haptex/tactile/kes_surface.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_kes_surface {
 namespace {
 
 constexpr double kMillimetre = 1e-3;
@@ -126,4 +126,4 @@ TEST(KesSurface, RefusesUnsoundFields) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_kes_surface

@@ -5,7 +5,7 @@
 #include "fixtures.h"
 #include "haptex/tactile/stroke.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_stroke {
 namespace {
 
 constexpr double kRounding = 1e-13;  // relative: some tens of operations
@@ -166,4 +166,4 @@ TEST(Stroke, WhatIsNotFiniteIsNotFelt) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_stroke

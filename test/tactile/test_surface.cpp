@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "fixtures.h"
 #include "haptex/tactile/height_file.h"
 #include "haptex/tactile/kes_surface.h"
 #include "haptex/tactile/surface.h"
 #include "haptex/tactile/weave_relief.h"
 #include "temporary_file.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_surface {
 namespace {
 
 using Eigen::Vector2d;
@@ -36,14 +36,6 @@ Fabric fabricWith(const Relief& relief) {
 
 Weave weaveOf(WeaveKind kind, double irregularity = 0.0) {
   return {kind, {4e-4, 5e-5}, {4e-4, 5e-5}, irregularity};
-}
-
-double variance(const HeightField& field) {
-  const double mean =
-      std::accumulate(field.heights.begin(), field.heights.end(), 0.0) / field.heights.size();
-  double sum = 0.0;
-  for (const double height : field.heights) sum += (height - mean) * (height - mean);
-  return sum / field.heights.size();
 }
 
 /// The standard stroke in a direction, degrees from weft.
@@ -288,4 +280,4 @@ TEST(Surface, RefusesWeavesOutOfRange) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_surface

@@ -9,7 +9,7 @@
 
 #include "haptex/tactile/weave_relief.h"
 
-namespace haptex::tactile {
+namespace haptex::tactile::test_weave_relief {
 namespace {
 
 using material::Weave;
@@ -331,4 +331,4 @@ TEST(WeaveUnevenness, IsTheSameAtEveryCall) {
 }
 
 }  // namespace
-}  // namespace haptex::tactile
+}  // namespace haptex::tactile::test_weave_relief

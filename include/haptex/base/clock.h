@@ -10,5 +10,6 @@ namespace haptex::base {
 using Time = std::chrono::nanoseconds;
 
 constexpr double seconds(Time time) { return std::chrono::duration<double>(time).count(); }
+constexpr double milliseconds(Time time) { return 1e3 * seconds(time); }
 
 }  // namespace haptex::base

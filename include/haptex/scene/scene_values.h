@@ -1,6 +1,7 @@
 // Values that several parts of a scene file have in common.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 
 #include "haptex/base/yaml_reader.h"
@@ -15,6 +16,10 @@ constexpr double kMaxSize = 100.0;  ///< m, of what a scene file describes
 /// @throws std::invalid_argument naming the files that there are if there is no such file
 std::string resolveFile(const base::YamlValue& value, const std::string& kind,
                         const std::string& extension);
+
+/// Three finite numbers.
+/// @throws std::invalid_argument naming file, key, value and what is allowed
+Eigen::Vector3d readVector(const base::YamlValue& value);
 
 /// A length (m), > 0 and at most kMaxSize.
 /// @throws std::invalid_argument naming file, key, value and what is allowed

@@ -5,36 +5,13 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include <set>
-#include <sstream>
 #include <stdexcept>
 
+#include "haptex/nodes/common/bag_topics.h"
 #include "haptex/nodes/common/proximity_messages.h"
 
 namespace haptex::nodes {
 namespace {
-
-bool endsIn(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-/// The one topic of this type that is meant.
-template <typename Message>
-std::string topicOf(const rosbag::Bag& bag, const std::string& name) {
-  const std::string type = ros::message_traits::datatype<Message>();
-  rosbag::View all(bag, rosbag::TypeQuery(type));
-  std::set<std::string> known, meant;
-  for (const rosbag::ConnectionInfo* const connection : all.getConnections()) {
-    known.insert(connection->topic);
-    if (endsIn("/" + connection->topic, "/" + name)) meant.insert(connection->topic);
-  }
-  if (meant.size() == 1) return *meant.begin();
-  std::ostringstream message;
-  message << bag.getFileName() << ": " << meant.size() << " topics end in " << name
-          << ", one is needed; of " << type << " there " << (known.empty() ? "is none" : "is");
-  for (const std::string& topic : known) message << ' ' << topic;
-  throw std::invalid_argument(message.str());
-}
 
 /// @throws std::invalid_argument naming the bag
 Triangles trianglesOf(const ClothMesh& mesh, const std::string& bag) {
@@ -47,7 +24,8 @@ Triangles trianglesOf(const ClothMesh& mesh, const std::string& bag) {
 
 Triangles readTriangles(const rosbag::Bag& bag) {
   Triangles triangles;
-  rosbag::View view(bag, rosbag::TopicQuery(topicOf<ClothMesh>(bag, "cloth/mesh")));
+  rosbag::View view(bag, rosbag::TopicQuery(onlyTopic(
+                             bag, ros::message_traits::datatype<ClothMesh>(), "cloth/mesh")));
   for (const rosbag::MessageInstance& instance : view) {
     const ClothMesh::ConstPtr message = instance.instantiate<ClothMesh>();
     if (!message) continue;
@@ -72,7 +50,8 @@ void readClothRecording(const std::string& bag,
     throw std::runtime_error(bag + ": cannot be read: " + error.what());
   }
   const Triangles triangles = readTriangles(file);
-  rosbag::View view(file, rosbag::TopicQuery(topicOf<ClothState>(file, "cloth/state")));
+  rosbag::View view(file, rosbag::TopicQuery(onlyTopic(
+                              file, ros::message_traits::datatype<ClothState>(), "cloth/state")));
   bool any = false;
   for (const rosbag::MessageInstance& instance : view) {
     const ClothState::ConstPtr message = instance.instantiate<ClothState>();

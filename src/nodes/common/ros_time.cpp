@@ -27,4 +27,9 @@ ros::Time rosTimeOf(Time time) {
   return ros::Time().fromNSec(now.toNSec() - nanoseconds);
 }
 
+Time between(const ros::Time& earlier, const ros::Time& later) {
+  return Time(static_cast<std::int64_t>(later.toNSec()) -
+              static_cast<std::int64_t>(earlier.toNSec()));
+}
+
 }  // namespace haptex::nodes

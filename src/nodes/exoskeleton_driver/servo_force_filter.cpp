@@ -4,6 +4,7 @@
 
 #include "haptex/exoskeleton/control/command_check.h"
 #include "haptex/nodes/common/driver_messages.h"
+#include "haptex/nodes/common/ros_time.h"
 
 namespace haptex::nodes {
 namespace {
@@ -26,13 +27,6 @@ ForceCommand commandOf(const haptex::ServoForce& message) {
   command.damping = Eigen::Map<const RowMajor>(message.damping.data());
   return command;
 }
-
-/// ns. (ros::Duration would throw for stamps beyond 68 years.)
-std::int64_t difference(const ros::Time& later, const ros::Time& earlier) {
-  return static_cast<std::int64_t>(later.toNSec()) - static_cast<std::int64_t>(earlier.toNSec());
-}
-
-double milliseconds(std::int64_t nanoseconds) { return 1e-6 * static_cast<double>(nanoseconds); }
 
 }  // namespace
 
@@ -84,11 +78,11 @@ std::optional<ServoForceFlaw> ServoForceFilter::findFlaw(const haptex::ServoForc
     case CommandFlaw::kNone:
       break;
   }
-  const Time age{difference(now, message.header.stamp)};
+  const Time age = between(message.header.stamp, now);
   if (age > kStampTolerance) return ServoForceFlaw::kTooOld;
   if (age < -kStampTolerance) return ServoForceFlaw::kTooNew;
   const bool remembered = last_time_ && steady_now - *last_time_ <= kForgetAfter;
-  if (remembered && difference(message.header.stamp, last_stamp_) <= 0) {
+  if (remembered && between(last_stamp_, message.header.stamp).count() <= 0) {
     return ServoForceFlaw::kOrder;
   }
   return std::nullopt;
@@ -97,7 +91,7 @@ std::optional<ServoForceFlaw> ServoForceFilter::findFlaw(const haptex::ServoForc
 std::string ServoForceFilter::explain(const haptex::ServoForce& message,
                                       const ros::Time& now) const {
   std::ostringstream text;
-  const double age = milliseconds(difference(now, message.header.stamp));
+  const double age = base::milliseconds(between(message.header.stamp, now));
   switch (last_flaw_) {
     case ServoForceFlaw::kFrame:
       text << "header.frame_id = '" << message.header.frame_id << "': allowed is '" << kHandFrame
@@ -112,11 +106,11 @@ std::string ServoForceFilter::explain(const haptex::ServoForce& message,
     case ServoForceFlaw::kTooNew:
       text << "header.stamp is " << (age > 0.0 ? age : -age) << " ms "
            << (age > 0.0 ? "before" : "after") << " the driver's clock: allowed are "
-           << milliseconds(kStampTolerance.count()) << " ms";
+           << base::milliseconds(kStampTolerance) << " ms";
       break;
     case ServoForceFlaw::kOrder:
       text << "header.stamp is not later than that of the command before, but by "
-           << milliseconds(difference(last_stamp_, message.header.stamp))
+           << base::milliseconds(between(message.header.stamp, last_stamp_))
            << " ms earlier: allowed are later ones";
       break;
   }

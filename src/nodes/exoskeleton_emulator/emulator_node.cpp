@@ -63,8 +63,6 @@ base::PerFinger<TruthTopics> advertiseTruth(ros::NodeHandle& node) {
   return topics;
 }
 
-double milliseconds(Time time) { return 1e3 * base::seconds(time); }
-
 }  // namespace
 
 EmulatorNodeParameters EmulatorNodeParameters::read(const ros::NodeHandle& private_node) {
@@ -217,7 +215,7 @@ void EmulatorNode::diagnose(Status& status) {
     status.summary(DiagnosticStatus::ERROR, "has no port: " + now.port_trouble);
   } else if (now.skips > diagnosed_.skips) {
     status.summaryf(DiagnosticStatus::WARN, "gave up %.1f ms to keep up with real time",
-                    milliseconds(now.skipped - diagnosed_.skipped));
+                    base::milliseconds(now.skipped - diagnosed_.skipped));
   } else if (targets.refused > diagnosed_refusals_) {
     status.summary(DiagnosticStatus::WARN, "refused " + targets.refused_why);
   } else if (!faults.empty()) {
@@ -228,8 +226,8 @@ void EmulatorNode::diagnose(Status& status) {
   status.add("port", link_);
   status.add("port is open", now.port_open);
   status.add("faults now", faults);
-  status.add("largest real-time lag (ms)", milliseconds(now.largest_lag));
-  status.add("time given up (ms)", milliseconds(now.skipped));
+  status.add("largest real-time lag (ms)", base::milliseconds(now.largest_lag));
+  status.add("time given up (ms)", base::milliseconds(now.skipped));
   status.add("times that time was given up", now.skips);
   const std::string& refused = emulator_thread_.refusedScheduler();
   status.add("SCHED_FIFO", refused.empty() ? "granted" : "not granted: " + refused);

@@ -4,19 +4,13 @@
 #include <stdexcept>
 
 #include "haptex/nodes/common/driver_messages.h"
+#include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
 
 namespace haptex::nodes {
 namespace {
 
 using base::Time;
-
-/// ns. (ros::Duration would throw for stamps beyond 68 years.)
-std::int64_t difference(const ros::Time& later, const ros::Time& earlier) {
-  return static_cast<std::int64_t>(later.toNSec()) - static_cast<std::int64_t>(earlier.toNSec());
-}
-
-double milliseconds(std::int64_t nanoseconds) { return 1e-6 * static_cast<double>(nanoseconds); }
 
 void requireHandFrame(const std_msgs::Header& header) {
   if (header.frame_id == kHandFrame) return;
@@ -25,13 +19,12 @@ void requireHandFrame(const std_msgs::Header& header) {
 }
 
 void requireNow(const std_msgs::Header& header, const ros::Time& now) {
-  const Time age{difference(now, header.stamp)};
+  const Time age = between(header.stamp, now);
   constexpr Time kTolerance = FingertipFilter::kStampTolerance;
   if (age <= kTolerance && age >= -kTolerance) return;
   std::ostringstream text;
-  text << "header.stamp is " << milliseconds(age.count())
-       << " ms before the clock here: allowed are " << milliseconds(-kTolerance.count()) << " to "
-       << milliseconds(kTolerance.count()) << " ms";
+  text << "header.stamp is " << base::milliseconds(age) << " ms before the clock here: allowed are "
+       << base::milliseconds(-kTolerance) << " to " << base::milliseconds(kTolerance) << " ms";
   throw std::invalid_argument(text.str());
 }
 
@@ -73,7 +66,7 @@ std::optional<Value> FingertipFilter::receive(const char* topic, const Message& 
     const Value value = convert();
     requireNow(message.header, now);
     const bool remembered = last.time && steady_now - *last.time <= kForgetAfter;
-    if (remembered && difference(message.header.stamp, last.stamp) <= 0) {
+    if (remembered && between(last.stamp, message.header.stamp).count() <= 0) {
       throw std::invalid_argument("header.stamp is not later than that of the message before");
     }
     last = {message.header.stamp, steady_now};

@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/nodes/common/bag_topics.h"
 #include "haptex/tactile/drive_waveform.h"
 
 namespace haptex::nodes {
@@ -22,28 +22,6 @@ struct Recorded {
   double stamp;  // s, since the first message
   tactile::PerChannel<double> amplitudes;
 };
-
-bool endsIn(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-/// The one topic that is meant.
-std::string topicOf(const rosbag::Bag& bag, const std::string& finger) {
-  rosbag::View all(bag, rosbag::TypeQuery(ros::message_traits::datatype<Tactile>()));
-  std::set<std::string> known, meant;
-  for (const rosbag::ConnectionInfo* const connection : all.getConnections()) {
-    known.insert(connection->topic);
-    if (endsIn("/" + connection->topic, "/" + finger + "/tactile")) meant.insert(connection->topic);
-  }
-  if (meant.size() == 1) return *meant.begin();
-  std::ostringstream message;
-  message << bag.getFileName() << ": " << meant.size() << " topics end in " << finger
-          << "/tactile, one is needed; of haptex/Tactile there ";
-  if (known.empty()) message << "is none";
-  if (!known.empty()) message << "is";
-  for (const std::string& topic : known) message << ' ' << topic;
-  throw std::invalid_argument(message.str());
-}
 
 std::vector<Recorded> readMessages(const rosbag::Bag& bag, const std::string& topic,
                                    int contactor) {
@@ -102,7 +80,9 @@ tactile::ContactorSteps recordedSteps(const std::string& bag, const std::string&
   } catch (const rosbag::BagException& error) {
     throw std::runtime_error(bag + ": cannot be read: " + error.what());
   }
-  return inSteps(readMessages(file, topicOf(file, finger), contactor));
+  return inSteps(readMessages(
+      file, onlyTopic(file, ros::message_traits::datatype<Tactile>(), finger + "/tactile"),
+      contactor));
 }
 
 }  // namespace haptex::nodes

@@ -1,4 +1,4 @@
-// From the steady clock to ROS's.
+// Between the steady clock and ROS's, and between stamps.
 #pragma once
 
 #include <ros/time.h>
@@ -9,5 +9,9 @@ namespace haptex::nodes {
 
 /// What ROS's clock showed at a time of the steady clock not long ago, see steadyNow().
 ros::Time rosTimeOf(base::Time time);
+
+/// From one stamp to another, also where the nanoseconds of one are more than a second.
+/// (ros::Duration would throw for stamps beyond 68 years.)
+base::Time between(const ros::Time& earlier, const ros::Time& later);
 
 }  // namespace haptex::nodes
