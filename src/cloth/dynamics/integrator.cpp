@@ -58,13 +58,16 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
     return;
   }
   stages_.emplace(cloth, settings);
-  balance_.emplace(cloth);
+  const bool two_instants =
+      method == IntegrationMethod::kBdf2 || method == IntegrationMethod::kTrBdf2;
+  if (two_instants && settings.newton_iterations > 1 && (cloth.effects().viscosity || predicts())) {
+    motion_.emplace(cloth);
+  }
+  balance_.emplace(cloth, motion_.has_value());
   if (method == IntegrationMethod::kBackwardEuler) return;
   forces_.resize(cloth.particleCount());
   if (method != IntegrationMethod::kBackwardMidpoint) base_ = end_;
   if (method == IntegrationMethod::kBdf2) history_ = History{end_, end_};
-  if (method == IntegrationMethod::kBackwardMidpoint || settings.newton_iterations == 1) return;
-  if (cloth.effects().viscosity || predicts()) motion_.emplace(cloth);
 }
 
 StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_step) {
@@ -92,7 +95,7 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
                     allFinite(end_.positions) && allFinite(end_.velocities);
   if (report.accepted) {
     cloth.remember(end_);
-    if (motion_ && report.taken_anew) motion_->takeBackwardEuler(state, time_step);
+    if (motion_ && report.taken_anew) motion_->startAnew(end_);
     if (motion_) motion_->end(end_);
     keep(cloth, state, time_step, touches() || report.taken_anew, report.energy_taken);
   } else if (stages_) {

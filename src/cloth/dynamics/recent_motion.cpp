@@ -17,12 +17,12 @@ void RecentMotion::takeBdf2(const ClothState& before, double time, double first,
   a_ = a;
 }
 
-void RecentMotion::takeBackwardEuler(const ClothState& begin, double h) {
-  positions_[0] = begin.positions;
-  times_[0] = begin.time;
+void RecentMotion::startAnew(const ClothState& end) {
+  positions_[0] = end.positions;
+  times_[0] = end.time;
   weights_[0] = 1.0;
   count_ = 1;
-  a_ = h;
+  a_ = 1.0;
 }
 
 void RecentMotion::end(const ClothState& state) {

@@ -29,8 +29,9 @@ class RecentMotion {
   /// @param middle its positions are copied
   void takeBdf2(const ClothState& before, double time, double first, const Positions& middle,
                 double of_before, double a);
-  /// Takes over that of backward Euler, h e' = e - e(begin).
-  void takeBackwardEuler(const ClothState& begin, double h);
+  /// After a step taken anew, which need not have converged: what its strains have changed by is no
+  /// rate to go on with. The next step starts with none, e' = e - e(end).
+  void startAnew(const ClothState& end);
   /// The step with this formula has led here.
   void end(const ClothState& state);
   void forget() { count_ = 0; }
