@@ -2,7 +2,9 @@
 // every particle along its tangent, so a piece that turns by an angle a per step is stretched by
 // a^2 / 2; in wool, whose warp strains by 1e-5 under its weight, that is the largest error of all.
 // Prints for the scene wool_sample, whose bar is moved by 80 mm to either side: the largest mean
-// elongation along warp, and the computing time per simulated second.
+// elongation along warp, and the computing time per simulated second. And of samples that are let
+// go from 0.5 and 0.14 rad, in steps that end by their error: the energy left after a second,
+// linear solves and computing time per step, the order of the positions.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,6 +12,7 @@
 
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/oracles/experiments/sample_swing.h"
 #include "haptex/scene/scene.h"
 #include "tab_lines.h"
 
@@ -94,10 +97,47 @@ void printSwing(double milliseconds, int solves) {
   bench::printLine(name + "_load" + triangles, outcome.load, "s/s");
 }
 
+cloth::StepSettings settingsOf(cloth::IntegrationMethod method) {
+  cloth::StepSettings settings;
+  settings.method = method;
+  settings.newton_iterations = 30;
+  settings.newton_error = 1e-3;
+  return settings;
+}
+
+void printSample(const material::Fabric& fabric, const char* angle) {
+  constexpr int kCells = 32, kCoarse = 16;
+  constexpr double kCycle = 0.0125;  // s
+  constexpr int kCycles = 80;        // a second
+  const oracles::SampleSwing sample(fabric, kCells, std::stod(angle));
+  const oracles::SampleSwing coarse(fabric, kCoarse, std::stod(angle));
+  for (const cloth::IntegrationMethod method :
+       {cloth::IntegrationMethod::kBackwardEuler, cloth::IntegrationMethod::kBdf2,
+        cloth::IntegrationMethod::kTrBdf2}) {
+    const std::string name = "swing/" + fabric.name + "_" + angle + "rad_" + nameOf(method);
+    const std::string triangles = "/" + std::to_string(sample.cloth().mesh().triangles.size());
+    for (int parts : {1, 2, 4, 10}) {
+      const oracles::SampleSwing::Motion motion =
+          sample.swing(settingsOf(method), kCycles * kCycle, kCycles * parts);
+      const std::string of = name + "_h" + std::to_string(12.5 / parts).substr(0, 5) + "ms";
+      bench::printLine(of + "_kept" + triangles, 100.0 * motion.kept, "%");
+      bench::printLine(of + "_solves" + triangles, motion.solves, "per step");
+      bench::printLine(of + "_step" + triangles, 1e3 * motion.seconds, "ms");
+    }
+    bench::printLine(name + "_order/" + std::to_string(coarse.cloth().mesh().triangles.size()),
+                     orderOfSwing(coarse, settingsOf(method), 0.25), "1");
+  }
+}
+
 }  // namespace
 
 int main() {
   for (int solves : {1, 2, 3, 20}) printSwing(12.5, solves);
   for (double milliseconds : {5.0, 2.5, 1.0}) printSwing(milliseconds, 1);
   printSwing(1.0, 5);
+  for (const char* fabric : {"wool", "linear"}) {
+    const material::Fabric of =
+        material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + std::string(fabric) + ".yaml");
+    for (const char* angle : {"0.5", "0.14"}) printSample(of, angle);
+  }
 }

@@ -32,7 +32,7 @@ linear::LinearSolverMethod readMethod(const YamlValue& value) {
 }
 
 void readSolver(const YamlValue& value, cloth::StepSettings& settings) {
-  value.requireKeys({}, {"method", "tolerance", "newton_iterations", "threads"});
+  value.requireKeys({}, {"method", "tolerance", "newton_iterations", "error", "threads"});
   if (value.has("method")) settings.solver = readMethod(value.at("method"));
   if (value.has("tolerance")) {
     settings.tolerance = value.at("tolerance").number();
@@ -44,6 +44,15 @@ void readSolver(const YamlValue& value, cloth::StepSettings& settings) {
     settings.newton_iterations = value.at("newton_iterations").integer();
     if (settings.newton_iterations < 1 || settings.newton_iterations > kMaxNewtonIterations) {
       value.at("newton_iterations").refuse("must be an integer from 1 to 1000");
+    }
+  }
+  if (value.has("error")) {
+    settings.newton_error = value.at("error").number();
+    if (settings.newton_error <= 0.0 || settings.newton_error >= 1.0) {
+      value.at("error").refuse("must be > 0 and < 1");
+    }
+    if (settings.newton_iterations < 2) {
+      value.at("error").refuse("needs newton_iterations of at least 2 to reach it");
     }
   }
   if (value.has("threads")) {

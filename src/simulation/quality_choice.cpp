@@ -29,7 +29,8 @@ std::string milliseconds(double seconds) {
 bool sameSettings(const scene::Quality& a, const scene::Quality& b) {
   return a.time_step == b.time_step && a.step.method == b.step.method &&
          a.step.solver == b.step.solver && a.step.tolerance == b.step.tolerance &&
-         a.step.newton_iterations == b.step.newton_iterations;
+         a.step.newton_iterations == b.step.newton_iterations &&
+         a.step.newton_error == b.step.newton_error;
 }
 
 }  // namespace

@@ -104,6 +104,7 @@ void printScene(const std::string& path, const scene::Scene& scene, const materi
                  scene.step.newton_iterations == 1 ? "" : "s at most",
                  solverName(scene.step.solver).c_str(), scene.step.tolerance, scene.step.threads,
                  scene.step.threads == 1 ? "" : "s");
+    if (scene.step.newton_error > 0.0) step += text(", error %g", scene.step.newton_error);
   }
   printRow(out, "step", step);
   if (!scene.obstacles.empty()) {

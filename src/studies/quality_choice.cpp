@@ -71,7 +71,8 @@ std::string presetOf(const TradeOffPoint& point, const std::vector<Quality>& qua
         quality.time_step == point.timeStep() && quality.step.method == point.step.method &&
         quality.step.solver == point.step.solver &&
         quality.step.tolerance == point.step.tolerance &&
-        quality.step.newton_iterations == point.step.newton_iterations) {
+        quality.step.newton_iterations == point.step.newton_iterations &&
+        quality.step.newton_error == point.step.newton_error) {
       return quality.name;
     }
   }
@@ -178,7 +179,9 @@ void writeQualities(std::ostream& out, const std::vector<Quality>& qualities,
         << "    integrator: " << nameOf(quality.step.method) << "\n"
         << "    solver: {method: " << nameOf(quality.step.solver)
         << ", tolerance: " << quality.step.tolerance
-        << ", newton_iterations: " << quality.step.newton_iterations << "}\n"
+        << ", newton_iterations: " << quality.step.newton_iterations;
+    if (quality.step.newton_error > 0.0) out << ", error: " << quality.step.newton_error;
+    out << "}\n"
         << "    measured:\n"
         << std::setprecision(4);
     for (const scene::MeasuredQuality& measured : quality.measured) {

@@ -32,15 +32,17 @@ inline const std::vector<PointLoad>& loadsOf(const Cloth& cloth) {
 /// What Newton iterations hold of a stage that starts from these positions.
 inline std::vector<Eigen::Vector3d> heldSince(const Force& force, const Positions& base) {
   std::vector<Eigen::Vector3d> held(force.heldSize(), Eigen::Vector3d::Zero());
-  const ForceState at = resting(base);
-  force.hold({base, at, 1.0, true, false}, held.data());
+  const StrainPast past = StrainPast::since(base, 1.0);
+  ForceState at = resting(base);
+  at.past = &past;
+  force.hold({base, at, 1.0, false}, held.data());
   return held;
 }
 
 /// What they hold of a stage that ends near a state, whose rates are those of the velocities.
 inline std::vector<Eigen::Vector3d> heldBefore(const Force& force, const ForceState& at, double a) {
   std::vector<Eigen::Vector3d> held(force.heldSize(), Eigen::Vector3d::Zero());
-  force.hold({at.positions, at, a, false, false}, held.data());
+  force.hold({at.positions, at, a, false}, held.data());
   return held;
 }
 

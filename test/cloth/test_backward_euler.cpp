@@ -188,7 +188,7 @@ TEST(BackwardEuler, ANewtonIterationNeverRaisesTheIncrementalPotential) {
       ClothState state = start;
       StepReport report;
       StageSolver(cloth, settings)
-          .solve(cloth, {start, h, h, 1.0, Stage::Rates::kSinceBase},
+          .solve(cloth, {start, h, h, 1.0, StrainPast::since(start.positions, h)},
                  {start.positions, start.velocities, h}, state, report);
       double potential = membraneOf(cloth).incrementalPotential(state.ofForces(), begin.data(), h);
       for (std::size_t i = 0; i < cloth.particleCount(); ++i) {

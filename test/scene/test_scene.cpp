@@ -141,17 +141,19 @@ TEST_F(SceneFile, HasTheDocumentedSolverDefaults) {
   EXPECT_EQ(step.solver, linear::LinearSolverMethod::kAutomatic);
   EXPECT_EQ(step.tolerance, 1e-6);
   EXPECT_EQ(step.newton_iterations, 1);
+  EXPECT_EQ(step.newton_error, 0.0);
   EXPECT_EQ(step.threads, 1);
 }
 
 TEST_F(SceneFile, ReadsTheSolver) {
-  const cloth::StepSettings step =
-      load(kValid +
-           "solver: {method: cholesky, tolerance: 1e-9, newton_iterations: 5, threads: 3}\n")
-          .step;
+  const cloth::StepSettings step = load(kValid +
+                                        "solver: {method: cholesky, tolerance: 1e-9, "
+                                        "newton_iterations: 5, error: 1e-3, threads: 3}\n")
+                                       .step;
   EXPECT_EQ(step.solver, linear::LinearSolverMethod::kCholesky);
   EXPECT_EQ(step.tolerance, 1e-9);
   EXPECT_EQ(step.newton_iterations, 5);
+  EXPECT_EQ(step.newton_error, 1e-3);
   EXPECT_EQ(step.threads, 3);
   EXPECT_EQ(load(kValid + "solver: {method: conjugate_gradient}\n").step.solver,
             linear::LinearSolverMethod::kConjugateGradient);

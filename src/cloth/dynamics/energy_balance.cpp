@@ -43,8 +43,9 @@ double contactWork(const Cloth& cloth, const std::vector<ContactReaction>& react
 
 }  // namespace
 
-EnergyBalance::EnergyBalance(const Cloth& cloth)
-    : last_positions_(cloth.initialState().positions),
+EnergyBalance::EnergyBalance(const Cloth& cloth, bool rates_from_strains)
+    : rates_from_strains_(rates_from_strains),
+      last_positions_(cloth.initialState().positions),
       forces_(cloth.particleCount()),
       jumped_(cloth.initialState()) {}
 
@@ -116,13 +117,26 @@ double EnergyBalance::attachmentWork(const Cloth& cloth, const ClothState& begin
     jumped_.positions[i] = end.positions[i];
   }
   if (!moved) return 0.0;
-  cloth.computeForces(end, forces_);
+  const double h = end.time - begin.time;
+  computeForces(cloth, end, StrainPast::since(begin.positions, h));
   const double at_end = workOf(cloth, forces_, begin.positions, end.positions);
-  cloth.computeForces(begin, forces_);
+  StrainPast ahead{h};  // with the same rates, (e(end) - e(begin)) / h
+  ahead.add(begin.positions, 2.0);
+  ahead.add(end.positions, -1.0);
+  computeForces(cloth, begin, ahead);
   const double at_begin = workOf(cloth, forces_, begin.positions, end.positions);
   const double of_jump = cloth.potentialEnergy(jumped_) - potential_begin_;
   return std::min(std::max(at_end, 0.5 * (at_begin + at_end)),
                   2.0 * std::max(0.0, of_jump) + kinetic_begin_);
+}
+
+/// Into forces_. @param past what rates are taken from, if they are not the velocities'
+void EnergyBalance::computeForces(const Cloth& cloth, const ClothState& at,
+                                  const StrainPast& past) {
+  ForceState state = at.ofForces();
+  if (rates_from_strains_) state.past = &past;
+  std::fill(forces_.begin(), forces_.end(), Vector3d::Zero());
+  cloth.forces().addForces(state, forces_);
 }
 
 /// Of driven forces (W), those of the air. Those on attached particles count here, because the

@@ -26,6 +26,7 @@ void requireFraction(const char* name, double value) {
 const StepSettings& requireSound(const StepSettings& settings) {
   requireFraction("tolerance", settings.tolerance);
   requireFraction("newton_tolerance", settings.newton_tolerance);
+  if (settings.newton_error != 0.0) requireFraction("newton_error", settings.newton_error);
   if (settings.newton_iterations < 1) {
     std::ostringstream message;
     message << "newton_iterations is " << settings.newton_iterations << "; it must be at least 1";
@@ -57,7 +58,12 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
     return;
   }
   stages_.emplace(cloth, settings);
-  balance_.emplace(cloth);
+  const bool two_instants =
+      method == IntegrationMethod::kBdf2 || method == IntegrationMethod::kTrBdf2;
+  if (two_instants && settings.newton_iterations > 1 && (cloth.effects().viscosity || predicts())) {
+    motion_.emplace(cloth);
+  }
+  balance_.emplace(cloth, motion_.has_value());
   if (method == IntegrationMethod::kBackwardEuler) return;
   forces_.resize(cloth.particleCount());
   if (method != IntegrationMethod::kBackwardMidpoint) base_ = end_;
@@ -89,9 +95,12 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
                     allFinite(end_.positions) && allFinite(end_.velocities);
   if (report.accepted) {
     cloth.remember(end_);
+    if (motion_ && report.taken_anew) motion_->startAnew(end_);
+    if (motion_) motion_->end(end_);
     keep(cloth, state, time_step, touches() || report.taken_anew, report.energy_taken);
   } else if (stages_) {
     stages_->forget();
+    if (motion_) motion_->forget();
   }
   report.total_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return report;
@@ -115,7 +124,7 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
   };
   if (!is_small()) {
     report.taken_anew = true;
-    const Stage stage{begin, h, end_.time, 1.0, Stage::Rates::kSinceBase};
+    const Stage stage{begin, h, end_.time, 1.0, StrainPast::since(begin.positions, h)};
     if (settings_.method != IntegrationMethod::kBackwardEuler) {
       stages_->forget();
       stages_->solveLinearised(cloth, stage, {begin.positions, begin.velocities, h}, end_, report);
@@ -153,7 +162,8 @@ void Integrator::advance(const Cloth& cloth, const ClothState& begin, double h,
       base_.memory = begin.memory;
       return runBdf2(cloth, history_->before, begin, history_->time_step, h, report);
     default:
-      return stages_->solve(cloth, {begin, h, end_.time, 1.0, Stage::Rates::kSinceBase},
+      return stages_->solve(cloth,
+                            {begin, h, end_.time, 1.0, StrainPast::since(begin.positions, h)},
                             {begin.positions, begin.velocities, h}, end_, report);
   }
 }
@@ -204,7 +214,7 @@ void Integrator::runMidpoint(const Cloth& cloth, const ClothState& begin, double
   const double potential = cloth.potentialEnergy(begin);
   while (true) {
     const double theta = 0.5 + report.blend;
-    stages_->solve(cloth, {begin, theta * h, end_.time, theta, Stage::Rates::kOfVelocities},
+    stages_->solve(cloth, {begin, theta * h, end_.time, theta, {}},
                    {begin.positions, begin.velocities, theta * h}, end_, report);
     const double work = outerWork(cloth, begin, h, theta);
     extrapolate(cloth, begin, theta);
@@ -276,13 +286,24 @@ void Integrator::runTrBdf2(const Cloth& cloth, const ClothState& begin, double h
   const double first = (2.0 - std::sqrt(2.0)) * h;
   const double a = 0.5 * first;
   base_.memory = begin.memory;
-  cloth.computeForces(begin, forces_);
+  const bool goes_on = motion_ && motion_->leadsTo(begin);
+  ForceState at_begin = begin.ofForces();
+  StrainPast strains, stage_strains;
+  if (goes_on) {
+    strains = motion_->strains();
+    at_begin.past = &strains;
+    stage_strains = motion_->strainsAfter(begin, a);
+  }
+  std::fill(forces_.begin(), forces_.end(), Vector3d::Zero());
+  cloth.forces().addForces(at_begin, forces_);
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     base_.positions[i] = begin.positions[i] + a * begin.velocities[i];
     base_.velocities[i] = begin.velocities[i] + a / cloth.masses()[i] * forces_[i];
   }
-  stages_->solve(cloth, {base_, a, begin.time + first, 1.0, Stage::Rates::kOfVelocities},
-                 {begin.positions, begin.velocities, first}, end_, report);
+  const Positions* predicted =
+      goes_on && predicts() ? motion_->predictAfter(begin, first) : nullptr;
+  stages_->solve(cloth, {base_, a, begin.time + first, 1.0, stage_strains},
+                 {begin.positions, begin.velocities, first, predicted}, end_, report);
   settle(end_.velocities);
   runBdf2(cloth, begin, end_, first, h - first, report);
 }
@@ -304,8 +325,16 @@ void Integrator::runBdf2(const Cloth& cloth, const ClothState& before, const Clo
   // A velocity from before an impact would make what touches rebound.
   settle(base_.velocities);
   const double a = second * (1.0 + ratio) / divisor;
-  stages_->solve(cloth, {base_, a, end_.time, 1.0, Stage::Rates::kOfVelocities},
-                 {middle.positions, end_.velocities, second}, end_, report);
+  StrainPast strains;
+  const Positions* predicted = nullptr;
+  if (motion_) {
+    const double time = end_.time - second - first;
+    motion_->takeBdf2(before, time, first, middle.positions, of_before, a);
+    strains = motion_->strains();
+    if (predicts()) predicted = motion_->predict(before, middle.positions, first, second);
+  }
+  stages_->solve(cloth, {base_, a, end_.time, 1.0, strains},
+                 {middle.positions, end_.velocities, second, predicted}, end_, report);
 }
 
 }  // namespace haptex::cloth

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
+
+#include "haptex/base/constants.h"
+#include "haptex/cloth/forces/element_assembly.h"
 
 namespace haptex::cloth {
 namespace {
@@ -29,6 +33,13 @@ ForceState forceState(const Stage& stage, const Positions& positions,
   return {positions, velocities, timeOf(stage), stage.base.memory.data()};
 }
 
+/// m^2
+double restArea(const mesh::ClothMesh& mesh) {
+  double area = 0.0;
+  for (const MembraneElement& element : restElements(mesh)) area += element.area;
+  return area;
+}
+
 }  // namespace
 
 StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
@@ -47,15 +58,40 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
   }
   trial_ = cloth.initialState();
   held_.assign(cloth.forces().heldSize(), Vector3d::Zero());
+  if (settings.newton_error > 0.0) {
+    const double weight =
+        base::kStandardGravity * std::accumulate(cloth.masses().begin(), cloth.masses().end(), 0.0);
+    least_mass_ = *std::min_element(cloth.masses().begin(), cloth.masses().end());
+    force_error_ = settings.newton_error * weight;
+    energy_error_ = settings.newton_error * force_error_ * std::sqrt(restArea(cloth.mesh()));
+  }
 }
 
 void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                         ClothState& result, StepReport& report) {
-  solveLinearised(cloth, stage, guess, result, report);
+  const bool predicted = guess.predicted != nullptr && cloth.contacts().empty();
+  if (predicted) {
+    startFrom(cloth, stage, guess, result);
+  } else {
+    solveLinearised(cloth, stage, guess, result, report);
+  }
   if (settings_.newton_iterations == 1) return;
   hold(cloth, stage, result, false);
   iterateNewton(cloth, stage, incrementalPotential(cloth, stage, result),
-                settings_.newton_iterations - 1, {}, result, report);
+                settings_.newton_iterations - (predicted ? 0 : 1), {}, result, report);
+}
+
+/// At the predicted positions, with the attached particles in their places.
+void StageSolver::startFrom(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                            ClothState& result) {
+  prescribe(cloth, stage, guess);
+  if (contacts_) contacts_->begin(cloth, stage, guess.velocities, fixed_);
+  linearised_norm_ = 0.0;
+  for (int i = 0; i < matrix_.size(); ++i) {
+    const auto& attachment = cloth.attachments()[i];
+    result.positions[i] = attachment ? placeIn(stage, *attachment, i) : (*guess.predicted)[i];
+    result.velocities[i] = (result.positions[i] - stage.base.positions[i]) / stage.a;
+  }
 }
 
 bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
@@ -88,10 +124,9 @@ void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const 
 
 /// What Newton iterations hold fixed. @param at near the end of the stage
 void StageSolver::hold(const Cloth& cloth, const Stage& stage, const ClothState& at, bool passive) {
-  const bool since_base = stage.rates == Stage::Rates::kSinceBase;
-  cloth.forces().hold({stage.base.positions, forceState(stage, at.positions, at.velocities),
-                       stage.a, since_base, passive},
-                      held_.data());
+  ForceState state = forceState(stage, at.positions, at.velocities);
+  if (stage.past.count > 0) state.past = &stage.past;
+  cloth.forces().hold({stage.base.positions, state, stage.a, passive}, held_.data());
 }
 
 /// If the potential of the free particles at x*, without velocity, is lower, halves their way from
@@ -248,25 +283,31 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
                                 ClothState& result, StepReport& report) {
   constexpr double kNearMinimum = 1e-2;  // relative residual from which the exact Hessian is tried
   constexpr double kNearer = 0.1;        // of the residual where it was not positive definite
-  const double reference = linearised_norm_;
+  double reference = linearised_norm_;   // of a start without first solve, its own residual
   double near = kNearMinimum * reference;
   const int last_solve = report.newton_iterations + most_solves;
   prescribed_.setZero();  // the fixed particles have reached their places
   bool converged = false, is_enough = false;
+  int solves = linearised_norm_ > 0.0 ? 1 : 0;  // of the stage
   auto hessian = Hessian::kProjected;
   while (true) {
     assembleNewton(cloth, stage, result, hessian, report);
     const double norm = touching() ? contacts_->residualNorm(rhs_) : rhs_.norm();
+    if (reference == 0.0) near = kNearMinimum * (reference = norm);
     report.newton_residual = reference > 0.0 ? norm / reference : norm;
-    converged = norm <= settings_.newton_tolerance * reference;
+    // No Hessian of a stage is less than the masses, so a step promises at most this.
+    const bool is_small = solves > 0 && isSmallError(norm / stage.a, norm * norm / least_mass_);
+    converged = norm <= settings_.newton_tolerance * reference || is_small;
     if (converged || report.newton_iterations >= last_solve) break;
     solution_.setZero();
+    ++solves;
     const bool exact = hessian == Hessian::kExact;
     const auto definiteness = exact ? linear::LinearSolver::Definiteness::kUnknown
                                     : linear::LinearSolver::Definiteness::kPositive;
     const bool solved = touching() ? solveTouching(result.velocities, report, definiteness)
                                    : solveLinear(report, definiteness);
     if (touching()) potential = incrementalPotential(cloth, stage, result);  // of this friction
+    const bool is_last = solved && isSmallError(norm / stage.a, decrease());
     if (!exact) report.linear_converged = report.linear_converged && solved;
     // Of the projected Hessian an inexact solution will do: the line search judges it.
     const Descent descent =
@@ -276,6 +317,8 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
           touching() && contacts_->enter(result.velocities, 2.0 * kContactPenetration);
       is_enough = enough && !enters && enough();
       if (is_enough) break;
+      converged = is_last && !enters;
+      if (converged) break;
       hessian = norm <= near ? Hessian::kExact : Hessian::kProjected;
     } else if (descent == Descent::kNone && exact) {  // not positive definite here
       hessian = Hessian::kProjected;
@@ -289,14 +332,24 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
   return is_enough;
 }
 
+/// Of the incremental potential along the solution (J), to the first order: twice what a Newton
+/// step promises.
+double StageSolver::decrease() const {
+  return touching() ? contacts_->descent(solution_) : rhs_.cwiseProduct(solution_).sum();
+}
+
+/// What StepSettings::newton_error says. @param force N @param decrease decrease()
+bool StageSolver::isSmallError(double force, double decrease) const {
+  return force <= force_error_ && 0.5 * decrease <= energy_error_;
+}
+
 /// Moves the result along solution_ to a lower potential.
 StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& stage,
                                              ClothState& result, double& potential) {
   constexpr double kSufficientDecrease = 1e-4;
   constexpr double kRounding = 1e-14;
   constexpr int kMaxHalvings = 40;
-  const double descent =
-      touching() ? contacts_->descent(solution_) : rhs_.cwiseProduct(solution_).sum();
+  const double descent = decrease();
   const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
   if (!(descent > 0.0)) return below_rounding ? Descent::kBelowRounding : Descent::kNone;
   double step = 1.0;

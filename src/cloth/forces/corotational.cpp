@@ -174,6 +174,10 @@ MembraneStrain Corotational::strain(const MembraneElement& element,
   return Polar(elementFrame(element, positions)).strain();
 }
 
+MembraneStrain Corotational::strain(const MembraneElement& element, const StrainPast& past) const {
+  return past.strain([&](const Positions& positions) { return strain(element, positions); });
+}
+
 void Corotational::bind(const linear::SymmetricBlockMatrix& matrix) {
   bindElements(matrix, elements_);
 }
@@ -182,8 +186,12 @@ void Corotational::addForces(const ForceState& state, std::vector<Vector3d>& for
   for (const MembraneElement& element : elements_) {
     const Polar polar(elementFrame(element, state.positions));
     const Gradients gradients = polar.gradients();
-    const Vector3d rate =
-        gradients.transpose() * polar.local(elementFrame(element, state.velocities));
+    Vector3d rate;
+    if (state.past != nullptr) {
+      rate = (polar.strain() - strain(element, *state.past)) / state.past->a;
+    } else {
+      rate = gradients.transpose() * polar.local(elementFrame(element, state.velocities));
+    }
     const Vector3d stress = elastic_.cwiseProduct(polar.strain()) + viscous_.cwiseProduct(rate);
     addTraction(element, polar.frame, -element.area * gradients * stress,
                 [&](int particle) -> Vector3d& { return forces[particle]; });
@@ -258,8 +266,8 @@ double Corotational::incrementalPotential(const ForceState& state, const Vector3
 
 void Corotational::hold(const NewtonStart& start, Vector3d* held) const {
   for (std::size_t t = 0; t < elements_.size(); ++t) {
-    if (start.since_base) {
-      held[t] = strain(elements_[t], start.base);
+    if (start.at.past != nullptr) {
+      held[t] = strain(elements_[t], *start.at.past);
       continue;
     }
     const Polar polar(elementFrame(elements_[t], start.at.positions));

@@ -15,7 +15,7 @@ template <typename Call>
 void ForceSum::forEach(const ForceState& state, Call&& call) const {
   const double* memory = state.memory;
   for (const auto& force : forces_) {
-    call(*force, ForceState{state.positions, state.velocities, state.time, memory});
+    call(*force, ForceState{state.positions, state.velocities, state.time, memory, state.past});
     if (memory != nullptr) memory += force->memorySize();
   }
 }
@@ -107,7 +107,7 @@ std::size_t ForceSum::heldSize() const {
 
 void ForceSum::hold(const NewtonStart& start, Eigen::Vector3d* held) const {
   forEach(start.at, [&](const Force& force, const ForceState& its) {
-    force.hold({start.base, its, start.a, start.since_base, start.passive}, held);
+    force.hold({start.base, its, start.a, start.passive}, held);
     held += force.heldSize();
   });
 }

@@ -46,6 +46,10 @@ Vector3d clampedToNonNegative(const Vector3d& slope) { return slope.cwiseMax(0.0
 
 /// Makes the tangent [[slope0, coupling], [coupling, slope1]] and the slope of the shear positive
 /// semidefinite.
+MembraneStrain pastStrain(const MembraneElement& element, const StrainPast& past) {
+  return past.strain([&](const Positions& positions) { return greenStrain(element, positions); });
+}
+
 void projectMaterial(Vector3d& slope, double& coupling) {
   if (coupling == 0.0) {
     slope = clampedToNonNegative(slope);
@@ -106,11 +110,18 @@ double Membrane::elasticDensity(const MembraneStrain& strain) const {
   return density;
 }
 
+/// Rate of strain (1/s). @param at frame of the positions
+MembraneStrain Membrane::rateIn(const MembraneElement& element, const ForceState& state,
+                                const Frame& at) {
+  if (state.past == nullptr) return at.rate(frame(element, state.velocities));
+  return (at.strain() - pastStrain(element, *state.past)) / state.past->a;
+}
+
 void Membrane::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
   for (const MembraneElement& element : elements_) {
     const Frame at = frame(element, state.positions);
     Vector3d stress = respondElastic(at.strain()).stress;
-    if (viscosity_) stress += respond(viscous_, at.rate(frame(element, state.velocities))).stress;
+    if (viscosity_) stress += respond(viscous_, rateIn(element, state, at)).stress;
     stress *= -element.area;
     addScattered(element, stress[0] * at.weft + stress[2] * at.warp,
                  stress[1] * at.warp + stress[2] * at.weft,
@@ -239,8 +250,8 @@ double Membrane::incrementalPotential(const ForceState& state, const Vector3d* h
 
 void Membrane::hold(const NewtonStart& start, Vector3d* held) const {
   for (std::size_t t = 0; t < elements_.size(); ++t) {
-    if (start.since_base) {
-      held[t] = greenStrain(elements_[t], start.base);
+    if (start.at.past != nullptr) {
+      held[t] = pastStrain(elements_[t], *start.at.past);
       continue;
     }
     const Frame at = frame(elements_[t], start.at.positions);

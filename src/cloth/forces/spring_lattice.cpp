@@ -18,6 +18,11 @@ double strainOf(const LatticeSpring& spring, const Vector3d& extent) {
   return 0.5 * (extent.squaredNorm() * spring.inverse_rest_square - 1.0);
 }
 
+double pastStrain(const LatticeSpring& spring, const StrainPast& past) {
+  return past.strain(
+      [&](const Positions& positions) { return strainOf(spring, extent(spring, positions)); });
+}
+
 double rateOf(const LatticeSpring& spring, const Vector3d& extent, const Vector3d& opening) {
   return extent.dot(opening) * spring.inverse_rest_square;
 }
@@ -118,7 +123,10 @@ void SpringLattice::addForces(const ForceState& state, std::vector<Vector3d>& fo
     const Vector3d at = extent(spring, state.positions);
     double stress = elastic_.respond(spring, strainOf(spring, at)).stress;
     if (viscosity_) {
-      const double rate = rateOf(spring, at, extent(spring, state.velocities));
+      const double rate =
+          state.past != nullptr
+              ? (strainOf(spring, at) - pastStrain(spring, *state.past)) / state.past->a
+              : rateOf(spring, at, extent(spring, state.velocities));
       stress += viscous_.respond(spring, rate).stress;
     }
     const Vector3d pull = spring.area * spring.inverse_rest_square * stress * at;
@@ -204,8 +212,8 @@ void SpringLattice::hold(const NewtonStart& start, Vector3d* held) const {
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const LatticeSpring& spring = springs_[s];
     double& strain = held[s / 3][static_cast<Eigen::Index>(s % 3)];
-    if (start.since_base) {
-      strain = strainOf(spring, extent(spring, start.base));
+    if (start.at.past != nullptr) {
+      strain = pastStrain(spring, *start.at.past);
       continue;
     }
     const Vector3d at = extent(spring, start.at.positions);

@@ -6,6 +6,7 @@
 #include "haptex/oracles/exact/amplification.h"
 #include "haptex/oracles/experiments/cloth_swing.h"
 #include "haptex/oracles/experiments/oscillator.h"
+#include "haptex/oracles/experiments/sample_swing.h"
 
 namespace haptex::oracles {
 namespace {
@@ -83,6 +84,28 @@ double lossPerPeriod(const ClothSwing& swing, const StepSettings& settings) {
   return 1.0 - std::pow(motion.energies.back() / motion.energies.front(), 1.0 / kPeriods);
 }
 
+/// A sample let go from 0.5 rad, in steps that end by their error: what it has of its energy after
+/// a second, with the cells of the scenes of samples, and the order of its positions after a
+/// quarter of a second.
+void validateSampleSwing(const material::Fabric& fabric, const Sink& sink) {
+  constexpr double kAngle = 0.5;  // rad
+  constexpr int kCells = 32, kCoarse = 16;
+  constexpr double kOrderBound = 0.2, kMostLost = 0.03;
+  const SampleSwing sample(fabric, kCells, kAngle), coarse(fabric, kCoarse, kAngle);
+  for (const IntegrationMethod method : {IntegrationMethod::kBdf2, IntegrationMethod::kTrBdf2}) {
+    StepSettings settings;
+    settings.method = method;
+    settings.newton_iterations = 30;
+    settings.newton_error = 1e-3;
+    const std::string name = "cloth/sample_swing/" + fabric.name + "/" + nameOf(method);
+    const SampleSwing::Motion motion = sample.swing(settings, 1.0, kStepsPerPeriod);
+    sink({name + "/kept_per_second", 1.0, motion.kept,
+          motion.accepted ? std::abs(1.0 - motion.kept) : std::nan(""), kMostLost});
+    const double order = orderOfSwing(coarse, settings, 0.25);
+    sink({name + "/order", 2.0, order, std::abs(order - 2.0), kOrderBound});
+  }
+}
+
 }  // namespace
 
 void validateIntegrators(const material::Fabric& linear, const material::Fabric& wool,
@@ -106,6 +129,8 @@ void validateIntegrators(const material::Fabric& linear, const material::Fabric&
     if (named.method == IntegrationMethod::kBackwardMidpoint) continue;
     sink_loss(wool.name, wool_swing, 20);
   }
+  validateSampleSwing(linear, sink);
+  validateSampleSwing(wool, sink);
 }
 
 }  // namespace haptex::oracles

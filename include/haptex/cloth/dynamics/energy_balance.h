@@ -21,7 +21,10 @@ class EnergyBalance {
   /// Steps whose losses a later one may gain.
   static constexpr int kRemembered = 10;
 
-  explicit EnergyBalance(const Cloth& cloth);
+  /// @param rates_from_strains for the work of attachments, of the strains at both ends of the
+  /// step,
+  ///   as the method takes them; if not, they are those of the velocities
+  explicit EnergyBalance(const Cloth& cloth, bool rates_from_strains = false);
 
   /// Before the step. What was lost before is forgotten unless the step goes on from the state of
   /// the last keep(). @param begin that the step starts from
@@ -55,6 +58,7 @@ class EnergyBalance {
   double reserve() const;
   void forget();
   double attachmentWork(const Cloth& cloth, const ClothState& begin, const ClothState& end);
+  void computeForces(const Cloth& cloth, const ClothState& at, const StrainPast& past);
   double drivenPower(const Cloth& cloth, const ClothState& state);
 
   double potential_begin_ = 0.0;
@@ -67,6 +71,7 @@ class EnergyBalance {
   std::array<double, kRemembered> lost_{};  // J, since the beginnings of the last steps
   int remembered_ = 0;
   int next_ = 0;
+  bool rates_from_strains_;
   Positions last_positions_;
   std::vector<Eigen::Vector3d> forces_;
   ClothState jumped_;

@@ -8,6 +8,7 @@
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/energy_balance.h"
 #include "haptex/cloth/dynamics/explicit_step.h"
+#include "haptex/cloth/dynamics/recent_motion.h"
 #include "haptex/cloth/dynamics/stage_solver.h"
 #include "haptex/cloth/dynamics/step.h"
 
@@ -66,6 +67,7 @@ class Integrator {
   double outerWork(const Cloth& cloth, const ClothState& begin, double h, double theta);
   double blendAgainstGrowth(const Cloth& cloth, const ClothState& begin, double allowed) const;
   void extrapolate(const Cloth& cloth, const ClothState& begin, double theta);
+  bool predicts() const { return settings_.newton_error > 0.0; }
   void runTrBdf2(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   void runBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle, double first,
                double second, StepReport& report);
@@ -84,6 +86,7 @@ class Integrator {
   ClothState base_;                       // of a stage that does not start at the beginning
   std::vector<Eigen::Vector3d> forces_;   // N
   std::optional<History> history_;
+  std::optional<RecentMotion> motion_;  // of TR-BDF2 and BDF-2 where Newton iterations need it
 };
 
 }  // namespace haptex::cloth

@@ -14,11 +14,8 @@ struct Stage {
   double end;              ///< s, simulated, of the places of the attached particles
   double share;            ///< of the way from x* to their place that they go in the stage, and of
                            ///< the time from base's to end at which its forces act
-  /// Strain rates of Newton iterations.
-  enum class Rates {
-    kSinceBase,     ///< (e - e*) / a, which vanishes under every rigid motion from x*
-    kOfVelocities,  ///< of v, to the second order
-  } rates;
+  StrainPast past;  ///< with the same a: what strain rates of Newton iterations are taken from, or
+                    ///< of count 0, if from v, which is right to the second order
 };
 
 /// Where the first linear solve of a stage linearises: (xg, vg), which reaches the stage in `ahead`
@@ -28,6 +25,9 @@ struct StageGuess {
   const Positions& positions;    ///< xg
   const Velocities& velocities;  ///< vg
   double ahead;                  ///< s, >= 0
+  /// Near the end of the stage (m): where Newton iterations that end by StepSettings::newton_error
+  /// start, unless something touches, without the first solve. Null: nothing is known.
+  const Positions* predicted = nullptr;
 };
 
 }  // namespace haptex::cloth

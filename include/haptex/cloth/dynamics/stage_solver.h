@@ -72,6 +72,9 @@ class StageSolver {
  private:
   enum class Descent { kFound, kBelowRounding, kNone };
 
+  void startFrom(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                 ClothState& result);
+
   void hold(const Cloth& cloth, const Stage& stage, const ClothState& at, bool passive);
   double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result);
   void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
@@ -89,11 +92,16 @@ class StageSolver {
                      const std::function<bool()>& enough, ClothState& result, StepReport& report);
   void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at, Hessian hessian,
                       StepReport& report);
+  double decrease() const;
+  bool isSmallError(double force, double decrease) const;
   Descent searchLine(const Cloth& cloth, const Stage& stage, ClothState& result, double& potential);
   void addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities);
   double incrementalPotential(const Cloth& cloth, const Stage& stage, const ClothState& at) const;
 
   StepSettings settings_;
+  double force_error_ = 0.0;                  // N, that a stage may have; 0: is not asked
+  double energy_error_ = 0.0;                 // J, likewise
+  double least_mass_ = 0.0;                   // kg, of a particle
   std::unique_ptr<linear::ThreadPool> pool_;  // null with one thread
   linear::SymmetricBlockMatrix matrix_;
   linear::LinearSolver solver_;

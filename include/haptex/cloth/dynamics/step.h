@@ -63,9 +63,16 @@ struct StepSettings {
   double tolerance = 1e-6;
   /// 1: the linearised stage alone. More: Newton iterations with line search until the nonlinear
   /// residual of the stage falls below newton_tolerance times the right-hand side of the
-  /// linearised one, or cannot fall any more for rounding, or this number is spent.
+  /// linearised one, or the error of the stage is small enough (newton_error), or it cannot fall
+  /// any more for rounding, or this number is spent.
   int newton_iterations = 1;
   double newton_tolerance = 1e-8;
+  /// An error E of a stage that is small enough, relative; 0: none is. With weight = mass times
+  /// standard gravity and size = square root of the cloth's area at rest, the iterate before the
+  /// last solve has at most the error
+  ///   E^2 weight size in its incremental potential (J), half of what Newton's step promises,
+  ///   E weight in its forces (N), the norm of the residual.
+  double newton_error = 0.0;
   /// Threads that share the work of a step, 1 to 64, with the one that calls it. The results are
   /// the same for any number.
   int threads = 1;
@@ -83,7 +90,7 @@ struct StepReport {
   double newton_residual = 0;    ///< of the last stage, relative to the right-hand side of the
                                  ///< linearised one, which is rounding itself when the cloth is
                                  ///< at rest; 0 if not asked for
-  bool newton_converged = true;  ///< in every stage, to newton_tolerance or to rounding
+  bool newton_converged = true;  ///< in every stage, to a tolerance or to rounding
   double blend = 0;              ///< backward midpoint: how far it went from the midpoint, 0, to
                                  ///< the end of the step, 1/2, which is backward Euler
   double energy_taken = 0;  ///< J, that the step had gained and was taken out of its velocities

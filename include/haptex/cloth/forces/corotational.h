@@ -31,6 +31,8 @@ class Corotational final : public Force {
                bool viscosity);
 
   MembraneStrain strain(const MembraneElement& element, const Positions& positions) const;
+  /// e* of the past.
+  MembraneStrain strain(const MembraneElement& element, const StrainPast& past) const;
 
   void bind(const linear::SymmetricBlockMatrix& matrix) override;
   void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;

@@ -14,12 +14,43 @@ namespace haptex::cloth {
 using Positions = std::vector<Eigen::Vector3d>;   ///< m, one per particle
 using Velocities = std::vector<Eigen::Vector3d>;  ///< m/s, one per particle
 
+/// Strains of earlier instants, and the rate of strain that follows from them, which is zero under
+/// every rigid motion, however large:
+///   e'(x) = (e(x) - e*) / a,  e* = sum of weights[k] e(positions[k]),  the weights' sum being 1.
+struct StrainPast {
+  double a = 0.0;                               ///< s, > 0
+  int count = 0;                                ///< of what follows, from 1
+  std::array<const Positions*, 3> positions{};  ///< m
+  std::array<double, 3> weights{};
+
+  /// (e(x) - e(before)) / duration
+  static StrainPast since(const Positions& before, double duration) {
+    StrainPast past{duration};
+    past.add(before, 1.0);
+    return past;
+  }
+  void add(const Positions& at, double weight) {
+    positions[count] = &at;
+    weights[count++] = weight;
+  }
+  /// e*. @param strain_at of positions: a number or a vector
+  template <typename Strain>
+  auto strain(const Strain& strain_at) const {
+    auto sum = strain_at(*positions[0]);
+    sum *= weights[0];
+    for (int k = 1; k < count; ++k) sum += weights[k] * strain_at(*positions[k]);
+    return sum;
+  }
+};
+
 /// What a force depends on. Nothing of it is checked.
 struct ForceState {
   const Positions& positions;
   const Velocities& velocities;
-  double time = 0.0;               ///< s, simulated
-  const double* memory = nullptr;  ///< Force::memorySize() numbers of this force
+  double time = 0.0;                 ///< s, simulated
+  const double* memory = nullptr;    ///< Force::memorySize() numbers of this force
+  const StrainPast* past = nullptr;  ///< what rates of strain are taken from by addForces(); null:
+                                     ///< from the velocities
 };
 
 /// Times (s) of an implicit stage, x = x* + a v, that is linearised about a state (Stage).
@@ -32,9 +63,9 @@ struct StageTimes {
 /// What the Newton iterations of a stage hold fixed is taken from.
 struct NewtonStart {
   const Positions& base;  ///< where the stage starts from, m
-  const ForceState& at;   ///< near its end
-  double a;               ///< s, StageTimes
-  bool since_base;        ///< strain rates are (e - e(base)) / a; if not, those of the velocities
+  const ForceState& at;   ///< near its end; strain rates are those since its past or, without one,
+                          ///< of its velocities
+  double a;               ///< s, StageTimes; also that of the past
   bool passive;           ///< nothing is held that would do work if it were held for long
 };
 

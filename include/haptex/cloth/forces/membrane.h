@@ -64,6 +64,8 @@ class Membrane final : public Force {
   struct Frame;                                               // U, V of an element, or their rates
   struct Response;                                            // stress and slopes
   static Frame frame(const MembraneElement& element, const std::vector<Eigen::Vector3d>& points);
+  static MembraneStrain rateIn(const MembraneElement& element, const ForceState& state,
+                               const Frame& at);
   template <bool kViscous>
   void assembleElement(const MembraneElement& element, const Positions& positions,
                        const Velocities& velocities, const StageTimes& times,

@@ -24,7 +24,7 @@ void validateJacobian(const material::Fabric& fabric, cloth::Elasticity elastici
                       const std::string& name, const Eigen::Matrix2d& mean_deformation,
                       const Sink& sink);
 
-/// Orders of convergence, energy of an oscillator, and losses of a swinging sheet.
+/// Orders of convergence, energy of an oscillator, and losses of swinging sheets.
 void validateIntegrators(const material::Fabric& linear, const material::Fabric& wool,
                          const Sink& sink);
 
