@@ -45,6 +45,7 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
     contacts_.emplace(matrix_);
     load_change_ = solution_;
   }
+  if (cloth.effects().self_collision) motion_.emplace(cloth.particleCount());
   trial_ = cloth.initialState();
   held_.assign(cloth.forces().heldSize(), Vector3d::Zero());
 }
@@ -66,7 +67,7 @@ bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
   constexpr int kMinSolves = 20, kMinTouchingSolves = 60;
   hold(cloth, stage, stage.base, true);
   const double potential = touching() ? incrementalPotential(cloth, stage, result)
-                                      : retreatTowardsRest(cloth, stage, result);
+                                      : retreatTowardsRest(cloth, stage, result, report);
   const int least = touching() ? kMinTouchingSolves : kMinSolves;
   return iterateNewton(cloth, stage, potential, std::max(least, settings_.newton_iterations),
                        enough, result, report);
@@ -84,6 +85,20 @@ void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const 
     result.positions[i] = attachment ? placeIn(stage, *attachment, i)
                                      : stage.base.positions[i] + stage.a * result.velocities[i];
   }
+  report.self_cut = keepApart(cloth, stage, stage.base.positions, result);
+}
+
+/// Takes positions as far as they are reached without passing through, and velocities with them.
+MotionCut StageSolver::keepApart(const Cloth& cloth, const Stage& stage, const Positions& from,
+                                 ClothState& at) {
+  if (!motion_) return {};
+  const MotionCut cut =
+      motion_->go(cloth.selfContact()->nearPairs(), from, at.positions, at.positions);
+  if (cut.particles == 0) return cut;
+  for (int i = 0; i < matrix_.size(); ++i) {
+    at.velocities[i] = (at.positions[i] - stage.base.positions[i]) / stage.a;
+  }
+  return cut;
 }
 
 /// What Newton iterations hold fixed. @param at near the end of the stage
@@ -97,7 +112,8 @@ void StageSolver::hold(const Cloth& cloth, const Stage& stage, const ClothState&
 /// If the potential of the free particles at x*, without velocity, is lower, halves their way from
 /// there until it is not.
 /// @return the incremental potential of the result
-double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
+double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result,
+                                       StepReport& report) {
   constexpr double kMinShare = 1e-9;
   const auto place_at = [&](double share) {
     for (int i = 0; i < matrix_.size(); ++i) {
@@ -107,6 +123,7 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
       trial_.positions[i] = fixed_[i] ? result.positions[i]
                                       : stage.base.positions[i] + stage.a * trial_.velocities[i];
     }
+    report.self_cut = keepApart(cloth, stage, stage.base.positions, trial_);
     return incrementalPotential(cloth, stage, trial_);
   };
   const double at_rest = place_at(0.0);
@@ -270,7 +287,7 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     if (!exact) report.linear_converged = report.linear_converged && solved;
     // Of the projected Hessian an inexact solution will do: the line search judges it.
     const Descent descent =
-        solved || !exact ? searchLine(cloth, stage, result, potential) : Descent::kNone;
+        solved || !exact ? searchLine(cloth, stage, result, potential, report) : Descent::kNone;
     if (descent == Descent::kFound) {
       const bool enters =
           touching() && contacts_->enter(result.velocities, 2.0 * kContactPenetration);
@@ -291,7 +308,8 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
 
 /// Moves the result along solution_ to a lower potential.
 StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& stage,
-                                             ClothState& result, double& potential) {
+                                             ClothState& result, double& potential,
+                                             StepReport& report) {
   constexpr double kSufficientDecrease = 1e-4;
   constexpr double kRounding = 1e-14;
   constexpr int kMaxHalvings = 40;
@@ -306,8 +324,12 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
       trial_.velocities[i] = result.velocities[i] + change;
       trial_.positions[i] = result.positions[i] + stage.a * change;
     }
+    const MotionCut cut = keepApart(cloth, stage, result.positions, trial_);
     const double trial = incrementalPotential(cloth, stage, trial_);
-    if (trial <= potential - kSufficientDecrease * step * descent || below_rounding) {
+    // What was cut has not gone along the line: any decrease will do.
+    const double sufficient = cut.particles > 0 ? 0.0 : kSufficientDecrease * step * descent;
+    if (trial <= potential - sufficient || below_rounding) {
+      report.self_cut = cut;
       std::swap(result.positions, trial_.positions);
       std::swap(result.velocities, trial_.velocities);
       potential = trial;
