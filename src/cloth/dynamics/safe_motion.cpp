@@ -11,18 +11,21 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kMostWays = 16;
-constexpr double kOfReach = 0.49;      // of the distance up to which all pairs are known
-constexpr double kKeptDistance = 0.2;  // of a pair's distance, at least, on each way
-constexpr double kOfTime = 0.9;        // up to where the kept distance is reached
+constexpr double kOfReach = 0.49;  // of the distance up to which all pairs are known
+// What comes near stops half way into the thickness, where the pressure is still small, what is
+// nearer keeps most of its distance: it is for forces to bring it nearer.
+constexpr double kKept = 0.8;
+constexpr double kOfTime = 0.95;  // up to where the kept distance is reached
 // Both elements of a pair may go this part of their distance whatever the other does.
-constexpr double kOfDistance = 0.4;
+constexpr double kOfDistance = 0.5 * (1.0 - kKept);
 // A pair whose particles were stopped so often stops them by kOfDistance, which is for good.
 constexpr char kMostStops = 3;
 
 }  // namespace
 
-SafeMotion::SafeMotion(std::size_t particles)
-    : place_(particles),
+SafeMotion::SafeMotion(std::size_t particles, double margin)
+    : margin_(margin),
+      place_(particles),
       left_(particles),
       way_(particles),
       stopped_by_(particles),
@@ -123,16 +126,16 @@ bool SafeMotion::stopBeforeContact(const Pair& pair, char& stops) {
   }
   const double relative = std::sqrt(longest[0]) + std::sqrt(longest[1]);
   if (relative == 0.0) return false;
-  const double far = relative / (1.0 - kKeptDistance);
-  if (proximity::isSurelyApart(pair.kind, begin, far)) return false;
+  if (proximity::isSurelyApart(pair.kind, begin, margin_ + relative / (1.0 - kKept))) return false;
   const double distance = proximity::distanceOf(pair.kind, begin).distance;
-  if (far < distance) return false;
-  const auto time = proximity::earliestContact(pair.kind, begin, end, kKeptDistance * distance);
+  const double kept = distance > margin_ ? margin_ : kKept * distance;
+  if (relative < distance - kept) return false;
+  const auto time = proximity::earliestContact(pair.kind, begin, end, kept);
   if (!time) return false;
   ++stops;
   if (stops > kMostStops || *time <= 0.0) {
     stops = kMostStops + 1;
-    limit(pair, 1.0, kOfDistance * distance);
+    limit(pair, 1.0, std::max(kOfDistance * distance, 0.5 * (distance - margin_)));
   } else {
     limit(pair, kOfTime * *time, proximity::kMaxLength);
   }

@@ -45,7 +45,10 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
     contacts_.emplace(matrix_);
     load_change_ = solution_;
   }
-  if (cloth.effects().self_collision) motion_.emplace(cloth.particleCount());
+  if (const SelfContact* self = cloth.selfContact()) {
+    const LayerLaw& law = self->law();
+    motion_.emplace(cloth.particleCount(), 0.5 * (law.thickness() + law.leastDistance()));
+  }
   trial_ = cloth.initialState();
   held_.assign(cloth.forces().heldSize(), Vector3d::Zero());
 }

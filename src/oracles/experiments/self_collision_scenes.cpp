@@ -65,7 +65,8 @@ Set folded(int cells) {
   set.obstacles = {floorAt(0.0)};
   set.duration = 2.5;
   const ClothMesh mesh = set.mesh;
-  set.move = [mesh](cloth::Cloth& cloth, double end) {
+  const auto lifted = std::make_shared<cloth::Positions>();
+  set.move = [mesh, lifted](cloth::Cloth& cloth, const cloth::ClothState& state, double end) {
     constexpr double kFirst = 1.0, kSecond = 1.2, kLast = 2.2;  // s
     cloth.releaseAll();
     if (end <= kFirst) {
@@ -76,11 +77,12 @@ Set folded(int cells) {
             {start.x() * std::cos(angle), start.y(), start.z() + start.x() * std::sin(angle)});
       }
     } else if (end > kSecond && end <= kLast) {
-      // The corners of both layers at y > 0 go to those at y < 0, as do all of that edge below.
+      // Both layers, from where they are.
+      const std::vector<int> edge = mesh::sideParticles(mesh, mesh::Side::kTop);
+      if (state.time <= kSecond + 1e-9) *lifted = state.positions;
       const double angle = 0.95 * kPi * smoothly(end, kSecond, kLast);
-      for (const int particle : mesh::sideParticles(mesh, mesh::Side::kTop)) {
-        const Vector3d start = mesh.initial_positions[particle];
-        if (start.x() > 1e-9) continue;
+      for (const int particle : edge) {
+        const Vector3d start = (*lifted)[particle];
         put(cloth, particle,
             {start.x(), start.y() * std::cos(angle), start.z() + start.y() * std::sin(angle)});
       }
@@ -121,7 +123,7 @@ Set ribbons(int cells) {
                         flatSheet({0.02, 0.2}, across, 2 * cells, at({0.0, 0.0, -0.002}))});
   set.gravity = 0.0;
   const ClothMesh mesh = set.mesh;
-  set.move = [mesh](cloth::Cloth& cloth, double end) {
+  set.move = [mesh](cloth::Cloth& cloth, const cloth::ClothState& /*state*/, double end) {
     // The ends of the upper one go down and those of the lower one up, farther than they reach.
     const double share = smoothly(end, 0.0, 0.9);
     for (std::size_t i = 0; i < mesh.initial_positions.size(); ++i) {
@@ -141,7 +143,7 @@ Set twisted(int cells) {
   set.gravity = 0.0;
   set.duration = 1.5;
   const ClothMesh mesh = set.mesh;
-  set.move = [mesh](cloth::Cloth& cloth, double end) {
+  set.move = [mesh](cloth::Cloth& cloth, const cloth::ClothState& /*state*/, double end) {
     const double share = smoothly(end, 0.0, 1.4);
     for (const auto side : {mesh::Side::kLeft, mesh::Side::kRight}) {
       const double sign = side == mesh::Side::kLeft ? -1.0 : 1.0;
@@ -187,7 +189,7 @@ SelfCollidingCloth::SelfCollidingCloth(const Set& set, const material::Fabric& f
 }
 
 cloth::StepReport SelfCollidingCloth::step(double h) {
-  if (move_) move_(cloth, state.time + h);
+  if (move_) move_(cloth, state, state.time + h);
   const cloth::StepReport report = collision_ ? collision_->step(cloth, integrator_, state, h)
                                               : integrator_.step(cloth, state, h);
   if (!report.accepted) throw std::runtime_error("a step was not accepted");

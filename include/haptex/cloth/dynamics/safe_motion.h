@@ -22,12 +22,14 @@ struct MotionCut {
 /// states that it looks at. On each way no particle goes farther, beyond what all have in common,
 /// than half of the distance up to which pairs are known; pairs that might touch within that are
 /// tested by continuous detection (proximity::earliestContact()), and their particles stopped
-/// before they touch. So two elements keep a part of their distance on every way.
+/// before they touch. So two elements keep a margin, or where they are nearer already a part of
+/// their distance, on every way.
 ///
 /// Allocates nothing once its buffers have had the size that they need.
 class SafeMotion {
  public:
-  explicit SafeMotion(std::size_t particles);
+  /// @param margin m, > 0
+  SafeMotion(std::size_t particles, double margin);
 
   /// @param near of the cloth
   /// @param from m, without intersections
@@ -44,6 +46,7 @@ class SafeMotion {
   bool stopBeforeContact(const Pair& pair, char& stops);
   void limit(const Pair& pair, double share, double most);
 
+  double margin_;                       // m
   std::vector<Eigen::Vector3d> place_;  // m, reached
   std::vector<Eigen::Vector3d> left_;   // m, of the way of each particle that is not stopped
   std::vector<Eigen::Vector3d> way_;    // m, beyond the common one

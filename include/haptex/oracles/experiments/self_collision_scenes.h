@@ -27,7 +27,7 @@ class SelfCollidingCloth {
     double gravity = 9.81;  ///< m/s^2
     std::vector<mesh::Obstacle> obstacles = {};
     /// Before every step: moves attachments to where they are at the end of it (s).
-    std::function<void(cloth::Cloth& cloth, double end)> move = {};
+    std::function<void(cloth::Cloth& cloth, const cloth::ClothState& state, double end)> move = {};
     double duration = 1.0;  ///< s
     std::string name = {};
   };
@@ -42,7 +42,7 @@ class SelfCollidingCloth {
   cloth::ClothState state;
 
  private:
-  std::function<void(cloth::Cloth& cloth, double end)> move_;
+  std::function<void(cloth::Cloth& cloth, const cloth::ClothState& state, double end)> move_;
   cloth::Integrator integrator_;
   std::optional<contact::ObstacleCollision> collision_;
 };

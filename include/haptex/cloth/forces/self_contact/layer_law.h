@@ -14,10 +14,11 @@ struct LayerPressure {
 
 /// Pressure against the distance of the middle surfaces of two layers that lie on each other: that
 /// of the fabric's compression curve at a thickness equal to the distance. Zero from the thickness
-/// without pressure on. Where the curve ends, at the least distance, a logarithmic barrier
-///   energy += c (d - least)^2 ln(least / d),  c = slope of the curve there,
-/// begins, which is C2 and does not let the distance vanish (Li et al., Incremental Potential
-/// Contact, ACM Trans. Graphics 39(4), 2020).
+/// without pressure on. The curve ends where KES does, at kKesHighPressure; nearer than this least
+/// distance the pressure goes on with the slope c that it has there, and with
+///   energy += c (d - least)^2 ln(least / d),
+/// a logarithmic barrier, which is C2 and does not let the distance vanish (Li et al., Incremental
+/// Potential Contact, ACM Trans. Graphics 39(4), 2020).
 class LayerLaw {
  public:
   /// @throws std::invalid_argument if the fabric has no compression
@@ -26,7 +27,8 @@ class LayerLaw {
   /// @param distance m, > 0
   LayerPressure at(double distance) const;
   /// A guard for places that touch without layers lying on each other, two edges that cross: zero
-  /// from the least distance on, and the barrier with a c of kKesHighPressure / least distance.
+  /// from the least distance on, and then the barrier with a c of kKesHighPressure / least
+  /// distance.
   /// @param distance m, > 0
   LayerPressure guardAt(double distance) const;
 
