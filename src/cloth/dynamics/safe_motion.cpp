@@ -16,9 +16,8 @@ constexpr double kOfReach = 0.49;  // of the distance up to which all pairs are 
 // nearer keeps most of its distance: it is for forces to bring it nearer.
 constexpr double kKept = 0.8;
 constexpr double kOfTime = 0.95;  // up to where the kept distance is reached
-// Both elements of a pair may go this part of their distance whatever the other does.
-constexpr double kOfDistance = 0.5 * (1.0 - kKept);
-// A pair whose particles were stopped so often stops them by kOfDistance, which is for good.
+// A pair whose particles were stopped so often stops both elements half way to what is kept, which
+// is safe whatever the other does.
 constexpr char kMostStops = 3;
 
 }  // namespace
@@ -128,14 +127,14 @@ bool SafeMotion::stopBeforeContact(const Pair& pair, char& stops) {
   if (relative == 0.0) return false;
   if (proximity::isSurelyApart(pair.kind, begin, margin_ + relative / (1.0 - kKept))) return false;
   const double distance = proximity::distanceOf(pair.kind, begin).distance;
-  const double kept = distance > margin_ ? margin_ : kKept * distance;
+  const double kept = std::min(margin_, kKept * distance);
   if (relative < distance - kept) return false;
   const auto time = proximity::earliestContact(pair.kind, begin, end, kept);
   if (!time) return false;
   ++stops;
   if (stops > kMostStops || *time <= 0.0) {
     stops = kMostStops + 1;
-    limit(pair, 1.0, std::max(kOfDistance * distance, 0.5 * (distance - margin_)));
+    limit(pair, 1.0, 0.5 * (distance - kept));
   } else {
     limit(pair, kOfTime * *time, proximity::kMaxLength);
   }
