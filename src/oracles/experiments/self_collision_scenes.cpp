@@ -30,12 +30,6 @@ cloth::ModelledEffects effectsOf(const Set& set, const material::Fabric& fabric)
   return effects;
 }
 
-cloth::StepSettings settingsOf(int newton_iterations) {
-  cloth::StepSettings settings;
-  settings.newton_iterations = newton_iterations;
-  return settings;
-}
-
 mesh::Obstacle floorAt(double height) {
   Isometry3d pose = Isometry3d::Identity();
   pose.translation().z() = height - 0.05;
@@ -107,10 +101,10 @@ Set heaped(int cells) {
 Set towel(int cells) {
   Set set;
   set.name = "towel";
-  set.mesh = flatSheet({0.4, 0.1}, 4 * cells, cells, at({0.03, 0.0, 0.08}));
-  mesh::Obstacle pole{"pole", mesh::ObstacleCapsule{0.01, 0.4},
+  set.mesh = flatSheet({0.4, 0.1}, 4 * cells, cells, at({0.02, 0.0, 0.16}));
+  mesh::Obstacle pole{"pole", mesh::ObstacleCapsule{0.004, 0.4},
                       Isometry3d(Eigen::AngleAxisd(0.5 * kPi, Vector3d::UnitX()))};
-  pole.pose.translation().z() = 0.06;
+  pole.pose.translation().z() = 0.15;
   set.obstacles = {floorAt(0.0), pole};
   return set;
 }
@@ -180,11 +174,11 @@ ClothMesh asOneMesh(const std::vector<ClothMesh>& sheets) {
 }
 
 SelfCollidingCloth::SelfCollidingCloth(const Set& set, const material::Fabric& fabric,
-                                       int newton_iterations)
+                                       const cloth::StepSettings& settings)
     : cloth(set.mesh, fabric, effectsOf(set, fabric)),
       state(cloth.initialState()),
       move_(set.move),
-      integrator_(cloth, settingsOf(newton_iterations)) {
+      integrator_(cloth, settings) {
   if (!set.obstacles.empty()) collision_.emplace(cloth, set.obstacles);
 }
 

@@ -32,8 +32,9 @@ class SelfCollidingCloth {
     std::string name = {};
   };
 
-  /// @param newton_iterations StepSettings
-  SelfCollidingCloth(const Set& set, const material::Fabric& fabric, int newton_iterations);
+  /// @param settings of backward Euler
+  SelfCollidingCloth(const Set& set, const material::Fabric& fabric,
+                     const cloth::StepSettings& settings);
 
   /// @throws std::runtime_error if the step is not accepted
   cloth::StepReport step(double h);
