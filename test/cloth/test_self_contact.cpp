@@ -6,41 +6,12 @@
 
 #include "derivatives.h"
 #include "haptex/cloth/dynamics/cloth.h"
-#include "haptex/material/fabric_file.h"
-#include "haptex/mesh/mesh.h"
+#include "self_contact_fixtures.h"
 
 namespace haptex::cloth {
 namespace {
 
 using Eigen::Vector3d;
-
-material::Fabric fabricNamed(const std::string& name) {
-  return material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + name + ".yaml");
-}
-
-/// Sheets of their own in one mesh, at rest coordinates beside each other.
-mesh::ClothMesh layers(int count, double side, int cells) {
-  mesh::ClothMesh all;
-  for (int layer = 0; layer < count; ++layer) {
-    const mesh::ClothMesh one =
-        mesh::makeRectangle(side, side, cells, cells, mesh::Triangulation::kAlternating);
-    const int first = static_cast<int>(all.rest_coordinates.size());
-    for (const Eigen::Vector2d& rest : one.rest_coordinates) {
-      all.rest_coordinates.push_back(rest + Eigen::Vector2d(2.0 * side * layer, 0.0));
-      all.initial_positions.emplace_back(rest.x(), rest.y(), 1.0 * layer);
-    }
-    for (const auto& t : one.triangles) {
-      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    }
-  }
-  return all;
-}
-
-ModelledEffects selfCollision() {
-  ModelledEffects effects;
-  effects.self_collision = true;
-  return effects;
-}
 
 /// Of the contact alone.
 std::vector<Vector3d> contactForces(const Cloth& cloth, const ClothState& state) {
@@ -203,6 +174,26 @@ TEST(SelfContact, ForcesAreContinuousOnWaysAcrossARidgeAndAValley) {
     }
     ASSERT_GT(most, 0.0);
     EXPECT_LT(largest, 0.02 * most) << fold;
+  }
+}
+
+TEST(SelfContact, WhatSlipsHasTheFabricsFrictionAndWhatCreepsLess) {
+  const material::Fabric fabric = fabricNamed("wool");
+  const Cloth cloth(layers(2, 0.04, 4), fabric, selfCollision());
+  ClothState state = cloth.initialState();
+  const std::size_t half = cloth.particleCount() / 2;
+  for (const double speed : {10.0, 1.0, 0.5, 0.1}) {  // of the slip speed
+    for (std::size_t i = 0; i < half; ++i) {
+      state.positions[half + i] =
+          state.positions[i] + Vector3d(0.0, 0.0, 0.9 * fabric.compression->thickness);
+      state.velocities[half + i].x() = speed * SelfContact::kSlipSpeed;
+    }
+    Vector3d sum = Vector3d::Zero();
+    const std::vector<Vector3d> forces = contactForces(cloth, state);
+    for (std::size_t i = half; i < forces.size(); ++i) sum += forces[i];
+    const double share = speed < 1.0 ? speed * (2.0 - speed) : 1.0;
+    EXPECT_NEAR(-sum.x(), share * *fabric.friction * sum.z(), 1e-9 * sum.z());
+    EXPECT_NEAR(sum.y(), 0.0, 1e-12 * sum.z());
   }
 }
 

@@ -88,16 +88,21 @@ MotionCut SafeMotion::go(NearPairs& near, const std::vector<Vector3d>& from,
   return cut;
 }
 
-/// The common way is the mean one if that leaves nothing to be cut that need not be.
+/// The common way is the mean one if far less is left beyond that, and nothing has been stopped,
+/// which would have to go with it.
 void SafeMotion::chooseWays(double reach) {
   common_.setZero();
   for (const Vector3d& left : left_) common_ += left;
   common_ /= static_cast<double>(left_.size());
-  for (const Vector3d& left : left_) {
-    if ((left - common_).norm() <= reach) continue;
-    common_.setZero();
-    break;
+  double most = 0.0, most_beyond = 0.0;
+  bool stopped = false;
+  for (std::size_t i = 0; i < left_.size(); ++i) {
+    most = std::max(most, left_[i].squaredNorm());
+    most_beyond = std::max(most_beyond, (left_[i] - common_).squaredNorm());
+    stopped = stopped || stopped_by_[i][0] >= 0;
   }
+  constexpr double kLess = 0.25;
+  if (stopped || most_beyond > kLess * kLess * most) common_.setZero();
   for (std::size_t i = 0; i < left_.size(); ++i) {
     way_[i] = left_[i] - common_;
     const double length = way_[i].norm();
