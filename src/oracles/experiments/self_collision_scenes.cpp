@@ -101,10 +101,10 @@ Set heaped(int cells) {
 Set towel(int cells) {
   Set set;
   set.name = "towel";
-  set.mesh = flatSheet({0.4, 0.1}, 4 * cells, cells, at({0.02, 0.0, 0.16}));
-  mesh::Obstacle pole{"pole", mesh::ObstacleCapsule{0.004, 0.4},
+  set.mesh = flatSheet({0.4, 0.1}, 4 * cells, cells, at({0.02, 0.0, 0.28}));
+  mesh::Obstacle pole{"pole", mesh::ObstacleCapsule{0.01, 0.4},
                       Isometry3d(Eigen::AngleAxisd(0.5 * kPi, Vector3d::UnitX()))};
-  pole.pose.translation().z() = 0.15;
+  pole.pose.translation().z() = 0.23;
   set.obstacles = {floorAt(0.0), pole};
   return set;
 }
@@ -141,7 +141,7 @@ Set twisted(int cells) {
     const double share = smoothly(end, 0.0, 1.4);
     for (const auto side : {mesh::Side::kLeft, mesh::Side::kRight}) {
       const double sign = side == mesh::Side::kLeft ? -1.0 : 1.0;
-      const Eigen::AngleAxisd turn(2.0 * kPi * sign * share, Vector3d::UnitX());
+      const Eigen::AngleAxisd turn(kPi * sign * share, Vector3d::UnitX());
       for (const int particle : mesh::sideParticles(mesh, side)) {
         put(cloth, particle,
             turn * mesh.initial_positions[particle] - Vector3d(0.03 * sign * share, 0.0, 0.0));

@@ -50,9 +50,9 @@ class SelfCollidingCloth {
 
 /// - folded: a sheet that lies on a floor is folded twice,
 /// - heaped: a sheet falls on its edge and heaps up,
-/// - towel: falls over a pole and, with its ends, on a floor,
+/// - towel: falls over a pole, so that its ends swing together,
 /// - ribbons: two that cross are wound around each other and pulled tight,
-/// - twisted: a strip is twisted twice.
+/// - twisted: the ends of a strip are turned against each other by a whole turn.
 /// @param cells along 100 mm, > 0
 std::vector<SelfCollidingCloth::Set> selfCollisionScenes(int cells);
 
