@@ -98,6 +98,26 @@ Set heaped(int cells) {
   return set;
 }
 
+Set gathered(int cells) {
+  Set set;
+  set.name = "gathered";
+  set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, at({0.0, 0.0, 0.0}));
+  for (Vector3d& place : set.mesh.initial_positions) {
+    place = Vector3d(place.x(), 1e-3 * std::sin(120.0 * place.x()), place.y());
+  }
+  const ClothMesh mesh = set.mesh;
+  const int apart = std::max(1, cells / 4);
+  set.move = [mesh, apart](cloth::Cloth& cloth, const cloth::ClothState& /*state*/, double end) {
+    const double narrower = 1.0 - 0.9 * smoothly(end, 0.0, 0.8);
+    const std::vector<int> edge = mesh::sideParticles(mesh, mesh::Side::kTop);
+    for (std::size_t i = 0; i < edge.size(); i += apart) {
+      const Vector3d start = mesh.initial_positions[edge[i]];
+      put(cloth, edge[i], {narrower * start.x(), start.y(), start.z()});
+    }
+  };
+  return set;
+}
+
 Set towel(int cells) {
   Set set;
   set.name = "towel";
@@ -191,7 +211,8 @@ cloth::StepReport SelfCollidingCloth::step(double h) {
 }
 
 std::vector<Set> selfCollisionScenes(int cells) {
-  return {folded(cells), heaped(cells), towel(cells), ribbons(cells), twisted(cells)};
+  return {folded(cells), heaped(cells),  gathered(cells),
+          towel(cells),  ribbons(cells), twisted(cells)};
 }
 
 }  // namespace haptex::oracles

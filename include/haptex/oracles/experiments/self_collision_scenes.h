@@ -50,6 +50,7 @@ class SelfCollidingCloth {
 
 /// - folded: a sheet that lies on a floor is folded twice,
 /// - heaped: a sheet falls on its edge and heaps up,
+/// - gathered: a curtain on rings is drawn to a tenth of its width,
 /// - towel: falls over a pole, so that its ends swing together,
 /// - ribbons: two that cross are wound around each other and pulled tight,
 /// - twisted: the ends of a strip are turned against each other by a whole turn.
