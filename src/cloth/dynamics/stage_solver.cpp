@@ -46,8 +46,7 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
     load_change_ = solution_;
   }
   if (const SelfContact* self = cloth.selfContact()) {
-    const LayerLaw& law = self->law();
-    motion_.emplace(cloth.particleCount(), 0.5 * (law.thickness() + law.leastDistance()));
+    motion_.emplace(cloth.particleCount(), self->law().margin());
   }
   trial_ = cloth.initialState();
   held_.assign(cloth.forces().heldSize(), Vector3d::Zero());
@@ -56,7 +55,7 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
 void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                         ClothState& result, StepReport& report) {
   solveLinearised(cloth, stage, guess, result, report);
-  if (settings_.newton_iterations == 1) return;
+  if (settings_.newton_iterations == 1 && report.self_cut.particles == 0) return;
   hold(cloth, stage, result, false);
   iterateNewton(cloth, stage, incrementalPotential(cloth, stage, result),
                 settings_.newton_iterations - 1, {}, result, report);
@@ -270,7 +269,9 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
   constexpr double kNearer = 0.1;        // of the residual where it was not positive definite
   const double reference = linearised_norm_;
   double near = kNearMinimum * reference;
+  constexpr int kMostWhileCut = 20;  // iterations beyond, as long as the last one was cut
   const int last_solve = report.newton_iterations + most_solves;
+  int beyond = 0;
   prescribed_.setZero();  // the fixed particles have reached their places
   bool converged = false, is_enough = false;
   auto hessian = Hessian::kProjected;
@@ -279,7 +280,11 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     const double norm = touching() ? contacts_->residualNorm(rhs_) : rhs_.norm();
     report.newton_residual = reference > 0.0 ? norm / reference : norm;
     converged = norm <= settings_.newton_tolerance * reference;
-    if (converged || report.newton_iterations >= last_solve) break;
+    if (converged) break;
+    if (report.newton_iterations >= last_solve &&
+        (report.self_cut.particles == 0 || beyond++ == kMostWhileCut)) {
+      break;
+    }
     solution_.setZero();
     const bool exact = hessian == Hessian::kExact;
     const auto definiteness = exact ? linear::LinearSolver::Definiteness::kUnknown

@@ -38,7 +38,8 @@ namespace haptex::cloth {
 ///
 /// Where the cloth collides with itself, the first solve's result and every trial of a line search
 /// are taken as far only as they can be reached without passing through (SafeMotion), and
-/// velocities follow. That holds for stages from the beginning of a step, x* = x0, alone.
+/// velocities follow; Newton iterations go on for a while as long as something is cut, whatever the
+/// settings say. That holds for stages from the beginning of a step, x* = x0, alone.
 ///
 /// Allocates nothing after construction, but where more of the cloth is near itself than before.
 class StageSolver {

@@ -140,20 +140,29 @@ void validateMomentum(const material::Fabric& fabric, const Sink& sink) {
     sheets.state.velocities[i] = i < 49 ? Vector3d(0.0, 0.02, 0.1) : Vector3d(0.0, 0.0, -0.4);
     scale += sheets.cloth.masses()[i] * sheets.state.velocities[i].norm();
   }
+  const auto energy = [&] {
+    return sheets.cloth.potentialEnergy(sheets.state) + sheets.cloth.kineticEnergy(sheets.state);
+  };
   const Vector3d begin = momentum();
+  const double first_energy = energy();
+  double most_energy = 0.0;
   bool touched = false;
   const int steps = base::unlessSanitized(20, 4);
   for (int i = 0; i < steps; ++i) {
     sheets.step(kStep);
+    most_energy = std::max(most_energy, energy());
     touched = touched || !sheets.cloth.selfContact()->touching(sheets.state.positions).empty();
   }
   sink({"self_collision/colliding_sheets/touching", 1.0, touched ? 1.0 : 0.0, touched ? 0.0 : 1.0,
         0.0});
   sink({"self_collision/colliding_sheets/momentum", 0.0, (momentum() - begin).norm() / scale,
         (momentum() - begin).norm() / scale, 1e-12});
+  const double growth = std::max(0.0, most_energy / first_energy - 1.0);
+  sink({"self_collision/colliding_sheets/energy_growth", 0.0, growth, growth, 1e-9});
 }
 
-/// Intersections in any state, and the energy that falling cloth has beyond that of its start.
+/// Intersections in any state, and the energy that the cloth which falls on a floor has beyond that
+/// of its start. Over a pole obstacles may bring particles back after a step (ObstacleCollision).
 void validateScenes(const material::Fabric& fabric, const Sink& sink) {
   constexpr int kCells = base::unlessSanitized(8, 3);
   for (const SelfCollidingCloth::Set& set : selfCollisionScenes(kCells)) {
@@ -172,7 +181,7 @@ void validateScenes(const material::Fabric& fabric, const Sink& sink) {
     }
     const std::string name = "self_collision/" + set.name;
     sink({name + "/intersections", 0.0, static_cast<double>(most), static_cast<double>(most), 0.0});
-    if (set.move) continue;
+    if (set.name != "heaped") continue;
     const double growth = (highest - start) / (highest - lowest);
     sink({name + "/energy_growth", 0.0, growth, growth, 1e-9});
   }

@@ -34,6 +34,8 @@ class LayerLaw {
 
   double thickness() const { return compression_.thickness; }  ///< m, without pressure
   double leastDistance() const { return least_; }              ///< m, see above
+  /// m, half way between the two: where the pressure is still small.
+  double margin() const { return 0.5 * (thickness() + least_); }
 
  private:
   LayerPressure barrier(double distance, double factor) const;
