@@ -215,4 +215,37 @@ std::vector<Set> selfCollisionScenes(int cells) {
           towel(cells),  ribbons(cells), twisted(cells)};
 }
 
+double thicknessAt(const material::Compression& compression, double pressure) {
+  double low = 0.0, high = 1.0;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double strain = 0.5 * (low + high);
+    (compression.pressure.evaluate(strain).stress < pressure ? low : high) = strain;
+  }
+  return compression.thickness * (1.0 - high);
+}
+
+LayerStack restingStack(const material::Fabric& fabric, int layers, int steps) {
+  constexpr double kSide = 0.03, kStep = 0.0125;  // m, s
+  LayerStack result{0.0, 0.0};
+  std::vector<ClothMesh> sheets;
+  for (int layer = 0; layer < layers; ++layer) {
+    sheets.push_back(flatSheet({kSide, kSide}, 3, 3, at({0.0, 0.0, 1.005 * result.exact})));
+    const double above = (layers - 1 - layer) * fabric.areal_density * base::kStandardGravity;
+    if (layer + 1 < layers) result.exact += thicknessAt(*fabric.compression, above);
+  }
+  cloth::StepSettings settings;
+  settings.newton_iterations = 20;
+  SelfCollidingCloth stack({asOneMesh(sheets), base::kStandardGravity}, fabric, settings);
+  const std::size_t of_layer = sheets[0].initial_positions.size();
+  for (std::size_t i = 0; i < of_layer; ++i) {
+    put(stack.cloth, static_cast<int>(i), stack.state.positions[i]);
+  }
+  for (int i = 0; i < steps; ++i) stack.step(kStep);
+  for (std::size_t i = stack.state.positions.size() - of_layer; i < stack.state.positions.size();
+       ++i) {
+    result.height += stack.state.positions[i].z() / static_cast<double>(of_layer);
+  }
+  return result;
+}
+
 }  // namespace haptex::oracles

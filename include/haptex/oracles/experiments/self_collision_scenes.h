@@ -57,4 +57,15 @@ class SelfCollidingCloth {
 /// @param cells along 100 mm, > 0
 std::vector<SelfCollidingCloth::Set> selfCollisionScenes(int cells);
 
+/// Thickness (m) of the compression curve at a pressure (Pa).
+double thicknessAt(const material::Compression& compression, double pressure);
+
+/// Layers on a lowest one that is attached, after some steps of 12.5 ms.
+struct LayerStack {
+  double exact;   ///< m, sum of the thicknesses that the compression curve gives for their weights
+  double height;  ///< m, mean height of the highest middle surface over the lowest
+};
+/// @param layers > 1
+LayerStack restingStack(const material::Fabric& fabric, int layers, int steps);
+
 }  // namespace haptex::oracles

@@ -36,40 +36,10 @@ void attach(cloth::Cloth& cloth, int particle, const Vector3d& place) {
   cloth.attach(particle, path);
 }
 
-/// Of the compression curve at a pressure (m).
-double thicknessAt(const material::Compression& compression, double pressure) {
-  double low = 0.0, high = 1.0;
-  for (int halving = 0; halving < 60; ++halving) {
-    const double strain = 0.5 * (low + high);
-    (compression.pressure.evaluate(strain).stress < pressure ? low : high) = strain;
-  }
-  return compression.thickness * (1.0 - high);
-}
-
-/// Layers on a lowest one that is attached, until they rest: distance of the highest from it.
 void validateStack(const material::Fabric& fabric, int layers, const Sink& sink) {
-  constexpr double kSide = 0.03;  // m
-  double exact = 0.0;
-  std::vector<ClothMesh> sheets;
-  for (int layer = 0; layer < layers; ++layer) {
-    sheets.push_back(flatSheet({kSide, kSide}, 3, 3, at({0.0, 0.0, 1.005 * exact})));
-    const double above = (layers - 1 - layer) * fabric.areal_density * base::kStandardGravity;
-    if (layer + 1 < layers) exact += thicknessAt(*fabric.compression, above);
-  }
-  const std::size_t of_layer = sheets[0].initial_positions.size();
-  SelfCollidingCloth stack({asOneMesh(sheets), base::kStandardGravity}, fabric, newtonSteps(20));
-  for (std::size_t i = 0; i < of_layer; ++i) {
-    attach(stack.cloth, static_cast<int>(i), stack.state.positions[i]);
-  }
-  const int steps = base::unlessSanitized(80, 10);
-  for (int i = 0; i < steps; ++i) stack.step(kStep);
-  double height = 0.0;
-  for (std::size_t i = stack.state.positions.size() - of_layer; i < stack.state.positions.size();
-       ++i) {
-    height += stack.state.positions[i].z() / static_cast<double>(of_layer);
-  }
-  sink(base::relativeTo(exact, "self_collision/stack_of_" + numbered(layers) + "/height", exact,
-                        height, 0.01));
+  const LayerStack stack = restingStack(fabric, layers, base::unlessSanitized(80, 10));
+  sink(base::relativeTo(stack.exact, "self_collision/stack_of_" + numbered(layers) + "/height",
+                        stack.exact, stack.height, 0.01));
 }
 
 /// A layer between two others, of which the upper one is loaded, is pulled out: force at its edge.
