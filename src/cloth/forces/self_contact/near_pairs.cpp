@@ -57,7 +57,6 @@ bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
   hierarchy_.refit(positions);
   self_.find(found_);
   searched_at_ = positions;
-  ++searches_;
   pairs_.clear();
   for (const proximity::NearPair& pair : found_) pairs_.push_back(named(pair.elements));
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {

@@ -44,7 +44,6 @@ class NearPairs {
   const std::vector<Pair>& neighbours() const { return neighbours_; }
 
   double searched() const { return self_.distance(); }  ///< m
-  long searches() const { return searches_; }           ///< so far
 
  private:
   Pair named(const proximity::ElementPair& pair) const;
@@ -54,7 +53,6 @@ class NearPairs {
   std::vector<proximity::NearPair> found_;
   std::vector<Pair> pairs_, neighbours_;
   std::vector<Eigen::Vector3d> searched_at_;  // m; empty before the first find()
-  long searches_ = 0;
 };
 
 }  // namespace haptex::cloth
