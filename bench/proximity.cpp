@@ -12,8 +12,8 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/mesh/mesh.h"
-#include "haptex/oracles/experiments/deformed_sheets.h"
 #include "haptex/oracles/experiments/fcl_sheet.h"
+#include "haptex/oracles/scenes/deformed_sheets.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "tab_lines.h"
 

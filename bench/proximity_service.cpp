@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "haptex/mesh/mesh.h"
-#include "haptex/oracles/experiments/deformed_sheets.h"
+#include "haptex/oracles/scenes/deformed_sheets.h"
 #include "tab_lines.h"
 
 namespace {

@@ -1,6 +1,10 @@
 // What does it cost to find out where a cloth is near itself? A flat hanging sheet has to pay for
 // no more than for knowing that it is flat, as a share of its step; a crumpled one for all pairs.
+// And what does cloth cost that touches itself: computing time per triangle and simulated second,
+// and how many triangles intersect in the worst of its states.
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,8 +14,10 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/mesh/mesh.h"
 #include "haptex/oracles/exact/moving_elements.h"
-#include "haptex/oracles/experiments/deformed_sheets.h"
+#include "haptex/oracles/scenes/deformed_sheets.h"
+#include "haptex/oracles/scenes/self_collision_scenes.h"
 #include "haptex/proximity/continuous.h"
+#include "haptex/proximity/intersections.h"
 #include "haptex/proximity/self_proximity.h"
 #include "tab_lines.h"
 
@@ -128,6 +134,43 @@ void printContinuous() {
   bench::printLine("self_collision/continuous/time", 1e6 * seconds / kCases, "us");
 }
 
+/// Of wool, in steps of 12.5 ms.
+void printScene(const oracles::SelfCollidingCloth::Set& set, const std::string& name,
+                int newton_iterations) {
+  cloth::StepSettings settings;
+  settings.newton_iterations = newton_iterations;
+  oracles::SelfCollidingCloth scene(
+      set, material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), settings);
+  const auto& triangles = scene.cloth.mesh().triangles;
+  const int steps = static_cast<int>(std::lround(set.duration / kStep));
+  double seconds = 0.0;
+  int cut = 0;
+  std::size_t intersections = 0;
+  for (int i = 0; i < steps; ++i) {
+    const cloth::StepReport report = scene.step(kStep);
+    seconds += report.total_seconds;
+    cut += report.self_cut.particles > 0;
+    intersections = std::max(intersections, countIntersections(scene.state.positions, triangles));
+  }
+  const auto print = [&](const char* what, double value, const char* unit) {
+    bench::printLine("self_collision/" + name + "/" + what, value, unit);
+  };
+  const double per_second = seconds / (steps * kStep);
+  print("ms_per_triangle_second", 1e3 * per_second / static_cast<double>(triangles.size()), "ms/s");
+  print("seconds_per_second", per_second, "s/s");
+  print("intersections", static_cast<double>(intersections), "pairs");
+  print("steps_cut", static_cast<double>(cut) / steps, "ratio");
+}
+
+void printScenes() {
+  for (const oracles::SelfCollidingCloth::Set& set : oracles::selfCollisionScenes(8)) {
+    printScene(set, set.name, 5);
+  }
+  for (const oracles::SelfCollidingCloth::Set& set : oracles::selfCollisionScenes(35)) {
+    if (set.name == "gathered") printScene(set, "gathered_9800", 3);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -160,6 +203,7 @@ int main(int argc, char** argv) {
   bench::printLine("self_collision/flat_share",
                    reporter.time("self_collision/flat") / reporter.time("self_collision/step"),
                    "ratio");
+  printScenes();
   printContinuous();
   printCost("flat", small, at_rest);
   for (const char* state : kCrumpled) {

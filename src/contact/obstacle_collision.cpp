@@ -67,6 +67,10 @@ ObstacleCollision::ObstacleCollision(const cloth::Cloth& cloth,
                        frictionOf(obstacle, cloth.fabric())});
   }
   contacts_.reserve(cloth.particleCount());
+  if (const cloth::SelfContact* self = cloth.selfContact()) {
+    motion_.emplace(cloth.particleCount(), self->law().margin());
+    stepped_.resize(cloth.particleCount());
+  }
 }
 
 void ObstacleCollision::requireFriction(const material::Fabric& fabric) const {
@@ -80,7 +84,7 @@ cloth::StepReport ObstacleCollision::step(cloth::Cloth& cloth, cloth::Integrator
   cloth.setContacts(contacts_);
   std::copy(state.positions.begin(), state.positions.end(), positions_.begin());
   const cloth::StepReport report = integrator.step(cloth, state, time_step);
-  if (report.accepted) resolve(cloth, state, time_step);
+  if (report.accepted) resolveApart(cloth, state, time_step);
   return report;
 }
 
@@ -130,6 +134,16 @@ void ObstacleCollision::findContacts(const cloth::Cloth& cloth, const cloth::Clo
       contacts_.push_back(contact);
     }
   }
+}
+
+/// As resolve(), but no farther than the cloth can go without passing through itself.
+void ObstacleCollision::resolveApart(const cloth::Cloth& cloth, cloth::ClothState& state,
+                                     double h) {
+  if (!motion_) return resolve(cloth, state, h);
+  stepped_ = state.positions;
+  resolve(cloth, state, h);
+  if (state.positions == stepped_) return;
+  motion_->go(cloth.selfContact()->nearPairs(), stepped_, state.positions, state.positions);
 }
 
 void ObstacleCollision::resolve(const cloth::Cloth& cloth, cloth::ClothState& state,

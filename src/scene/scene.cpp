@@ -192,7 +192,8 @@ Listed readModel(const YamlValue& scene) {
   for (const YamlValue& item : scene.at("model").items()) {
     const std::string name =
         item.oneOf({"gravity", "viscosity", "membrane_hysteresis", "bending", "bending_hysteresis",
-                    "contraction", "air", "wind", "obstacles", "fingers", "tactile", "recording"});
+                    "contraction", "self_collision", "air", "wind", "obstacles", "fingers",
+                    "tactile", "recording"});
     if (!listed.insert(name).second) item.refuse("is listed twice");
   }
   const auto require_both = [&](const std::string& effect, const std::string& base) {
@@ -228,6 +229,7 @@ cloth::ModelledEffects readEffects(const YamlValue& scene, const Listed& listed)
   effects.bending = listed.count("bending") > 0;
   effects.bending_hysteresis = listed.count("bending_hysteresis") > 0;
   effects.contraction = listed.count("contraction") > 0;
+  effects.self_collision = listed.count("self_collision") > 0;
   effects.contacts = listed.count("obstacles") > 0;
   effects.point_loads = listed.count("fingers") > 0;
   if (listed.count("air") > 0) effects.air = readAir(scene);
@@ -271,6 +273,10 @@ Scene readScene(const std::string& path, double cell_size) {
   }
   scene.time_step = readTimeStep(file.at("time_step"));
   scene.step = readStepSettings(file);
+  if (scene.effects.self_collision &&
+      scene.step.method != cloth::IntegrationMethod::kBackwardEuler) {
+    file.at("integrator").refuse("is not allowed if model lists self_collision: backward_euler is");
+  }
   if (file.has("obstacles")) scene.obstacles = readObstacles(file.at("obstacles"));
   if (scene.effects.contacts && scene.obstacles.empty()) {
     file.at("model").refuseBecause("lists obstacles, so the key obstacles must have at least one");

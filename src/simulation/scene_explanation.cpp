@@ -210,6 +210,8 @@ std::vector<Effect> effectsOf(const scene::Scene& scene) {
       {"bending_hysteresis", "friction within the fabric against bending",
        effects.bending_hysteresis},
       {"contraction", "stretched fabric becomes narrower", effects.contraction},
+      {"self_collision", "layers that touch, and do not pass through each other",
+       effects.self_collision},
       {"air", "drag and lift of air", effects.air.has_value()},
       {"wind", "air that moves", wind},
       {"obstacles", "collision with rigid bodies", effects.contacts},
@@ -233,6 +235,8 @@ scene::Scene withoutEffect(scene::Scene scene, const std::string& name) {
     effects.bending_hysteresis = false;
   } else if (name == "contraction") {
     effects.contraction = false;
+  } else if (name == "self_collision") {
+    effects.self_collision = false;
   } else if (name == "air") {
     effects.air.reset();
   } else if (name == "wind") {

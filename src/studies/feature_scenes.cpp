@@ -66,6 +66,7 @@ void listHysteresis(FeatureScene& scene) {
   scene.scene.effects.bending = scene.scene.effects.bending_hysteresis = true;
 }
 void listContraction(FeatureScene& scene) { scene.scene.effects.contraction = true; }
+void listSelfCollision(FeatureScene& scene) { scene.scene.effects.self_collision = true; }
 void listAir(FeatureScene& scene) { scene.scene.effects.air = cloth::Air(); }
 void listWind(FeatureScene& scene) {
   listAir(scene);
@@ -125,6 +126,7 @@ const std::vector<Feature>& features() {
       {"bending_quadratic", describeQuadraticBending, listBending},
       {"bending_hysteresis", describeHysteresis, listHysteresis},
       {"contraction", describeContraction, listContraction},
+      {"self_collision_far", describeFingers, listSelfCollision},
       {"air", describeNothing, listAir},
       {"wind", describeNothing, listWind},
       {"obstacles_far", describeFarObstacle, listObstacles},

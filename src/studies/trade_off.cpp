@@ -10,7 +10,7 @@
 #include "haptex/contact/obstacle_collision.h"
 #include "haptex/kes/equilibrium.h"
 #include "haptex/oracles/experiments/hanging_strip.h"
-#include "haptex/oracles/experiments/obstacle_scenes.h"
+#include "haptex/oracles/scenes/obstacle_scenes.h"
 #include "haptex/simulation/step_cost.h"
 
 namespace haptex::studies {

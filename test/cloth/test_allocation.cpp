@@ -7,6 +7,7 @@
 #include "../malloc_counter.h"
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
+#include "self_contact_fixtures.h"
 
 namespace haptex::cloth::test_allocation {
 namespace {
@@ -144,6 +145,32 @@ TEST(StepAllocation, TheCounterCounts) {
   std::free(std::malloc(100000));
   Eigen::VectorXd vector(1000);
   EXPECT_GE(allocations - before, 1);
+}
+
+TEST(SelfCollisionAllocation, NoStepAllocatesOnceAsMuchHasTouched) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  Cloth cloth(layers(2, 0.04, 5), fabricNamed("wool"), selfCollision());
+  StepSettings settings;
+  settings.newton_iterations = 5;
+  Integrator integrator(cloth, settings);
+  long before = 0;
+  std::size_t touching = 0;
+  for (int run = 0; run < 4; ++run) {
+    ClothState state = cloth.initialState();
+    for (std::size_t i = state.positions.size() / 2; i < state.positions.size(); ++i) {
+      state.positions[i].z() = 5e-4 + 0.1 * state.positions[i].x();
+      state.velocities[i].z() = -0.3;
+    }
+    before = allocations;
+    for (int i = 0; i < 6; ++i) {
+      EXPECT_TRUE(integrator.step(cloth, state, 0.005).accepted);
+      touching = std::max(touching, cloth.selfContact()->touching(state.positions).size());
+    }
+  }
+  EXPECT_GT(touching, 0u);
+  EXPECT_EQ(allocations - before, 0);
 }
 
 }  // namespace

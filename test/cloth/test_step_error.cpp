@@ -9,7 +9,7 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "integrator_fixtures.h"
 
-namespace haptex::cloth {
+namespace haptex::cloth::test_step_error {
 namespace {
 
 using Eigen::Vector3d;
@@ -116,4 +116,4 @@ TEST(StepError, IsRefusedOutsideItsRange) {
 }
 
 }  // namespace
-}  // namespace haptex::cloth
+}  // namespace haptex::cloth::test_step_error

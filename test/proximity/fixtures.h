@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "haptex/mesh/mesh.h"
-#include "haptex/oracles/experiments/deformed_sheets.h"
+#include "haptex/oracles/scenes/deformed_sheets.h"
 #include "haptex/proximity/cursor.h"
 
 namespace haptex::proximity {

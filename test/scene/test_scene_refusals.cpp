@@ -65,8 +65,12 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"UnknownEffect", "viscosity]", "steam]",
                 "model[1]: 'steam' must be one of gravity, viscosity, membrane_hysteresis, "
-                "bending, bending_hysteresis, contraction, air, wind, obstacles, fingers, tactile, "
-                "recording"},
+                "bending, bending_hysteresis, contraction, self_collision, air, wind, obstacles, "
+                "fingers, tactile, recording"},
+        Refusal{"SelfCollisionOfOtherIntegrators", "[gravity, viscosity]",
+                "[self_collision]\nintegrator: bdf2",
+                "integrator: 'bdf2' is not allowed if model lists self_collision: backward_euler "
+                "is"},
         Refusal{"UnknownElasticity", "attach:", "elasticity: rubber\nattach:",
                 "elasticity: 'rubber' must be one of green_lagrange, mass_spring, corotational"},
         Refusal{"ContractionOfSprings", "[gravity, viscosity]",

@@ -26,6 +26,7 @@ scene::Scene sceneWithEverything() {
   scene.effects.gravity = {0.0, 0.0, -9.8};
   scene.effects.viscosity = scene.effects.membrane_hysteresis = true;
   scene.effects.bending = scene.effects.bending_hysteresis = true;
+  scene.effects.self_collision = true;
   scene.effects.contraction = scene.effects.contacts = scene.effects.point_loads = true;
   scene.effects.air = cloth::Air();
   scene.effects.air->wind.mean = {1.0, 0.0, 0.0};
@@ -54,7 +55,7 @@ TEST(WithoutEffect, TakesAwayWhatBuildsOnItAndNothingElse) {
     return gone;
   };
   for (const char* name : {"gravity", "viscosity", "membrane_hysteresis", "bending_hysteresis",
-                           "contraction", "wind", "obstacles"}) {
+                           "contraction", "self_collision", "wind", "obstacles"}) {
     EXPECT_EQ(gone(name), Names({name}));
   }
   EXPECT_EQ(gone("bending"), Names({"bending", "bending_hysteresis"}));

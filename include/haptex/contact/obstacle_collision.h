@@ -2,10 +2,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/cloth/dynamics/safe_motion.h"
 #include "haptex/mesh/obstacle.h"
 #include "haptex/proximity/rigid_obstacle.h"
 
@@ -60,11 +62,14 @@ class ObstacleCollision {
   void placeBodies(const cloth::Cloth& cloth, double begin, double end);
   void findContacts(const cloth::Cloth& cloth, const cloth::ClothState& state, double h);
   void resolve(const cloth::Cloth& cloth, cloth::ClothState& state, double h) const;
+  void resolveApart(const cloth::Cloth& cloth, cloth::ClothState& state, double h);
 
   std::vector<mesh::Obstacle> obstacles_;
   std::vector<Body> bodies_;
   std::vector<Eigen::Vector3d> positions_;  // m, at the beginning of the step
   std::vector<cloth::ParticleContact> contacts_;
+  std::vector<Eigen::Vector3d> stepped_;     // m, at its end, before resolve()
+  std::optional<cloth::SafeMotion> motion_;  // if the cloth collides with itself
 };
 
 }  // namespace haptex::contact

@@ -40,6 +40,13 @@ const StepSettings& requireSound(const StepSettings& settings) {
   return settings;
 }
 
+void requireSelfCollision(const Cloth& cloth, IntegrationMethod method) {
+  if (!cloth.effects().self_collision || method == IntegrationMethod::kBackwardEuler) return;
+  throw std::invalid_argument(
+      std::string("self_collision is modelled, which only the integrator ") +
+      nameOf(IntegrationMethod::kBackwardEuler) + " knows, not " + nameOf(method));
+}
+
 bool allFinite(const std::vector<Vector3d>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(),
                      [](const Vector3d& vector) { return vector.allFinite(); });
@@ -53,6 +60,7 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
       held_size_(cloth.forces().heldSize()),
       end_(cloth.initialState()) {
   const IntegrationMethod method = settings.method;
+  requireSelfCollision(cloth, method);
   if (!isImplicit(method)) {
     explicit_step_.emplace(cloth, method);
     return;

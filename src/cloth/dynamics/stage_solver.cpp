@@ -56,6 +56,9 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
     contacts_.emplace(matrix_);
     load_change_ = solution_;
   }
+  if (const SelfContact* self = cloth.selfContact()) {
+    motion_.emplace(cloth.particleCount(), self->law().margin());
+  }
   trial_ = cloth.initialState();
   held_.assign(cloth.forces().heldSize(), Vector3d::Zero());
   if (settings.newton_error > 0.0) {
@@ -69,13 +72,14 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
 
 void StageSolver::solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                         ClothState& result, StepReport& report) {
-  const bool predicted = guess.predicted != nullptr && cloth.contacts().empty();
+  const bool predicted =
+      guess.predicted != nullptr && cloth.contacts().empty() && cloth.selfContact() == nullptr;
   if (predicted) {
     startFrom(cloth, stage, guess, result);
   } else {
     solveLinearised(cloth, stage, guess, result, report);
   }
-  if (settings_.newton_iterations == 1) return;
+  if (settings_.newton_iterations == 1 && report.self_cut.particles == 0) return;
   hold(cloth, stage, result, false);
   iterateNewton(cloth, stage, incrementalPotential(cloth, stage, result),
                 settings_.newton_iterations - (predicted ? 0 : 1), {}, result, report);
@@ -102,7 +106,7 @@ bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
   constexpr int kMinSolves = 20, kMinTouchingSolves = 60;
   hold(cloth, stage, stage.base, true);
   const double potential = touching() ? incrementalPotential(cloth, stage, result)
-                                      : retreatTowardsRest(cloth, stage, result);
+                                      : retreatTowardsRest(cloth, stage, result, report);
   const int least = touching() ? kMinTouchingSolves : kMinSolves;
   return iterateNewton(cloth, stage, potential, std::max(least, settings_.newton_iterations),
                        enough, result, report);
@@ -120,6 +124,20 @@ void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const 
     result.positions[i] = attachment ? placeIn(stage, *attachment, i)
                                      : stage.base.positions[i] + stage.a * result.velocities[i];
   }
+  report.self_cut = keepApart(cloth, stage, stage.base.positions, result);
+}
+
+/// Takes positions as far as they are reached without passing through, and velocities with them.
+MotionCut StageSolver::keepApart(const Cloth& cloth, const Stage& stage, const Positions& from,
+                                 ClothState& at) {
+  if (!motion_) return {};
+  const MotionCut cut =
+      motion_->go(cloth.selfContact()->nearPairs(), from, at.positions, at.positions);
+  if (cut.particles == 0) return cut;
+  for (int i = 0; i < matrix_.size(); ++i) {
+    at.velocities[i] = (at.positions[i] - stage.base.positions[i]) / stage.a;
+  }
+  return cut;
 }
 
 /// What Newton iterations hold fixed. @param at near the end of the stage
@@ -132,7 +150,8 @@ void StageSolver::hold(const Cloth& cloth, const Stage& stage, const ClothState&
 /// If the potential of the free particles at x*, without velocity, is lower, halves their way from
 /// there until it is not.
 /// @return the incremental potential of the result
-double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result) {
+double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result,
+                                       StepReport& report) {
   constexpr double kMinShare = 1e-9;
   const auto place_at = [&](double share) {
     for (int i = 0; i < matrix_.size(); ++i) {
@@ -142,6 +161,7 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
       trial_.positions[i] = fixed_[i] ? result.positions[i]
                                       : stage.base.positions[i] + stage.a * trial_.velocities[i];
     }
+    report.self_cut = keepApart(cloth, stage, stage.base.positions, trial_);
     return incrementalPotential(cloth, stage, trial_);
   };
   const double at_rest = place_at(0.0);
@@ -272,104 +292,6 @@ void StageSolver::assembleNewton(const Cloth& cloth, const Stage& stage, const C
                                 stage.a, hessian, matrix_, rhs_);
   if (!touching()) eliminate();
   report.assembly_seconds += seconds(Clock::now() - start);
-}
-
-/// @param potential incremental one of the result
-/// @param most_solves linear ones
-/// @param enough may be empty
-/// @return whether the result is enough
-bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double potential,
-                                int most_solves, const std::function<bool()>& enough,
-                                ClothState& result, StepReport& report) {
-  constexpr double kNearMinimum = 1e-2;  // relative residual from which the exact Hessian is tried
-  constexpr double kNearer = 0.1;        // of the residual where it was not positive definite
-  double reference = linearised_norm_;   // of a start without first solve, its own residual
-  double near = kNearMinimum * reference;
-  const int last_solve = report.newton_iterations + most_solves;
-  prescribed_.setZero();  // the fixed particles have reached their places
-  bool converged = false, is_enough = false;
-  int solves = linearised_norm_ > 0.0 ? 1 : 0;  // of the stage
-  auto hessian = Hessian::kProjected;
-  while (true) {
-    assembleNewton(cloth, stage, result, hessian, report);
-    const double norm = touching() ? contacts_->residualNorm(rhs_) : rhs_.norm();
-    if (reference == 0.0) near = kNearMinimum * (reference = norm);
-    report.newton_residual = reference > 0.0 ? norm / reference : norm;
-    // No Hessian of a stage is less than the masses, so a step promises at most this.
-    const bool is_small = solves > 0 && isSmallError(norm / stage.a, norm * norm / least_mass_);
-    converged = norm <= settings_.newton_tolerance * reference || is_small;
-    if (converged || report.newton_iterations >= last_solve) break;
-    solution_.setZero();
-    ++solves;
-    const bool exact = hessian == Hessian::kExact;
-    const auto definiteness = exact ? linear::LinearSolver::Definiteness::kUnknown
-                                    : linear::LinearSolver::Definiteness::kPositive;
-    const bool solved = touching() ? solveTouching(result.velocities, report, definiteness)
-                                   : solveLinear(report, definiteness);
-    if (touching()) potential = incrementalPotential(cloth, stage, result);  // of this friction
-    const bool is_last = solved && isSmallError(norm / stage.a, decrease());
-    if (!exact) report.linear_converged = report.linear_converged && solved;
-    // Of the projected Hessian an inexact solution will do: the line search judges it.
-    const Descent descent =
-        solved || !exact ? searchLine(cloth, stage, result, potential) : Descent::kNone;
-    if (descent == Descent::kFound) {
-      const bool enters =
-          touching() && contacts_->enter(result.velocities, 2.0 * kContactPenetration);
-      is_enough = enough && !enters && enough();
-      if (is_enough) break;
-      converged = is_last && !enters;
-      if (converged) break;
-      hessian = norm <= near ? Hessian::kExact : Hessian::kProjected;
-    } else if (descent == Descent::kNone && exact) {  // not positive definite here
-      hessian = Hessian::kProjected;
-      near = kNearer * norm;
-    } else {
-      converged = descent == Descent::kBelowRounding;
-      break;
-    }
-  }
-  report.newton_converged = report.newton_converged && converged;
-  return is_enough;
-}
-
-/// Of the incremental potential along the solution (J), to the first order: twice what a Newton
-/// step promises.
-double StageSolver::decrease() const {
-  return touching() ? contacts_->descent(solution_) : rhs_.cwiseProduct(solution_).sum();
-}
-
-/// What StepSettings::newton_error says. @param force N @param decrease decrease()
-bool StageSolver::isSmallError(double force, double decrease) const {
-  return force <= force_error_ && 0.5 * decrease <= energy_error_;
-}
-
-/// Moves the result along solution_ to a lower potential.
-StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& stage,
-                                             ClothState& result, double& potential) {
-  constexpr double kSufficientDecrease = 1e-4;
-  constexpr double kRounding = 1e-14;
-  constexpr int kMaxHalvings = 40;
-  const double descent = decrease();
-  const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
-  if (!(descent > 0.0)) return below_rounding ? Descent::kBelowRounding : Descent::kNone;
-  double step = 1.0;
-  for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
-    for (int i = 0; i < matrix_.size(); ++i) {
-      const Vector3d change = step * solution_.col(i);
-      trial_.velocities[i] = result.velocities[i] + change;
-      trial_.positions[i] = result.positions[i] + stage.a * change;
-    }
-    const double trial = incrementalPotential(cloth, stage, trial_);
-    if (trial <= potential - kSufficientDecrease * step * descent || below_rounding) {
-      std::swap(result.positions, trial_.positions);
-      std::swap(result.velocities, trial_.velocities);
-      potential = trial;
-      if (touching()) contacts_->shorten(step);
-      return below_rounding ? Descent::kBelowRounding : Descent::kFound;
-    }
-  }
-  if (touching()) contacts_->shorten(0.0);
-  return Descent::kNone;
 }
 
 }  // namespace haptex::cloth

@@ -6,6 +6,7 @@
 #include "haptex/cloth/forces/corotational.h"
 #include "haptex/cloth/forces/membrane.h"
 #include "haptex/cloth/forces/membrane_friction.h"
+#include "haptex/cloth/forces/self_contact/self_contact.h"
 #include "haptex/cloth/forces/spring_lattice.h"
 
 namespace haptex::cloth {
@@ -70,6 +71,18 @@ void requirePanels(const mesh::ClothMesh& mesh, const std::vector<material::Fabr
   }
 }
 
+void addSelfContact(const mesh::ClothMesh& mesh, const material::Fabric& fabric, ForceSum& forces) {
+  if (mesh.panelCount() > 1) {
+    throw std::invalid_argument("self_collision knows one panel, and the mesh has " +
+                                std::to_string(mesh.panelCount()));
+  }
+  std::vector<Eigen::Vector3d> reference;
+  for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {
+    reference.emplace_back(rest.x(), rest.y(), 0.0);
+  }
+  forces.add(std::make_unique<SelfContact>(mesh.triangles, reference, fabric));
+}
+
 void addMembrane(std::vector<MembraneElement> elements, const material::Fabric& fabric,
                  const ModelledEffects& effects, ForceSum& forces) {
   const bool hysteresis = effects.membrane_hysteresis && !MembraneFriction::isZero(fabric);
@@ -124,6 +137,7 @@ void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fa
   requirePanels(mesh, fabrics, effects);
   for (const material::Fabric& fabric : fabrics) requireModelled(fabric, effects);
   addElasticity(mesh, fabrics, effects, forces);
+  if (effects.self_collision) addSelfContact(mesh, fabrics.front(), forces);
   if (effects.air) forces.add(std::make_unique<Aerodynamics>(restElements(mesh), *effects.air));
   if (!effects.bending || effects.elasticity == Elasticity::kMassSpring) return;
   for (int p = 0; p < mesh.panelCount(); ++p) {

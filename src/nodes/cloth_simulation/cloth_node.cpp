@@ -227,6 +227,11 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (!quality_) status.add("tolerance", tolerance_);
   status.add("steps that missed the tolerance", loop.unsolved_steps);
   status.add("rejected steps", loop.rejected_steps);
+  if (const cloth::MotionCut& cut = loop.last_report.self_cut; cut.particles > 0) {
+    status.addf("kept from passing through itself",
+                "%d particles, by up to %.3g mm, at particles %d, %d, %d, %d", cut.particles,
+                1e3 * cut.longest, cut.between[0], cut.between[1], cut.between[2], cut.between[3]);
+  }
   status.add("asleep", loop.asleep ? "yes" : "no");
   status.add("particles", particle_count_);
   status.add("triangles", triangle_count_);

@@ -9,7 +9,7 @@
 #include "haptex/material/linear_fabric.h"
 #include "haptex/oracles/checks/contact_oracles.h"
 #include "haptex/oracles/experiments/capstan.h"
-#include "haptex/oracles/experiments/obstacle_scenes.h"
+#include "haptex/oracles/scenes/obstacle_scenes.h"
 
 namespace haptex::oracles {
 namespace {

@@ -6,8 +6,8 @@
 #include "haptex/base/workload.h"
 #include "haptex/mesh/mesh.h"
 #include "haptex/oracles/checks/validation.h"
-#include "haptex/oracles/experiments/deformed_sheets.h"
 #include "haptex/oracles/experiments/fcl_sheet.h"
+#include "haptex/oracles/scenes/deformed_sheets.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 
 namespace haptex::oracles {

@@ -8,7 +8,7 @@
 
 #include "haptex/material/fabric_file.h"
 #include "haptex/material/linear_fabric.h"
-#include "haptex/oracles/experiments/obstacle_scenes.h"
+#include "haptex/oracles/scenes/obstacle_scenes.h"
 
 namespace haptex::oracles {
 namespace {

@@ -12,6 +12,7 @@
 #include "haptex/cloth/forces/force_sum.h"
 #include "haptex/cloth/forces/modelled_effects.h"
 #include "haptex/cloth/forces/point_loads.h"
+#include "haptex/cloth/forces/self_contact/self_contact.h"
 #include "haptex/linear/block_matrix.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
@@ -46,7 +47,8 @@ struct AttachmentPath {
 class Cloth {
  public:
   /// @throws std::invalid_argument if the mesh has defects, the density is not finite and > 0,
-  ///   gravity is not finite, or as addFabricForces()
+  ///   gravity is not finite, as addFabricForces(), or if collision of the cloth with itself is
+  ///   modelled and its initial positions intersect, which names the first triangles that do
   Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
         const ModelledEffects& effects);
   /// Of one fabric.
@@ -62,6 +64,8 @@ class Cloth {
   /// All that act, but for contacts: gravity and user-defined forces, the fabric's, the air's, and
   /// point loads.
   const ForceSum& forces() const { return *forces_; }
+  /// That of the cloth with itself among them; null if it is not modelled.
+  const SelfContact* selfContact() const { return self_contact_; }
   /// A matrix with the pattern that the forces are bound to.
   linear::SymmetricBlockMatrix pattern() const;
   /// Of its blocks below the diagonal.
@@ -147,8 +151,9 @@ class Cloth {
   ModelledEffects effects_;
   std::vector<double> masses_;
   std::unique_ptr<ForceSum> forces_;
-  ConstantForces* constant_ = nullptr;  // of forces_
-  PointLoads* point_loads_ = nullptr;   // of forces_; null if they are not modelled
+  ConstantForces* constant_ = nullptr;         // of forces_
+  PointLoads* point_loads_ = nullptr;          // of forces_; null if they are not modelled
+  const SelfContact* self_contact_ = nullptr;  // likewise
   int pattern_size_ = 0;
   std::vector<std::optional<AttachmentPath>> attachments_;
   // Both are empty unless contacts are modelled, and have a capacity of one per particle then.

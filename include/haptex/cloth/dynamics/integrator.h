@@ -32,12 +32,16 @@ namespace haptex::cloth {
 /// iterations from the linearised stage, cut short where rest would be better, until it is less;
 /// with every further solve twice as much may be taken, up to all (StageSolver::descend()).
 ///
+/// Backward Euler keeps a cloth that collides with itself free of intersections, if it was
+/// (StageSolver); the other methods refuse it.
+///
 /// A step allocates nothing: all buffers are made by the constructor, and only those that the
 /// method needs.
 class Integrator {
  public:
   /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1),
-  ///   newton_iterations is less than 1, or threads is not from 1 to kMaxThreads
+  ///   newton_iterations is less than 1, threads is not from 1 to kMaxThreads, or the cloth
+  ///   collides with itself and the method is not backward Euler
   Integrator(const Cloth& cloth, const StepSettings& settings);
 
   /// Advances `state` by `time_step` seconds; steps need not be uniform.

@@ -9,6 +9,7 @@
 
 #include "haptex/cloth/dynamics/active_set_contact_solver.h"
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/safe_motion.h"
 #include "haptex/cloth/dynamics/stage.h"
 #include "haptex/cloth/dynamics/step.h"
 #include "haptex/linear/block_matrix.h"
@@ -35,7 +36,12 @@ namespace haptex::cloth {
 /// Contacts of the cloth hold as ActiveSetContactSolver says; every linear solve of a stage is then
 /// repeated until they are found.
 ///
-/// Allocates nothing after construction.
+/// Where the cloth collides with itself, the first solve's result and every trial of a line search
+/// are taken as far only as they can be reached without passing through (SafeMotion), and
+/// velocities follow; Newton iterations go on for a while as long as something is cut, whatever the
+/// settings say. That holds for stages from the beginning of a step, x* = x0, alone.
+///
+/// Allocates nothing after construction, but where more of the cloth is near itself than before.
 class StageSolver {
  public:
   /// @param settings sound (Integrator)
@@ -76,7 +82,10 @@ class StageSolver {
                  ClothState& result);
 
   void hold(const Cloth& cloth, const Stage& stage, const ClothState& at, bool passive);
-  double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result);
+  MotionCut keepApart(const Cloth& cloth, const Stage& stage, const Positions& from,
+                      ClothState& at);
+  double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result,
+                            StepReport& report);
   void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
   void prescribe(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
   void eliminate();
@@ -94,7 +103,8 @@ class StageSolver {
                       StepReport& report);
   double decrease() const;
   bool isSmallError(double force, double decrease) const;
-  Descent searchLine(const Cloth& cloth, const Stage& stage, ClothState& result, double& potential);
+  Descent searchLine(const Cloth& cloth, const Stage& stage, ClothState& result, double& potential,
+                     StepReport& report);
   void addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities);
   double incrementalPotential(const Cloth& cloth, const Stage& stage, const ClothState& at) const;
 
@@ -113,6 +123,7 @@ class StageSolver {
   std::vector<char> fixed_;
   bool any_fixed_ = false;
   std::optional<ActiveSetContactSolver> contacts_;
+  std::optional<SafeMotion> motion_;   // if the cloth collides with itself
   linear::BlockVector load_change_;    // of the solution, by other loads of friction
   ClothState trial_;                   // of a line search; empty where there is none
   std::vector<Eigen::Vector3d> held_;  // by the forces: Force::hold()

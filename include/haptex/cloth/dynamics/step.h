@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "haptex/cloth/dynamics/safe_motion.h"
 #include "haptex/linear/linear_solver.h"
 
 namespace haptex::cloth {
@@ -95,7 +96,10 @@ struct StepReport {
                                  ///< the end of the step, 1/2, which is backward Euler
   double energy_taken = 0;  ///< J, that the step had gained and was taken out of its velocities
   bool taken_anew = false;  ///< by backward Euler, because it had gained much (Integrator)
-  int contact_rounds = 0;   ///< linear solves among them that looked for what touches
+  /// What the cloth was kept from because it would have passed through itself, in the last motion
+  /// of the step: where the step has converged, nothing.
+  MotionCut self_cut;
+  int contact_rounds = 0;  ///< linear solves among them that looked for what touches
   double assembly_seconds = 0;
   double solve_seconds = 0;
   double total_seconds = 0;

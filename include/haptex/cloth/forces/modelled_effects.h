@@ -32,6 +32,7 @@ struct ModelledEffects {
   bool contraction = false;                              ///< of the fabric, transverse
   std::optional<Air> air = std::nullopt;                 ///< drag and lift, of still air or wind
   bool contacts = false;                                 ///< of particles with bodies
+  bool self_collision = false;                           ///< of the cloth with itself
   bool point_loads = false;                              ///< forces on points of triangles
 };
 
@@ -43,7 +44,9 @@ struct ModelledEffects {
 ///   elasticity needs (findLatticeSprings(), or several panels of springs), bending, a hysteresis
 ///   or contraction is modelled and the fabric has none, contraction or hysteresis of stretch and
 ///   shear is modelled with another elasticity than Green-Lagrange, that of bending without bending
-///   or with bend springs, or as Bending, BendingFriction, MembraneFriction and Aerodynamics
+///   or with bend springs, collision of the cloth with itself is modelled and it has several
+///   panels or the fabric no compression or no friction, or as Bending, BendingFriction,
+///   MembraneFriction and Aerodynamics
 void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                      const ModelledEffects& effects, ForceSum& forces);
 

@@ -63,6 +63,7 @@ void randomSwing(const std::string&, Random& random, const Sink& sink);
 void randomAir(const std::string&, Random& random, const Sink& sink);
 void randomCurve(const std::string&, Random& random, const Sink& sink);
 void randomQueries(const std::string&, Random& random, const Sink& sink);
+void randomStack(const std::string&, Random& random, const Sink& sink);
 void randomPress(const std::string&, Random& random, const Sink& sink);
 void randomStick(const std::string&, Random& random, const Sink& sink);
 void randomIncline(const std::string&, Random& random, const Sink& sink);

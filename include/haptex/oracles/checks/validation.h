@@ -31,6 +31,10 @@ void validateCloth(const std::string& config_directory, const Sink& sink);
 /// Answers of proximity queries on deformed sheets against brute force and FCL: how many differ.
 void validateProximity(const std::string& config_directory, const Sink& sink);
 
+/// Contact of the cloth with itself: stacks of layers, friction, momentum, and intersections in
+/// every state of cloth that folds, heaps, twists and is pulled tight.
+void validateSelfCollision(const std::string& config_directory, const Sink& sink);
+
 /// Two fingertips on the wool sample, both layers in one loop without clocks: equilibrium, contact
 /// cases, friction, refinement, and what disturbs the feel. Takes minutes.
 void validateContact(const std::string& config_directory, const Sink& sink);

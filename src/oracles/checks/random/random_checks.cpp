@@ -31,6 +31,7 @@ const std::vector<RandomCheck>& randomChecks() {
       {"cloth", "swing", randomSwing},
       {"cloth", "air", randomAir},
       {"proximity", "queries", randomQueries},
+      {"self_collision", "stack", randomStack},
       {"contact", "press", randomPress},
       {"contact", "stick", randomStick},
       {"contact", "incline", randomIncline},

@@ -4,7 +4,7 @@
 #include "haptex/base/constants.h"
 #include "haptex/base/workload.h"
 #include "haptex/oracles/checks/random_checks.h"
-#include "haptex/oracles/experiments/obstacle_scenes.h"
+#include "haptex/oracles/scenes/obstacle_scenes.h"
 
 namespace haptex::oracles {
 

@@ -1,4 +1,4 @@
-#include "haptex/oracles/experiments/deformed_sheets.h"
+#include "haptex/oracles/scenes/deformed_sheets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "haptex/oracles/experiments/obstacle_scenes.h"
+#include "haptex/oracles/scenes/obstacle_scenes.h"
 
 #include <algorithm>
 #include <cmath>

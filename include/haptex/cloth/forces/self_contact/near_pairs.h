@@ -1,0 +1,58 @@
+// Pairs of elements of a cloth that are near each other, while it moves.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "haptex/proximity/kdop_hierarchy.h"
+#include "haptex/proximity/self_proximity.h"
+
+namespace haptex::cloth {
+
+/// Keeps the answer of proximity::SelfProximity as long as the particles have moved so little since
+/// that it still has all pairs that are asked for.
+///
+/// Allocates nothing once its buffers have had the size that they need.
+class NearPairs {
+ public:
+  struct Pair {
+    proximity::ElementPairKind kind;
+    int first, second;            ///< ElementPair
+    std::array<int, 4> vertices;  ///< proximity::verticesOf()
+  };
+
+  /// @param reference positions (m) of the particles in the flat fabric
+  /// @param distance  m, up to which pairs can be asked for, > 0. Looks for those up to searched().
+  NearPairs(const std::vector<std::array<int, 3>>& triangles,
+            const std::vector<Eigen::Vector3d>& reference, double distance);
+  NearPairs(const NearPairs&) = delete;
+  NearPairs& operator=(const NearPairs&) = delete;
+
+  /// Afterwards pairs() has all that are at most `distance` apart at these positions, but for
+  /// neighbours in the fabric.
+  /// @param positions m
+  /// @param distance  m, below searched()
+  /// @return false, and pairs() as before, if a position is not finite or beyond
+  ///   proximity::kMaxLength
+  bool find(const std::vector<Eigen::Vector3d>& positions, double distance);
+
+  /// By kind, first and second.
+  const std::vector<Pair>& pairs() const { return pairs_; }
+  /// Pairs that were at most 2 searched() apart in the reference: those that find() leaves out are
+  /// among them. None in a mesh whose altitudes are more.
+  const std::vector<Pair>& neighbours() const { return neighbours_; }
+
+  double searched() const { return self_.distance(); }  ///< m
+
+ private:
+  Pair named(const proximity::ElementPair& pair) const;
+
+  proximity::KdopHierarchy hierarchy_;
+  proximity::SelfProximity self_;
+  std::vector<proximity::NearPair> found_;
+  std::vector<Pair> pairs_, neighbours_;
+  std::vector<Eigen::Vector3d> searched_at_;  // m; empty before the first find()
+};
+
+}  // namespace haptex::cloth

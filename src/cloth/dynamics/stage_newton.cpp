@@ -1,0 +1,118 @@
+// The Newton iterations of a stage.
+#include <cmath>
+#include <utility>
+
+#include "haptex/cloth/dynamics/stage_solver.h"
+
+namespace haptex::cloth {
+
+/// @param potential incremental one of the result
+/// @param most_solves linear ones
+/// @param enough may be empty
+/// @return whether the result is enough
+bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double potential,
+                                int most_solves, const std::function<bool()>& enough,
+                                ClothState& result, StepReport& report) {
+  constexpr double kNearMinimum = 1e-2;  // relative residual from which the exact Hessian is tried
+  constexpr double kNearer = 0.1;        // of the residual where it was not positive definite
+  double reference = linearised_norm_;   // of a start without first solve, its own residual
+  double near = kNearMinimum * reference;
+  constexpr int kMostWhileCut = 20;  // iterations beyond, as long as the last one was cut
+  const int last_solve = report.newton_iterations + most_solves;
+  int beyond = 0;
+  prescribed_.setZero();  // the fixed particles have reached their places
+  bool converged = false, is_enough = false;
+  int solves = linearised_norm_ > 0.0 ? 1 : 0;  // of the stage
+  auto hessian = Hessian::kProjected;
+  while (true) {
+    assembleNewton(cloth, stage, result, hessian, report);
+    const double norm = touching() ? contacts_->residualNorm(rhs_) : rhs_.norm();
+    if (reference == 0.0) near = kNearMinimum * (reference = norm);
+    report.newton_residual = reference > 0.0 ? norm / reference : norm;
+    // No Hessian of a stage is less than the masses, so a step promises at most this.
+    const bool is_small = solves > 0 && isSmallError(norm / stage.a, norm * norm / least_mass_);
+    converged = norm <= settings_.newton_tolerance * reference || is_small;
+    if (converged) break;
+    if (report.newton_iterations >= last_solve &&
+        (report.self_cut.particles == 0 || beyond++ == kMostWhileCut)) {
+      break;
+    }
+    solution_.setZero();
+    ++solves;
+    const bool exact = hessian == Hessian::kExact;
+    const auto definiteness = exact ? linear::LinearSolver::Definiteness::kUnknown
+                                    : linear::LinearSolver::Definiteness::kPositive;
+    const bool solved = touching() ? solveTouching(result.velocities, report, definiteness)
+                                   : solveLinear(report, definiteness);
+    if (touching()) potential = incrementalPotential(cloth, stage, result);  // of this friction
+    const bool is_last = solved && isSmallError(norm / stage.a, decrease());
+    if (!exact) report.linear_converged = report.linear_converged && solved;
+    // Of the projected Hessian an inexact solution will do: the line search judges it.
+    const Descent descent =
+        solved || !exact ? searchLine(cloth, stage, result, potential, report) : Descent::kNone;
+    if (descent == Descent::kFound) {
+      const bool enters =
+          touching() && contacts_->enter(result.velocities, 2.0 * kContactPenetration);
+      is_enough = enough && !enters && enough();
+      if (is_enough) break;
+      converged = is_last && !enters && report.self_cut.particles == 0;
+      if (converged) break;
+      hessian = norm <= near ? Hessian::kExact : Hessian::kProjected;
+    } else if (descent == Descent::kNone && exact) {  // not positive definite here
+      hessian = Hessian::kProjected;
+      near = kNearer * norm;
+    } else {
+      converged = descent == Descent::kBelowRounding;
+      break;
+    }
+  }
+  report.newton_converged = report.newton_converged && converged;
+  return is_enough;
+}
+
+/// Of the incremental potential along the solution (J), to the first order: twice what a Newton
+/// step promises.
+double StageSolver::decrease() const {
+  return touching() ? contacts_->descent(solution_) : rhs_.cwiseProduct(solution_).sum();
+}
+
+/// What StepSettings::newton_error says. @param force N @param decrease decrease()
+bool StageSolver::isSmallError(double force, double decrease) const {
+  return force <= force_error_ && 0.5 * decrease <= energy_error_;
+}
+
+/// Moves the result along solution_ to a lower potential.
+StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& stage,
+                                             ClothState& result, double& potential,
+                                             StepReport& report) {
+  constexpr double kSufficientDecrease = 1e-4;
+  constexpr double kRounding = 1e-14;
+  constexpr int kMaxHalvings = 40;
+  const double descent = decrease();
+  const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
+  if (!(descent > 0.0)) return below_rounding ? Descent::kBelowRounding : Descent::kNone;
+  double step = 1.0;
+  for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
+    for (int i = 0; i < matrix_.size(); ++i) {
+      const Eigen::Vector3d change = step * solution_.col(i);
+      trial_.velocities[i] = result.velocities[i] + change;
+      trial_.positions[i] = result.positions[i] + stage.a * change;
+    }
+    const MotionCut cut = keepApart(cloth, stage, result.positions, trial_);
+    const double trial = incrementalPotential(cloth, stage, trial_);
+    // What was cut has not gone along the line: any decrease will do.
+    const double sufficient = cut.particles > 0 ? 0.0 : kSufficientDecrease * step * descent;
+    if (trial <= potential - sufficient || below_rounding) {
+      report.self_cut = cut;
+      std::swap(result.positions, trial_.positions);
+      std::swap(result.velocities, trial_.velocities);
+      potential = trial;
+      if (touching()) contacts_->shorten(step);
+      return below_rounding ? Descent::kBelowRounding : Descent::kFound;
+    }
+  }
+  if (touching()) contacts_->shorten(0.0);
+  return Descent::kNone;
+}
+
+}  // namespace haptex::cloth

@@ -1,0 +1,72 @@
+#include "haptex/cloth/forces/self_contact/near_pairs.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace haptex::cloth {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Shortest altitude of the triangles (m).
+double shortestAltitude(const std::vector<std::array<int, 3>>& triangles,
+                        const std::vector<Vector3d>& positions) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : triangles) {
+    const Vector3d ab = positions[b] - positions[a], ac = positions[c] - positions[a];
+    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    shortest = std::min(shortest, ab.cross(ac).norm() / longest);
+  }
+  return shortest;
+}
+
+/// As far as it costs little: below half of the altitudes a mesh has no neighbours to look at one
+/// by one (proximity::SelfProximity), and in layers pairs grow with the square of the distance.
+double distanceToSearch(double altitude, double distance) {
+  constexpr double kOfAltitude = 0.45, kLeast = 1.5, kMost = 3.0;
+  return std::clamp(kOfAltitude * altitude, kLeast * distance, kMost * distance);
+}
+
+}  // namespace
+
+NearPairs::NearPairs(const std::vector<std::array<int, 3>>& triangles,
+                     const std::vector<Vector3d>& reference, double distance)
+    : hierarchy_(triangles, reference),
+      self_(hierarchy_, reference,
+            distanceToSearch(shortestAltitude(triangles, reference), distance)) {
+  for (const proximity::ElementPair& pair : self_.neighbours()) {
+    neighbours_.push_back(named(pair));
+  }
+}
+
+bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
+  if (!searched_at_.empty()) {
+    const double most = 0.5 * (searched() - distance);
+    const auto is_near = [most](const Vector3d& a, const Vector3d& b) {
+      return (a - b).squaredNorm() <= most * most;
+    };
+    if (std::equal(positions.begin(), positions.end(), searched_at_.begin(), is_near)) return true;
+  }
+  const auto is_allowed = [](const Vector3d& place) {
+    return place.allFinite() && place.cwiseAbs().maxCoeff() <= proximity::kMaxLength;
+  };
+  if (!std::all_of(positions.begin(), positions.end(), is_allowed)) return false;
+  hierarchy_.refit(positions);
+  self_.find(found_);
+  searched_at_ = positions;
+  pairs_.clear();
+  for (const proximity::NearPair& pair : found_) pairs_.push_back(named(pair.elements));
+  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+    return std::tie(a.kind, a.first, a.second) < std::tie(b.kind, b.first, b.second);
+  });
+  return true;
+}
+
+NearPairs::Pair NearPairs::named(const proximity::ElementPair& pair) const {
+  return {pair.kind, pair.first, pair.second, verticesOf(pair, self_.elements())};
+}
+
+}  // namespace haptex::cloth

@@ -1,0 +1,209 @@
+#include "haptex/cloth/forces/self_contact/self_contact.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace haptex::cloth {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+double requireFriction(const material::Fabric& fabric) {
+  if (fabric.friction) return *fabric.friction;
+  throw std::invalid_argument("self_collision is modelled and fabric '" + fabric.name +
+                              "' has no friction: add the key friction");
+}
+
+/// Friction by slip, as a share of that of what slips, and by what it is the integral of.
+struct Smoothed {
+  double potential;  // m
+  double share;
+  double slope;   // 1/m
+  double secant;  // 1/m, share / slip
+};
+
+/// @param stick m, the slip from which on it is whole
+Smoothed smoothed(double slip, double stick) {
+  const double y = slip / stick;
+  if (y >= 1.0) return {slip - stick / 3.0, 1.0, 0.0, 1.0 / slip};
+  return {slip * y * (1.0 - y / 3.0), y * (2.0 - y), 2.0 * (1.0 - y) / stick, (2.0 - y) / stick};
+}
+
+template <typename Pair>
+Vector3d weightedSum(const Pair& pair, const std::vector<Vector3d>& vectors) {
+  Vector3d sum = Vector3d::Zero();
+  for (int i = 0; i < pair.count; ++i) sum += pair.weights[i] * vectors[pair.vertices[i]];
+  return sum;
+}
+
+Vector3d tangential(const Vector3d& vector, const Vector3d& normal) {
+  return vector - normal.dot(vector) * normal;
+}
+
+/// Adds weights_i weights_j block.
+template <typename Pair>
+void addBlocks(const Pair& pair, const Matrix3d& block, linear::SymmetricBlockMatrix& matrix) {
+  for (int i = 0; i < pair.count; ++i) {
+    matrix.diagonal(pair.vertices[i]) += pair.weights[i] * pair.weights[i] * block;
+    for (int j = 0; j < i; ++j) {
+      const double weight = pair.weights[i] * pair.weights[j];
+      if (weight != 0.0) matrix.addCoupling(pair.vertices[i], pair.vertices[j], weight * block);
+    }
+  }
+}
+
+/// Friction of a pair at velocities (N), on the weighted sum of its vertices.
+Vector3d frictionAt(const PairEnergy& pair, double coefficient, const Velocities& velocities) {
+  const Vector3d speed = tangential(weightedSum(pair, velocities), pair.normal);
+  return -coefficient * pair.force * smoothed(speed.norm(), SelfContact::kSlipSpeed).secant * speed;
+}
+
+}  // namespace
+
+SelfContact::SelfContact(const std::vector<std::array<int, 3>>& triangles,
+                         const std::vector<Vector3d>& reference, const material::Fabric& fabric)
+    : friction_(requireFriction(fabric)),
+      near_(triangles, reference, LayerLaw(fabric).thickness()),
+      energies_(triangles, reference, LayerLaw(fabric)) {}
+
+const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions) const {
+  if (positions == touching_at_) return touching_;
+  if (near_.find(positions, law().thickness())) {
+    energies_.find(positions, near_.pairs(), touching_);
+    touching_at_ = positions;
+  } else {
+    touching_.clear();
+    touching_at_.clear();
+  }
+  return touching_;
+}
+
+double SelfContact::energy(const ForceState& state) const {
+  double energy = 0.0;
+  for (const PairEnergy& pair : touching(state.positions)) energy += pair.energy;
+  return touching_at_.empty() ? std::numeric_limits<double>::quiet_NaN() : energy;
+}
+
+void SelfContact::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
+  for (const PairEnergy& pair : touching(state.positions)) {
+    const Vector3d friction =
+        pair.force > 0.0 ? frictionAt(pair, friction_, state.velocities) : Vector3d::Zero();
+    for (int i = 0; i < pair.count; ++i) {
+      forces[pair.vertices[i]] += pair.weights[i] * friction - pair.gradient(i);
+    }
+  }
+}
+
+void SelfContact::addJacobian(const ForceState& state, JacobianRows& rows) const {
+  constexpr double kWay = 1e-8, kSpeed = 1e-6;  // m, m/s
+  std::vector<int> moved;
+  for (const PairEnergy& pair : touching(state.positions)) {
+    moved.insert(moved.end(), pair.vertices.begin(), pair.vertices.begin() + pair.count);
+  }
+  std::sort(moved.begin(), moved.end());
+  moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+  Positions positions = state.positions;
+  Velocities velocities = state.velocities;
+  std::vector<Vector3d> above(positions.size()), below(positions.size());
+  const auto differentiate = [&](double& number, double change, std::vector<Matrix3d>& blocks,
+                                 int axis) {
+    const double middle = number;
+    const ForceState changed = {positions, velocities, state.time, state.memory};
+    std::fill(above.begin(), above.end(), Vector3d::Zero());
+    std::fill(below.begin(), below.end(), Vector3d::Zero());
+    number = middle + change;
+    addForces(changed, above);
+    number = middle - change;
+    addForces(changed, below);
+    number = middle;
+    for (int row : moved) blocks[row].col(axis) = (above[row] - below[row]) / (2.0 * change);
+  };
+  std::vector<Matrix3d> by_position(positions.size()), by_velocity(positions.size());
+  for (int column : moved) {
+    for (int axis = 0; axis < 3; ++axis) {
+      differentiate(positions[column][axis], kWay, by_position, axis);
+      differentiate(velocities[column][axis], kSpeed, by_velocity, axis);
+    }
+    for (int row : moved) {
+      if (by_position[row].isZero(0.0) && by_velocity[row].isZero(0.0)) continue;
+      rows.add(row, column, by_position[row], by_velocity[row]);
+    }
+  }
+}
+
+/// The energies' part of a linear system, about what has been reached.
+void SelfContact::addEnergies(const Positions& positions, double a,
+                              linear::SymmetricBlockMatrix& matrix,
+                              linear::BlockVector& rhs) const {
+  for (const PairEnergy& pair : touching(positions)) {
+    for (int i = 0; i < pair.count; ++i) rhs.col(pair.vertices[i]) -= a * pair.gradient(i);
+    if (pair.stiffness > 0.0) {
+      addBlocks(pair, a * a * pair.stiffness * pair.normal * pair.normal.transpose(), matrix);
+    }
+  }
+}
+
+void SelfContact::assembleLinearised(const ForceState& state, const StageTimes& times,
+                                     linear::SymmetricBlockMatrix& matrix,
+                                     linear::BlockVector& rhs) const {
+  addEnergies(state.positions, times.a, matrix, rhs);
+  for (const PairEnergy& pair : touching(state.positions)) {
+    const Vector3d velocity = weightedSum(pair, state.velocities);
+    Vector3d impulse =
+        -times.a * times.ahead * pair.stiffness * pair.normal.dot(velocity) * pair.normal;
+    if (pair.force > 0.0) {
+      const Vector3d speed = tangential(velocity, pair.normal);
+      const double damping =
+          times.a * friction_ * pair.force * smoothed(speed.norm(), kSlipSpeed).secant;
+      impulse -= damping * speed;
+      const Matrix3d across = Matrix3d::Identity() - pair.normal * pair.normal.transpose();
+      addBlocks(pair, damping * across, matrix);
+    }
+    for (int i = 0; i < pair.count; ++i) rhs.col(pair.vertices[i]) += pair.weights[i] * impulse;
+  }
+}
+
+void SelfContact::hold(const NewtonStart& start, Vector3d* /*held*/) const {
+  held_.clear();
+  for (const PairEnergy& pair : touching(start.at.positions)) {
+    if (!(pair.force > 0.0)) continue;
+    held_.push_back({pair.count, pair.vertices, pair.weights, pair.normal, friction_ * pair.force,
+                     weightedSum(pair, start.base)});
+  }
+}
+
+void SelfContact::assembleNewton(const ForceState& state, const Vector3d* /*held*/, double a,
+                                 Hessian /*hessian*/, linear::SymmetricBlockMatrix& matrix,
+                                 linear::BlockVector& rhs) const {
+  addEnergies(state.positions, a, matrix, rhs);
+  for (const HeldFriction& pair : held_) {
+    const Vector3d slip = tangential(weightedSum(pair, state.positions) - pair.start, pair.normal);
+    const double way = slip.norm();
+    const Smoothed friction = smoothed(way, kSlipSpeed * a);
+    for (int i = 0; i < pair.count; ++i) {
+      rhs.col(pair.vertices[i]) -= a * pair.most * friction.secant * pair.weights[i] * slip;
+    }
+    Matrix3d block =
+        friction.secant * (Matrix3d::Identity() - pair.normal * pair.normal.transpose());
+    if (way > 0.0) {
+      block += (friction.slope - friction.secant) / (way * way) * slip * slip.transpose();
+    }
+    addBlocks(pair, a * a * pair.most * block, matrix);
+  }
+}
+
+double SelfContact::incrementalPotential(const ForceState& state, const Vector3d* /*held*/,
+                                         double a) const {
+  double potential = energy(state);
+  for (const HeldFriction& pair : held_) {
+    const Vector3d slip = tangential(weightedSum(pair, state.positions) - pair.start, pair.normal);
+    potential += pair.most * smoothed(slip.norm(), kSlipSpeed * a).potential;
+  }
+  return potential;
+}
+
+}  // namespace haptex::cloth

@@ -1,0 +1,244 @@
+// Contact of a cloth with itself as a force: pressure, derivatives, momentum.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "derivatives.h"
+#include "haptex/cloth/dynamics/cloth.h"
+#include "self_contact_fixtures.h"
+
+namespace haptex::cloth::test_self_contact {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Of the contact alone.
+std::vector<Vector3d> contactForces(const Cloth& cloth, const ClothState& state) {
+  std::vector<Vector3d> forces(cloth.particleCount(), Vector3d::Zero());
+  cloth.selfContact()->addForces(state.ofForces(), forces);
+  return forces;
+}
+
+/// Expects forces to be the negative gradient of the energy.
+void expectGradient(const Cloth& cloth, ClothState state, double tolerance) {
+  const std::vector<Vector3d> forces = contactForces(cloth, state);
+  double scale = 0.0;
+  for (const Vector3d& force : forces) scale = std::max(scale, force.norm());
+  ASSERT_GT(scale, 0.0);
+  constexpr double kStep = 1e-8;  // m
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      double& number = state.positions[i][axis];
+      const double middle = number;
+      number = middle + kStep;
+      const double above = cloth.selfContact()->energy(state.ofForces());
+      number = middle - kStep;
+      const double below = cloth.selfContact()->energy(state.ofForces());
+      number = middle;
+      EXPECT_NEAR(forces[i][axis], (below - above) / (2.0 * kStep), tolerance * scale) << i;
+    }
+  }
+}
+
+TEST(LayerLaw, FollowsTheCompressionCurveAndDivergesWhereItEnds) {
+  const material::Fabric fabric = fabricNamed("wool");
+  const LayerLaw law(fabric);
+  EXPECT_EQ(law.at(law.thickness()).pressure, 0.0);
+  const double half_way = 0.5 * (law.thickness() + law.leastDistance());
+  const double strain = 1.0 - half_way / law.thickness();
+  EXPECT_NEAR(law.at(half_way).pressure, fabric.compression->pressure.evaluate(strain).stress,
+              1e-9 * law.at(half_way).pressure);
+  EXPECT_EQ(law.guardAt(law.leastDistance()).pressure, 0.0);
+  EXPECT_GT(law.at(1e-9).pressure, 1e3 * law.at(law.leastDistance()).pressure);
+}
+
+TEST(LayerLaw, PressureIsTheDerivativeOfItsEnergyAndSlopeThatOfThePressure) {
+  const LayerLaw law(fabricNamed("wool"));
+  constexpr double kStep = 1e-10;  // m
+  for (double share : {0.02, 0.3, 0.9, 1.1, 1.3}) {
+    const double d = share * law.leastDistance();
+    for (const bool guard : {false, true}) {
+      const auto at = [&](double distance) {
+        return guard ? law.guardAt(distance) : law.at(distance);
+      };
+      const LayerPressure above = at(d + kStep), below = at(d - kStep), middle = at(d);
+      EXPECT_NEAR(middle.pressure, (below.energy - above.energy) / (2.0 * kStep),
+                  1e-4 * middle.pressure);
+      EXPECT_NEAR(middle.slope, (below.pressure - above.pressure) / (2.0 * kStep),
+                  1e-3 * middle.slope);
+    }
+  }
+}
+
+TEST(SelfContact, FlatLayersHaveTheCurvesPressureOnTheirAreaHoweverTheyLie) {
+  const material::Fabric fabric = fabricNamed("wool");
+  const double side = 0.08;
+  const Cloth cloth(layers(2, side, 8), fabric, selfCollision());
+  ClothState state = cloth.initialState();
+  const double distance = 0.8 * fabric.compression->thickness;
+  const double pressure = LayerLaw(fabric).at(distance).pressure;
+  const std::size_t half = cloth.particleCount() / 2;
+  // Turned and shifted within the other layer, whose border has no other layer beyond it.
+  for (const double angle : {0.0, 0.3}) {
+    const double small = angle == 0.0 ? 1.0 : 0.5;
+    for (std::size_t i = 0; i < half; ++i) {
+      const Vector3d place = state.positions[i];
+      const double x = small * (place.x() - 0.5 * side), y = small * (place.y() - 0.5 * side);
+      state.positions[half + i] =
+          Vector3d(0.5 * side + x * std::cos(angle) - y * std::sin(angle),
+                   0.5 * side + x * std::sin(angle) + y * std::cos(angle), distance);
+    }
+    double up = 0.0, area = side * side;
+    const std::vector<Vector3d> forces = contactForces(cloth, state);
+    for (std::size_t i = half; i < forces.size(); ++i) up += forces[i].z();
+    if (angle == 0.0) {
+      EXPECT_NEAR(up, pressure * area, 1e-9 * up);
+    } else {
+      // The half of the shrunk layer's vertices counts its rest area; that of the other those
+      // vertices that it covers.
+      EXPECT_NEAR(up, 0.5 * pressure * area * (1.0 + small * small), 0.05 * up);
+    }
+  }
+}
+
+/// Two layers of which one is crumpled: places where all kinds of pairs touch.
+ClothState crumpled(const Cloth& cloth, double depth, unsigned seed) {
+  ClothState state = cloth.initialState();
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  const std::size_t half = cloth.particleCount() / 2;
+  const double thickness = cloth.selfContact()->law().thickness();
+  for (std::size_t i = 0; i < half; ++i) {
+    state.positions[i] += 1e-3 * Vector3d(any(random), any(random), any(random));
+    state.positions[half + i] =
+        state.positions[i] +
+        Vector3d(2e-3 * any(random), 2e-3 * any(random), depth * thickness + 1e-3);
+    state.positions[half + i].z() += 1e-3 * any(random);
+    state.velocities[i] = Vector3d(any(random), any(random), any(random)) * 1e-3;
+  }
+  return state;
+}
+
+TEST(SelfContact, ForcesAreTheGradientOfTheEnergyWhereverItTouches) {
+  const Cloth cloth(layers(2, 0.03, 4), fabricNamed("wool"), selfCollision());
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    ClothState state = crumpled(cloth, 0.1, seed);
+    for (Vector3d& velocity : state.velocities) velocity.setZero();
+    expectGradient(cloth, state, 2e-4);
+  }
+}
+
+TEST(SelfContact, ForcesSumUpToNothingAndTurnNothing) {
+  const Cloth cloth(layers(2, 0.03, 4), fabricNamed("wool"), selfCollision());
+  const ClothState state = crumpled(cloth, 0.1, 7);
+  Vector3d sum = Vector3d::Zero(), moment = Vector3d::Zero();
+  double scale = 0.0;
+  const std::vector<Vector3d> forces = contactForces(cloth, state);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    sum += forces[i];
+    moment += state.positions[i].cross(forces[i]);
+    scale += forces[i].norm();
+  }
+  EXPECT_LT(sum.norm(), 1e-13 * scale);
+  EXPECT_LT(moment.norm(), 1e-4 * scale * 0.03);  // friction acts at either surface
+}
+
+TEST(SelfContact, ForcesAreContinuousOnWaysAcrossARidgeAndAValley) {
+  // A vertex of the second layer over the edge between two triangles that are folded up or down.
+  const material::Fabric fabric = fabricNamed("wool");
+  const Cloth cloth(layers(2, 0.02, 2), fabric, selfCollision());
+  const double thickness = fabric.compression->thickness;
+  for (const double fold : {-0.3, 0.0, 0.3}) {
+    ClothState state = cloth.initialState();
+    const std::size_t half = cloth.particleCount() / 2;
+    for (std::size_t i = 0; i < half; ++i) {
+      state.positions[i].z() = fold * std::abs(state.positions[i].x() - 0.01);
+    }
+    Vector3d last = Vector3d::Zero();
+    double largest = 0.0, most = 0.0;
+    constexpr int kSteps = 4000;
+    for (int step = 0; step <= kSteps; ++step) {
+      // Only a corner of the second layer is near.
+      const double x = 0.008 + 0.004 * step / kSteps;
+      const Vector3d corner(x, 0.0113, 0.9 * thickness + fold * std::abs(x - 0.01));
+      for (std::size_t i = 0; i < half; ++i) {
+        const Eigen::Vector2d rest = cloth.mesh().rest_coordinates[i];
+        state.positions[half + i] =
+            corner + Vector3d(0.3 * rest.x(), 0.2 * rest.y(), 2.0 * rest.sum());
+      }
+      const Vector3d force = contactForces(cloth, state)[half];
+      if (step > 0) largest = std::max(largest, (force - last).norm());
+      most = std::max(most, force.norm());
+      last = force;
+    }
+    ASSERT_GT(most, 0.0);
+    EXPECT_LT(largest, 0.02 * most) << fold;
+  }
+}
+
+TEST(SelfContact, WhatSlipsHasTheFabricsFrictionAndWhatCreepsLess) {
+  const material::Fabric fabric = fabricNamed("wool");
+  const Cloth cloth(layers(2, 0.04, 4), fabric, selfCollision());
+  ClothState state = cloth.initialState();
+  const std::size_t half = cloth.particleCount() / 2;
+  for (const double speed : {10.0, 1.0, 0.5, 0.1}) {  // of the slip speed
+    for (std::size_t i = 0; i < half; ++i) {
+      state.positions[half + i] =
+          state.positions[i] + Vector3d(0.0, 0.0, 0.9 * fabric.compression->thickness);
+      state.velocities[half + i].x() = speed * SelfContact::kSlipSpeed;
+    }
+    Vector3d sum = Vector3d::Zero();
+    const std::vector<Vector3d> forces = contactForces(cloth, state);
+    for (std::size_t i = half; i < forces.size(); ++i) sum += forces[i];
+    const double share = speed < 1.0 ? speed * (2.0 - speed) : 1.0;
+    EXPECT_NEAR(-sum.x(), share * *fabric.friction * sum.z(), 1e-9 * sum.z());
+    EXPECT_NEAR(sum.y(), 0.0, 1e-12 * sum.z());
+  }
+}
+
+TEST(SelfContact, JacobianIsThatOfTheForces) {
+  const Cloth cloth(layers(2, 0.03, 3), fabricNamed("wool"), selfCollision());
+  ClothState state = crumpled(cloth, 0.4, 3);
+  for (Vector3d& velocity : state.velocities) velocity.setZero();
+  std::vector<int> all(cloth.particleCount());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  JacobianRows rows(all);
+  cloth.selfContact()->addJacobian(state.ofForces(), rows);
+  const std::vector<JacobianBlock> blocks = rows.blocks();
+  ASSERT_FALSE(blocks.empty());
+  double stiffest = 0.0;
+  for (const JacobianBlock& block : blocks) stiffest = std::max(stiffest, block.by_position.norm());
+  const auto transposed = [&](const JacobianBlock& block) {
+    for (const JacobianBlock& other : blocks) {
+      if (other.row == block.column && other.column == block.row) return other.by_position;
+    }
+    return Eigen::Matrix3d(Eigen::Matrix3d::Zero());
+  };
+  for (const JacobianBlock& block : blocks) {
+    EXPECT_LT((block.by_position - transposed(block).transpose()).norm(), 1e-5 * stiffest);
+  }
+}
+
+TEST(SelfContact, RefusesWhatItCannotDo) {
+  material::Fabric fabric = fabricNamed("wool");
+  fabric.compression.reset();
+  EXPECT_THROW(Cloth(layers(1, 0.03, 2), fabric, selfCollision()), std::invalid_argument);
+  fabric = fabricNamed("wool");
+  fabric.friction.reset();
+  EXPECT_THROW(Cloth(layers(1, 0.03, 2), fabric, selfCollision()), std::invalid_argument);
+  mesh::ClothMesh crossing = layers(2, 0.03, 2);
+  for (std::size_t i = 9; i < 18; ++i) {
+    crossing.initial_positions[i] = {crossing.initial_positions[i].x(), 0.0131,
+                                     crossing.initial_positions[i].y() - 0.0153};
+  }
+  try {
+    Cloth(crossing, fabricNamed("wool"), selfCollision());
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("pairs of triangles intersect"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace haptex::cloth::test_self_contact
