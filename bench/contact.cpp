@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "haptex/material/fabric_file.h"
-#include "haptex/oracles/scenes/contact_scenes.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 #include "tab_lines.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "haptex/base/quantity.h"
-#include "haptex/oracles/scenes/contact_scenes.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 #include "haptex/studies/extreme_cloth.h"
 
 namespace haptex::studies {

@@ -2,7 +2,7 @@
 
 #include "haptex/base/constants.h"
 #include "haptex/material/fabric_file.h"
-#include "haptex/oracles/scenes/contact_scenes.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 
 namespace haptex::oracles::test_contact_scenes {
 namespace {

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "haptex/oracles/checks/contact_oracles.h"
-#include "haptex/oracles/scenes/contact_scenes.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 
 namespace haptex::oracles {
 namespace {

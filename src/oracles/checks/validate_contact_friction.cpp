@@ -4,7 +4,7 @@
 #include "haptex/oracles/checks/contact_oracles.h"
 #include "haptex/oracles/exact/flat_contact.h"
 #include "haptex/oracles/exact/pinched_sheet.h"
-#include "haptex/oracles/scenes/contact_scenes.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 
 namespace haptex::oracles {
 namespace {

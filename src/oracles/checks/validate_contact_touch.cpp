@@ -3,7 +3,7 @@
 
 #include "haptex/oracles/checks/contact_oracles.h"
 #include "haptex/oracles/exact/pinched_sheet.h"
-#include "haptex/oracles/scenes/contact_scenes.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 
 namespace haptex::oracles {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "haptex/oracles/scenes/contact_scenes.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 
 namespace haptex::oracles {
 

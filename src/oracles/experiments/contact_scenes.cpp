@@ -1,4 +1,4 @@
-#include "haptex/oracles/scenes/contact_scenes.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 
 #include <cmath>
 #include <numeric>
