@@ -185,8 +185,8 @@ int main(int argc, char** argv) {
   bench::add("self_collision/step", kMinTime, [&](benchmark::State& run) {
     for (auto _ : run) hanging.step();
   });
-  const char* const kCrumpled[] = {"crumpled_1", "crumpled_to_a_ball", "folded_twice"};
-  for (const char* state : kCrumpled) {
+  const char* const crumpled[] = {"crumpled_1", "crumpled_to_a_ball", "folded_twice"};
+  for (const char* state : crumpled) {
     addFind(std::string("self_collision/") + state, large,
             oracles::deformedSheet(large.mesh, state));
   }
@@ -206,7 +206,7 @@ int main(int argc, char** argv) {
   printScenes();
   printContinuous();
   printCost("flat", small, at_rest);
-  for (const char* state : kCrumpled) {
+  for (const char* state : crumpled) {
     printCost(state, large, oracles::deformedSheet(large.mesh, state));
   }
   return 0;

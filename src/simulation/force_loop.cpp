@@ -5,7 +5,6 @@
 namespace haptex::simulation {
 namespace {
 
-using base::Finger;
 using base::kFingers;
 using base::Time;
 

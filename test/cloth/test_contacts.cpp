@@ -106,7 +106,7 @@ TEST_P(ImplicitContacts, PushButNeverPullAndAreNeverPassed) {
     Integrator integrator(cloth, settings(newton_iterations));
     const ClothState start = state;
     for (int step = 0; step < 30; ++step) {
-      constexpr double h = 0.005;
+      const double h = 0.005;
       std::vector<ParticleContact> contacts;
       for (const int particle : {0, 3, 14}) {
         const Vector3d normal = particle == 14 ? Vector3d(0, 0, -1) : Vector3d(0, 0, 1);
@@ -138,7 +138,8 @@ TEST_P(ImplicitContacts, PushButNeverPullAndAreNeverPassed) {
 
 // Coulomb's law of a whole sheet on a level plane, drawn sideways by a force on every particle.
 TEST_P(ImplicitContacts, StickBelowTheLimitAndSlipAsFastAsMechanicsSaysAboveIt) {
-  constexpr double kFriction = 0.4, h = 0.01, g = 9.81;
+  constexpr double kFriction = 0.4;
+  const double h = 0.01, g = 9.81;
   for (const double pull : {0.3, 0.6}) {  // of the weight
     Cloth cloth(square(3), linearFabric(0.1), withContacts({pull * g, 0.0, 0.0}));
     ClothState state = cloth.initialState();  // in the plane x = 0
@@ -168,7 +169,7 @@ TEST_P(ImplicitContacts, StickBelowTheLimitAndSlipAsFastAsMechanicsSaysAboveIt) 
 
 // The particle's place is that of the body in every stage, so it is exactly there at the end.
 TEST_P(ImplicitContacts, CarryWhatSticksWithTheBody) {
-  constexpr double h = 0.01;
+  const double h = 0.01;
   const Vector3d velocity(0.0, 0.2, 0.1);
   Cloth cloth(square(2), linearFabric(), withContacts({0.0, 0.0, -9.81}));
   ClothState state = cloth.initialState();

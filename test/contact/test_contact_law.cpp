@@ -27,10 +27,10 @@ Fabric fabricWith(const Compression& compression) {
 Compression softCompression() { return material::compressionFromKes({0.7e-3, 0.45e-3, 0.2}); }
 
 template <typename F>
-double bisect(double low, double high, F isTooLarge) {
+double bisect(double low, double high, F is_too_large) {
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (low + high);
-    (isTooLarge(middle) ? high : low) = middle;
+    (is_too_large(middle) ? high : low) = middle;
   }
   return 0.5 * (low + high);
 }

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -12,8 +11,6 @@
 
 namespace haptex::contact::test_obstacles {
 namespace {
-
-namespace fs = std::filesystem;
 
 const std::string kScene = HAPTEX_CONFIG_DIRECTORY "/scenes/wool_among_obstacles.yaml";
 

@@ -10,7 +10,6 @@ namespace {
 
 using oracles::findPinch;
 using oracles::Meeting;
-using oracles::Pinch;
 
 constexpr double kDegrees = M_PI / 180.0;
 

@@ -33,7 +33,7 @@ void expectRefused(const std::function<void(SimulatedCloth&)>& request,
 }
 
 TEST(SimulatedCloth, RefusesParticlesThatAreNotThereOrNamedTwice) {
-  const auto attach = [](std::vector<std::uint32_t> particles) {
+  const auto attach = [](const std::vector<std::uint32_t>& particles) {
     return [particles](SimulatedCloth& simulation) { simulation.attach(particles); };
   };
   expectRefused(attach({}), "particles is empty");
@@ -44,7 +44,7 @@ TEST(SimulatedCloth, RefusesParticlesThatAreNotThereOrNamedTwice) {
 }
 
 TEST(SimulatedCloth, RefusesPlacesThatAreNotFiniteNotForEachOrTooFar) {
-  const auto attach = [](std::vector<Eigen::Vector3d> places) {
+  const auto attach = [](const std::vector<Eigen::Vector3d>& places) {
     return [places](SimulatedCloth& simulation) { simulation.attach({0, 1}, places); };
   };
   expectRefused(attach({Eigen::Vector3d::Zero()}), "positions has 1 elements and particles 2");
@@ -54,7 +54,8 @@ TEST(SimulatedCloth, RefusesPlacesThatAreNotFiniteNotForEachOrTooFar) {
 }
 
 TEST(SimulatedCloth, RefusesMovesItCannotMake) {
-  const auto move = [](std::vector<std::uint32_t> particles, Eigen::Vector3d by, double duration) {
+  const auto move = [](const std::vector<std::uint32_t>& particles, const Eigen::Vector3d& by,
+                       double duration) {
     return [=](SimulatedCloth& simulation) { simulation.move(particles, by, duration); };
   };
   expectRefused(move({kSmallTop, 0}, {0, 0, 0.1}, 1), "particles[1] = 0 is not attached");

@@ -81,7 +81,7 @@ TEST(AmplitudeMap, IsOneWithoutValuesAndWithoutAPlace) {
 void expectRefusal(int columns, int rows, std::vector<PerChannel<double>> values,
                    const std::string& complaint) {
   try {
-    AmplitudeMap(columns, rows, std::move(values));
+    const AmplitudeMap map(columns, rows, std::move(values));
     ADD_FAILURE() << "not refused: " << complaint;
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find(complaint), std::string::npos) << error.what();

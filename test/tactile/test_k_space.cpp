@@ -145,7 +145,10 @@ TEST(KSpaceOfPiece, FindsAWaveThatDoesNotFitThePiece) {
 TEST(KSpaceOfPiece, OfAPlaneIsEmptyButForRounding) {
   EXPECT_EQ(kSpaceOfPiece(flatField(8, 9)).size(), 0u);
   HeightField field = flatField(8, 9);
-  for (int i = 0; i < 72; ++i) field.heights[i] = 1e-5 * (i % 8) + 2e-5 * (i / 8);
+  for (int i = 0; i < 72; ++i) {
+    const int row = i / 8;
+    field.heights[i] = 1e-5 * (i % 8) + 2e-5 * row;
+  }
   EXPECT_LT(kSpaceOfPiece(field).totalPower(), 1e-30 * variance(field) * 1e4);
 }
 

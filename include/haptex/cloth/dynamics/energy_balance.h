@@ -21,9 +21,8 @@ class EnergyBalance {
   /// Steps whose losses a later one may gain.
   static constexpr int kRemembered = 10;
 
-  /// @param rates_from_strains for the work of attachments, of the strains at both ends of the
-  /// step,
-  ///   as the method takes them; if not, they are those of the velocities
+  /// @param rates_from_strains the method takes rates of strain from strains, not from velocities,
+  ///   and so does the work of attachments
   explicit EnergyBalance(const Cloth& cloth, bool rates_from_strains = false);
 
   /// Before the step. What was lost before is forgotten unless the step goes on from the state of
