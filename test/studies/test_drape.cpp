@@ -5,6 +5,7 @@
 #include <string>
 
 #include "haptex/base/constants.h"
+#include "haptex/base/workload.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/studies/drape.h"
 #include "haptex/studies/drape_shadow.h"
@@ -18,7 +19,7 @@ material::Fabric wool() {
 
 DrapeTest coarse() {
   DrapeTest test;
-  test.rings = 11;
+  test.rings = base::unlessSanitized(11, 8);
   return test;
 }
 

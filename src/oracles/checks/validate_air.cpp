@@ -13,7 +13,6 @@ using cloth::Cloth;
 using cloth::ClothState;
 using Eigen::Vector3d;
 
-constexpr double kRounding = 1e-12;
 constexpr double kTerminalTolerance = 1e-3;
 constexpr double kStripTolerance = 0.01;
 constexpr double kMotionTolerance = 1e-10;  // of linear systems

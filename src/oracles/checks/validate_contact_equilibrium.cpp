@@ -16,7 +16,6 @@ constexpr double kSettledTolerance = 1e-3;
 
 constexpr double kPinchHeight = -0.19;  // m: 10 mm above the lower edge
 constexpr double kOpen = 4e-3;          // m, gap in which nothing touches
-const Vector3d kStill = Vector3d::Zero();
 
 /// The bar lets go; the sample falls over, swings, and hangs from the fingertips when it rests.
 void validateWeight(const material::Fabric& fabric, double rate, const Sink& sink) {

@@ -17,8 +17,6 @@ constexpr double kRippleTolerance = 0.01;  // N, RMS
 constexpr double kStepTolerance = 0.02;    // N
 constexpr double kWholeClothTolerance = 0.02;
 
-const Vector3d kStill = Vector3d::Zero();
-
 std::string hertz(double rate) { return std::to_string(std::lround(rate)) + "Hz"; }
 
 /// Pinch between bar and fingertips, held: RMS of each fingertip's force about its mean.

@@ -17,8 +17,6 @@ using Eigen::Vector3d;
 constexpr double kFrictionTolerance = 0.02;
 constexpr double kDriftTolerance = 1e-6;  // m
 
-const Vector3d kStill = Vector3d::Zero();
-
 /// Both fingertips pinch a taut sample and are drawn over it to and fro: when all slips, the force
 /// along the way is the coefficient of friction times the normal force.
 void validateSlip(const material::Fabric& fabric, const Sink& sink) {

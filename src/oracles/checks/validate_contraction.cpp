@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using material::Fabric;
 
-constexpr double kStripTolerance = 1e-6;
+constexpr double kContractionTolerance = 1e-6;
 
 void validateFreeStrip(const Fabric& fabric, kes::Direction direction, double strain,
                        const Sink& sink) {
@@ -24,10 +24,10 @@ void validateFreeStrip(const Fabric& fabric, kes::Direction direction, double st
                            (direction == kes::Direction::kWeft ? "/weft/" : "/warp/") +
                            std::to_string(strain).substr(0, 5);
   sink(base::relativeTo(1.0 + exact.strain, name + "/stretch", 1.0 + exact.strain,
-                        1.0 + measured.strain, kStripTolerance));
+                        1.0 + measured.strain, kContractionTolerance));
   sink(base::relativeTo(1.0 + exact.transverse_strain, name + "/transverse_stretch",
                         1.0 + exact.transverse_strain, 1.0 + measured.transverse_strain,
-                        kStripTolerance));
+                        kContractionTolerance));
 }
 
 /// A square between jaws that hold its ends, 2500 elements: force per width (N/m) and how much of

@@ -36,14 +36,14 @@ constexpr int kSteps = 11;           // of the grid in each driven joint, from l
 constexpr double kMotorStep = 1e-3;  // rad, for differences: truncation and rounding below 1e-9
 constexpr double kDegree = M_PI / 180.0;
 constexpr int kForcePoses = base::unlessSanitized(24, 2);
-constexpr double kOpen = 1.5;              // s, of config/paths/pinch.yaml: open around the sample
-constexpr double kHold = 1.6;              // N, felt in the demo's pinch
-constexpr double kHoldStiffness = 800;     // N/m, of a fingertip in wool that is held with it
-constexpr double kDeathForce = 3.0;        // N
-constexpr double kKnownDeath = 10.0;       // ms, of a death that the other end of a connection sees
-constexpr double kSilentDeath = 20.0;      // ms, of one that is seen by silence only
-constexpr double kForceLeft = 0.1;         // N, more than without motors
-constexpr double kForceTolerance = 0.005;  // N, the resolution of the HAPTEX exoskeleton
+constexpr double kOpenFor = 1.5;        // s, of config/paths/pinch.yaml: open around the sample
+constexpr double kHold = 1.6;           // N, felt in the demo's pinch
+constexpr double kHoldStiffness = 800;  // N/m, of a fingertip in wool that is held with it
+constexpr double kDeathForce = 3.0;     // N
+constexpr double kKnownDeath = 10.0;    // ms, of a death that the other end of a connection sees
+constexpr double kSilentDeath = 20.0;   // ms, of one that is seen by silence only
+constexpr double kForceLeft = 0.1;      // N, more than without motors
+constexpr double kForceResolution = 0.005;  // N, the resolution of the HAPTEX exoskeleton
 
 void forEachConfiguration(const FingerKinematics& finger,
                           const std::function<void(const JointVector&)>& visit) {
@@ -188,11 +188,11 @@ void validateForces(const std::string& urdf, const Sink& sink) {
     for (const double force : forces) {
       std::ostringstream name;
       name << "exoskeleton/" << base::name(finger) << "/static_force_" << force << "_N";
-      base::Quantity worst{name.str(), force, force, -1.0, kForceTolerance};
+      base::Quantity worst{name.str(), force, force, -1.0, kForceResolution};
       for (const StaticForce& one : all) {
         if (one.finger != finger || std::abs(one.commanded.norm() - force) > 1e-9) continue;
         base::keepWorse(worst,
-                        {name.str(), force, one.measured.norm(), one.error(), kForceTolerance});
+                        {name.str(), force, one.measured.norm(), one.error(), kForceResolution});
       }
       if (worst.error < 0.0) throw std::logic_error(name.str() + ": no pose");
       sink(worst);
@@ -250,7 +250,7 @@ void validateExoskeleton(const std::string& config_directory, const Sink& sink) 
   validatePinch(urdf, sink);
   validateForces(urdf, sink);
   const base::PerFinger<Vector3d> open =
-      exoskeleton::loadHandPath(config_directory + "/paths/pinch.yaml").at(kOpen).fingertips;
+      exoskeleton::loadHandPath(config_directory + "/paths/pinch.yaml").at(kOpenFor).fingertips;
   validateStalls(urdf, open, sink);
   validateDeaths(urdf, open, sink);
 }

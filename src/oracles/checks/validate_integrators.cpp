@@ -1,6 +1,7 @@
 // The oracles of the integrators of the cloth room.
 #include <cmath>
 
+#include "haptex/base/workload.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/oracles/checks/cloth_oracles.h"
 #include "haptex/oracles/exact/amplification.h"
@@ -14,8 +15,8 @@ namespace {
 using cloth::IntegrationMethod;
 using cloth::StepSettings;
 
-constexpr double kTimeStep = 0.0125;               // s
-constexpr double kPhase = 2.0 * M_PI * kTimeStep;  // of a 1 Hz oscillator per step
+constexpr double kSwingStep = 0.0125;               // s
+constexpr double kPhase = 2.0 * M_PI * kSwingStep;  // of a 1 Hz oscillator per step
 constexpr int kStepsPerPeriod = 80;
 constexpr double kOrderTolerance = 0.1;    // what terms of higher order still add
 constexpr double kEnergyTolerance = 2e-4;  // the two-step Euler ends a little out of phase
@@ -79,7 +80,7 @@ void validateOrders(const Sink& sink) {
 double lossPerPeriod(const ClothSwing& swing, const StepSettings& settings) {
   constexpr int kPeriods = 4;
   const ClothSwing::Motion motion =
-      swing.swing(settings, kPeriods * kStepsPerPeriod * kTimeStep, kPeriods * kStepsPerPeriod);
+      swing.swing(settings, kPeriods * kStepsPerPeriod * kSwingStep, kPeriods * kStepsPerPeriod);
   if (!motion.accepted) return std::nan("");
   return 1.0 - std::pow(motion.energies.back() / motion.energies.front(), 1.0 / kPeriods);
 }
@@ -89,7 +90,7 @@ double lossPerPeriod(const ClothSwing& swing, const StepSettings& settings) {
 /// quarter of a second.
 void validateSampleSwing(const material::Fabric& fabric, const Sink& sink) {
   constexpr double kAngle = 0.5;  // rad
-  constexpr int kCells = 32, kCoarse = 16;
+  constexpr int kCells = base::unlessSanitized(32, 12), kCoarse = base::unlessSanitized(16, 6);
   constexpr double kOrderBound = 0.2, kMostLost = 0.03;
   const SampleSwing sample(fabric, kCells, kAngle), coarse(fabric, kCoarse, kAngle);
   for (const IntegrationMethod method : {IntegrationMethod::kBdf2, IntegrationMethod::kTrBdf2}) {
@@ -117,7 +118,7 @@ void validateIntegrators(const material::Fabric& linear, const material::Fabric&
     const double exact = std::pow(growthPerStep(named.method, kPhase), 2 * kStepsPerPeriod);
     sink(base::relativeTo(
         1.0, name + "/oscillator_energy", exact,
-        simulatedOscillatorEnergy(settingsOf(named.method, 1), kPhase, kTimeStep, kStepsPerPeriod),
+        simulatedOscillatorEnergy(settingsOf(named.method, 1), kPhase, kSwingStep, kStepsPerPeriod),
         kEnergyTolerance));
     if (!isImplicit(named.method) || orderOf(named.method) < 2) continue;
     const auto sink_loss = [&](const std::string& of, const ClothSwing& swing, int solves) {

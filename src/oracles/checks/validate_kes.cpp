@@ -12,7 +12,7 @@ constexpr double kCurveTolerance = 1e-6;  // of the largest value of the curve
 constexpr double kRigidityTolerance = 0.02;
 constexpr double kParameterTolerance = 1e-3;  // Simpson's rule over as few readings as testers take
 constexpr double kHysteresisTolerance = 0.02;
-constexpr double kThicknessTolerance = 1e-4;  // the contact law's table
+constexpr double kTableTolerance = 1e-4;  // the contact law's table
 
 /// The point of each curve that is missed by most.
 void sinkCurves(const std::string& fabric, const kes::KesResult& result, const Sink& sink) {
@@ -84,7 +84,7 @@ void validateKes(const material::Fabric& fabric, const material::Fabric& anisotr
   for (const material::Fabric* fabric : {&wool, &anisotropic}) {
     sinkParameters(fabric->name, kes::kesBending(*fabric), kRigidityTolerance, sink);
   }
-  sinkParameters(wool.name, kes::kesCompression(wool), kThicknessTolerance, sink);
+  sinkParameters(wool.name, kes::kesCompression(wool), kTableTolerance, sink);
 }
 
 }  // namespace haptex::oracles

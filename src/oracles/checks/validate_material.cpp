@@ -14,8 +14,6 @@ using material::CurvePoint;
 using material::Fabric;
 using material::StrainStressCurve;
 
-constexpr double kRounding = 1e-12;
-
 void validateConversions(const Sink& sink) {
   double back_and_forth = 0.0;
   for (int percent = -90; percent < 200; ++percent) {

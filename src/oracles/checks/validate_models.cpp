@@ -17,8 +17,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using material::Fabric;
 
-constexpr double kRounding = 1e-12;
-constexpr double kForceTolerance = 1e-6;  // of the largest force of a test
+constexpr double kModelTolerance = 1e-6;  // of the largest force of a test
 
 Cloth clothOf(const mesh::ClothMesh& mesh, const Fabric& fabric, Elasticity elasticity,
               bool bending) {
@@ -116,7 +115,7 @@ void validateCorotationalTension(const Fabric& fabric, double weft_strain, doubl
                             "cloth/corotational/tensile/" + fabric.name +
                                 (weft ? "/weft/" : "/warp/") + numbered(reading.strain),
                             kes::kSampleWidth * modulus * reading.strain, reading.force,
-                            kForceTolerance));
+                            kModelTolerance));
     }
   }
 }

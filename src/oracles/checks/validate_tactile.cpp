@@ -17,8 +17,6 @@ using tactile::HeightField;
 using tactile::PerChannel;
 using tactile::Stroke;
 
-constexpr double kRounding = kTactileRounding;
-
 /// Sinusoidal gratings over all speeds and angles: what is felt lies at |v| cos(angle)/L, and goes
 /// through the filters.
 void validateGratings(const Sink& sink) {
@@ -31,7 +29,7 @@ void validateGratings(const Sink& sink) {
     const std::string name =
         "tactile/grating/" + std::to_string(std::lround(1e6 / per_length.norm())) + "um";
     BothChannels worst(name);
-    base::Quantity elsewhere{name + "/power_off_v_over_L", 0.0, 0.0, -1.0, kRounding};
+    base::Quantity elsewhere{name + "/power_off_v_over_L", 0.0, 0.0, -1.0, kTactileRounding};
     for (int mm = 1; mm <= 300; ++mm) {
       for (int degrees = 0; degrees <= 180; degrees += 3) {
         const Stroke stroke{1e-3 * mm * direction(degrees), kStandardForce};
@@ -47,7 +45,7 @@ void validateGratings(const Sink& sink) {
         if (std::abs(line.frequency - at) > 1e-9 * at) off += line.power;
       }
       base::keepWorse(elsewhere, base::relativeTo(0.5 * kAmplitude * kAmplitude, elsewhere.name,
-                                                  0.0, off, kRounding));
+                                                  0.0, off, kTactileRounding));
     }
     sink(elsewhere);
     worst.handTo(sink);
@@ -99,7 +97,7 @@ void validateParseval(const Sink& sink) {
     const HeightField field = whiteNoise(columns, rows);
     sink(base::relativeTo(
         variance(field), "tactile/parseval/" + std::to_string(columns) + "x" + std::to_string(rows),
-        variance(field), tactile::kSpaceOfPeriodic(field).totalPower(), kRounding));
+        variance(field), tactile::kSpaceOfPeriodic(field).totalPower(), kTactileRounding));
   }
 }
 

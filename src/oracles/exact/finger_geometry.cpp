@@ -9,7 +9,7 @@
 namespace haptex::oracles {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+constexpr double kRadians = M_PI / 180.0;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Anthropometry anthropometry(Finger finger) {
     return {{0.034, 0.022, -0.014}, Vector3d::Zero(), {0.0398, 0.0224, 0.0121}, 2.0 / 3.0, 0.0};
   }
   return {
-      {-0.012, 0.038, -0.032}, {3.1, 1.0, -0.22}, {0.0462, 0.0316, 0.0184}, 1.0, -20.0 * kDegree};
+      {-0.012, 0.038, -0.032}, {3.1, 1.0, -0.22}, {0.0462, 0.0316, 0.0184}, 1.0, -20.0 * kRadians};
 }
 
 Vector3d planarTip(const Anthropometry& finger, const JointVector& angles) {

@@ -1,10 +1,14 @@
 // The parts of validateContact(), by what they look at.
 #pragma once
 
+#include <Eigen/Core>
+
 #include "haptex/material/fabric.h"
 #include "haptex/oracles/checks/validation.h"
 
 namespace haptex::oracles {
+
+inline const Eigen::Vector3d kStill = Eigen::Vector3d::Zero();  ///< for move(): no way
 
 /// The sample hangs from the fingertips, and is stretched between them and the bar.
 void validateContactEquilibrium(const material::Fabric& fabric, const Sink& sink);

@@ -12,6 +12,8 @@ namespace haptex::oracles {
 
 using Sink = std::function<void(const base::Quantity&)>;
 
+constexpr double kRounding = 1e-12;  ///< relative error of a few operations
+
 /// A room and its oracles, which read fabrics from a configuration directory (config/ of the
 /// package, beside which urdf/ lies) and hand each quantity to the sink as soon as it is known.
 struct Validation {
