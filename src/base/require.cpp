@@ -1,15 +1,12 @@
 #include "haptex/base/require.h"
 
 #include <sstream>
-#include <stdexcept>
 
 namespace haptex::base {
 
 void require(bool holds, const char* where, const char* name, double value,
              const std::string& allowed) {
-  if (holds) return;
-  throw std::invalid_argument(std::string(where) + ": " + name + " is " + shortNumber(value) +
-                              "; it must be " + allowed);
+  if (!holds) refuse(where, ": ", name, " is ", shortNumber(value), "; it must be ", allowed);
 }
 
 std::string shortNumber(double value) {

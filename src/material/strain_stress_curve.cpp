@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 #include <string>
+
+#include "haptex/base/require.h"
 
 namespace haptex::material {
 namespace {
 
 using Cubic = std::array<double, 4>;
-
-template <typename... Parts>
-[[noreturn]] void refuse(const Parts&... parts) {
-  std::ostringstream message;
-  message.precision(12);
-  (message << ... << parts);
-  throw std::invalid_argument(message.str());
-}
 
 bool allFinite(const Cubic& cubic) {
   return std::all_of(cubic.begin(), cubic.end(), [](double c) { return std::isfinite(c); });
@@ -28,24 +20,25 @@ double value(const Cubic& c, double x) { return c[0] + x * (c[1] + x * (c[2] + x
 double slope(const Cubic& c, double x) { return c[1] + x * (2.0 * c[2] + x * 3.0 * c[3]); }
 
 void requireKnots(const std::vector<double>& knots) {
-  if (knots.size() < 2) refuse("knots: has ", knots.size(), " numbers, must have at least 2");
+  if (knots.size() < 2) base::refuse("knots: has ", knots.size(), " numbers, must have at least 2");
   for (std::size_t i = 0; i < knots.size(); ++i) {
-    if (!std::isfinite(knots[i])) refuse("knots[", i, "]: ", knots[i], " is not finite");
+    if (!std::isfinite(knots[i])) base::refuse("knots[", i, "]: ", knots[i], " is not finite");
     if (i > 0 && knots[i] <= knots[i - 1]) {
-      refuse("knots[", i, "]: ", knots[i], " must be greater than the one before, ", knots[i - 1]);
+      base::refuse("knots[", i, "]: ", knots[i], " must be greater than the one before, ",
+                   knots[i - 1]);
     }
   }
 }
 
 void requireCoefficients(const std::vector<Cubic>& coefficients, std::size_t intervals) {
   if (coefficients.size() != intervals) {
-    refuse("coefficients: has ", coefficients.size(),
-           " rows, must have one per interval: ", intervals);
+    base::refuse("coefficients: has ", coefficients.size(),
+                 " rows, must have one per interval: ", intervals);
   }
   for (std::size_t i = 0; i < intervals; ++i) {
     for (std::size_t k = 0; k < 4; ++k) {
       if (!std::isfinite(coefficients[i][k])) {
-        refuse("coefficients[", i, "][", k, "]: ", coefficients[i][k], " is not finite");
+        base::refuse("coefficients[", i, "][", k, "]: ", coefficients[i][k], " is not finite");
       }
     }
   }
@@ -76,12 +69,12 @@ void requireContinuity(const std::vector<double>& knots, const std::vector<Cubic
     const double stress_jump = rows[i][0] - value(rows[i - 1], x);
     const double slope_jump = rows[i][1] - slope(rows[i - 1], x);
     if (!(std::abs(stress_jump) <= kTolerance * largest.stress)) {
-      refuse("knots[", i, "]: the stress jumps by ", stress_jump, " at strain ", knots[i],
-             ", it must be continuous");
+      base::refuse("knots[", i, "]: the stress jumps by ", stress_jump, " at strain ", knots[i],
+                   ", it must be continuous");
     }
     if (!(std::abs(slope_jump) <= kTolerance * largest.slope)) {
-      refuse("knots[", i, "]: the slope jumps by ", slope_jump, " at strain ", knots[i],
-             ", it must be continuous");
+      base::refuse("knots[", i, "]: the slope jumps by ", slope_jump, " at strain ", knots[i],
+                   ", it must be continuous");
     }
   }
 }
@@ -142,20 +135,20 @@ Cubic hermite(const CurvePoint& begin, double begin_slope, const CurvePoint& end
 void requireFitPoints(const std::vector<CurvePoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& [strain, stress] = points[i];
-    if (!std::isfinite(strain)) refuse("points[", i, "]: strain ", strain, " is not finite");
-    if (!std::isfinite(stress)) refuse("points[", i, "]: stress ", stress, " is not finite");
+    if (!std::isfinite(strain)) base::refuse("points[", i, "]: strain ", strain, " is not finite");
+    if (!std::isfinite(stress)) base::refuse("points[", i, "]: stress ", stress, " is not finite");
     if (i > 0 && strain <= points[i - 1].strain) {
-      refuse("points[", i, "]: strain ", strain, " must be greater than the one before, ",
-             points[i - 1].strain);
+      base::refuse("points[", i, "]: strain ", strain, " must be greater than the one before, ",
+                   points[i - 1].strain);
     }
     if (strain == 0.0 && stress != 0.0) {
-      refuse("points[", i, "]: stress ", stress, " at strain 0 must be 0");
+      base::refuse("points[", i, "]: stress ", stress, " at strain 0 must be 0");
     }
   }
   if (std::none_of(points.begin(), points.end(),
                    [](const CurvePoint& point) { return point.strain != 0.0; })) {
-    refuse("points: has ", points.size(),
-           " points, must have at least one at a strain other than 0");
+    base::refuse("points: has ", points.size(),
+                 " points, must have at least one at a strain other than 0");
   }
 }
 
@@ -163,7 +156,7 @@ StrainStressCurve::StrainStressCurve() : StrainStressCurve({0.0, 1.0}, {Cubic{}}
 
 StrainStressCurve StrainStressCurve::linear(double modulus) {
   if (!std::isfinite(modulus) || modulus < 0.0) {
-    refuse("modulus: ", modulus, " must be finite and >= 0");
+    base::refuse("modulus: ", modulus, " must be finite and >= 0");
   }
   return StrainStressCurve({0.0, 1.0}, {Cubic{0.0, modulus, 0.0, 0.0}});
 }
@@ -174,13 +167,13 @@ StrainStressCurve StrainStressCurve::fromPolynomials(const std::vector<double>& 
   requireCoefficients(coefficients, knots.size() - 1);
   const Magnitudes largest = largestAtKnots(knots, coefficients);
   if (!std::isfinite(largest.stress) || !std::isfinite(largest.slope)) {
-    refuse("coefficients: the curve is too steep or too large for double arithmetic");
+    base::refuse("coefficients: the curve is too steep or too large for double arithmetic");
   }
   requireContinuity(knots, coefficients, largest);
   StrainStressCurve curve(knots, coefficients);
   const double stress_at_zero = curve.evaluate(0.0).stress;
   if (!(std::abs(stress_at_zero) <= kJumpTolerance * largest.stress)) {
-    refuse("coefficients: the stress at strain 0 is ", stress_at_zero, ", it must be 0");
+    base::refuse("coefficients: the stress at strain 0 is ", stress_at_zero, ", it must be 0");
   }
   return curve;
 }
@@ -213,8 +206,8 @@ StrainStressCurve::StrainStressCurve(const std::vector<double>& knots,
   integrateEnergy();
   for (const Segment& segment : segments_) {
     if (!allFinite(segment.coefficients) || !std::isfinite(segment.energy_at_begin)) {
-      refuse("the curve near strain ", segment.begin,
-             " is too steep or too large for double arithmetic");
+      base::refuse("the curve near strain ", segment.begin,
+                   " is too steep or too large for double arithmetic");
     }
   }
 }
@@ -232,8 +225,8 @@ void StrainStressCurve::makeBins() {
   const double bins = std::min(std::ceil(range / narrowest), static_cast<double>(kMaxBins));
   bins_per_strain_ = bins / range;
   if (!std::isfinite(range) || !std::isfinite(bins_per_strain_)) {
-    refuse("the range of strains from ", knots_.front(), " to ", knots_.back(),
-           " is too wide or too narrow for double arithmetic");
+    base::refuse("the range of strains from ", knots_.front(), " to ", knots_.back(),
+                 " is too wide or too narrow for double arithmetic");
   }
   first_segment_of_bin_.assign(binIndex(knots_.back()) + 1, 0);
   std::size_t knots_before = 0;

@@ -2,21 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
+
+#include "haptex/base/require.h"
 
 namespace haptex::cloth {
-namespace {
-
-template <typename... Parts>
-[[noreturn]] void refuse(std::size_t index, const Parts&... parts) {
-  std::ostringstream message;
-  message << "contact " << index << ": ";
-  (message << ... << parts);
-  throw std::invalid_argument(message.str());
-}
-
-}  // namespace
 
 void requireSound(const std::vector<ParticleContact>& contacts, std::vector<char>& particles) {
   constexpr double kUnit = 1e-6;
@@ -24,24 +13,25 @@ void requireSound(const std::vector<ParticleContact>& contacts, std::vector<char
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ParticleContact& contact = contacts[i];
     if (contact.particle < 0 || contact.particle >= static_cast<int>(particles.size())) {
-      refuse(i, "particle ", contact.particle, " does not exist; the cloth has particles 0 to ",
-             particles.size() - 1);
+      base::refuse("contact ", i, ": particle ", contact.particle,
+                   " does not exist; the cloth has particles 0 to ", particles.size() - 1);
     }
     if (particles[contact.particle]) {
-      refuse(i, "particle ", contact.particle, " has another contact; allowed is one");
+      base::refuse("contact ", i, ": particle ", contact.particle,
+                   " has another contact; allowed is one");
     }
     particles[contact.particle] = 1;
     if (!contact.normal.allFinite() || !contact.place.allFinite() || !std::isfinite(contact.gap) ||
         !contact.velocity.allFinite() || !std::isfinite(contact.friction) ||
         !std::isfinite(contact.end)) {
-      refuse(i, "a number is not finite");
+      base::refuse("contact ", i, ": a number is not finite");
     }
     if (!(std::abs(contact.normal.norm() - 1.0) <= kUnit)) {
-      refuse(i, "the normal has the length ", contact.normal.norm(), "; allowed is 1 within ",
-             kUnit);
+      base::refuse("contact ", i, ": the normal has the length ", contact.normal.norm(),
+                   "; allowed is 1 within ", kUnit);
     }
     if (contact.friction < 0.0) {
-      refuse(i, "friction is ", contact.friction, "; it must be at least 0");
+      base::refuse("contact ", i, ": friction is ", contact.friction, "; it must be at least 0");
     }
   }
 }

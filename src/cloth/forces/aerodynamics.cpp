@@ -3,8 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
+
+#include "haptex/base/require.h"
+#include "haptex/cloth/forces/cross_matrix.h"
 
 namespace haptex::cloth {
 namespace {
@@ -12,17 +13,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-template <typename... Parts>
-[[noreturn]] void refuse(const Parts&... parts) {
-  std::ostringstream message;
-  (message << ... << parts);
-  throw std::invalid_argument(message.str());
-}
-
 void requireCoefficient(const char* name, double value) {
   if (!std::isfinite(value) || value < 0.0) {
-    refuse("the ", name, " coefficient of the air is ", value,
-           "; it must be finite and at least 0");
+    base::refuse("the ", name, " coefficient of the air is ", value,
+                 "; it must be finite and at least 0");
   }
 }
 
@@ -30,15 +24,15 @@ const Air& requireSound(const Air& air) {
   requireCoefficient("normal", air.coefficients.normal);
   requireCoefficient("tangential", air.coefficients.tangential);
   requireCoefficient("lift", air.coefficients.lift);
-  if (!air.wind.mean.allFinite()) refuse("the wind has a component that is not finite");
+  if (!air.wind.mean.allFinite()) base::refuse("the wind has a component that is not finite");
   for (std::size_t i = 0; i < air.wind.gusts.size(); ++i) {
     const Gust& gust = air.wind.gusts[i];
     if (!gust.velocity.allFinite() || !std::isfinite(gust.phase)) {
-      refuse("gust ", i, " of the wind has a number that is not finite");
+      base::refuse("gust ", i, " of the wind has a number that is not finite");
     }
     if (!std::isfinite(gust.frequency) || gust.frequency < 0.0) {
-      refuse("gust ", i, " of the wind has the frequency ", gust.frequency,
-             " Hz; it must be finite and at least 0");
+      base::refuse("gust ", i, " of the wind has the frequency ", gust.frequency,
+                   " Hz; it must be finite and at least 0");
     }
   }
   return air;
@@ -133,13 +127,6 @@ void addDamping(const MembraneElement& element, const Matrix3d& block,
                 linear::SymmetricBlockMatrix& matrix) {
   for (int particle : element.particles) matrix.diagonal(particle) += block;
   for (int slot : element.slots) matrix.lower(slot) += block;
-}
-
-/// Derivative of a x b by b.
-Matrix3d crossMatrix(const Vector3d& a) {
-  Matrix3d result;
-  result << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return result;
 }
 
 /// dF/dw of the whole force.

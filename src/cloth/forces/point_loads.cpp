@@ -2,8 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
+
+#include "haptex/base/require.h"
 
 namespace haptex::cloth {
 namespace {
@@ -13,14 +14,6 @@ using Eigen::Vector3d;
 using Triangles = std::vector<std::array<int, 3>>;
 
 constexpr double kTolerance = 1e-6;  // of the weights' sum, and of the stiffness by its norm
-
-template <typename... Parts>
-[[noreturn]] void refuse(std::size_t index, const Parts&... parts) {
-  std::ostringstream message;
-  message << "point load " << index << ": ";
-  (message << ... << parts);
-  throw std::invalid_argument(message.str());
-}
 
 /// The same point of all particles' vectors.
 Vector3d interpolated(const PointLoad& load, const Triangles& triangles,
@@ -51,29 +44,31 @@ Vector3d sortedWeights(const PointLoad& load, const std::array<int, 3>& corners,
 
 PointLoad checkedLoad(const PointLoad& load, std::size_t index, std::size_t triangle_count) {
   if (load.triangle < 0 || static_cast<std::size_t>(load.triangle) >= triangle_count) {
-    refuse(index, "triangle ", load.triangle, " does not exist; the cloth has triangles 0 to ",
-           triangle_count - 1);
+    base::refuse("point load ", index, ": triangle ", load.triangle,
+                 " does not exist; the cloth has triangles 0 to ", triangle_count - 1);
   }
   if (!load.weights.allFinite() || !load.position.allFinite() || !load.force.allFinite() ||
       !load.stiffness.allFinite()) {
-    refuse(index, "a number of its weights, position, force or stiffness is not finite");
+    base::refuse("point load ", index,
+                 ": a number of its weights, position, force or stiffness is not finite");
   }
   if (!(std::abs(load.weights.sum() - 1.0) <= kTolerance)) {
-    refuse(index, "the weights sum to ", load.weights.sum(), "; allowed is 1 within ", kTolerance);
+    base::refuse("point load ", index, ": the weights sum to ", load.weights.sum(),
+                 "; allowed is 1 within ", kTolerance);
   }
   const double norm = load.stiffness.norm();
   const double asymmetry = (load.stiffness - load.stiffness.transpose()).norm();
   if (!(asymmetry <= kTolerance * norm)) {
-    refuse(index, "the stiffness differs from its transpose by ", asymmetry,
-           " N/m; allowed is its norm, ", norm, " N/m, times ", kTolerance);
+    base::refuse("point load ", index, ": the stiffness differs from its transpose by ", asymmetry,
+                 " N/m; allowed is its norm, ", norm, " N/m, times ", kTolerance);
   }
   PointLoad checked = load;
   checked.stiffness = 0.5 * (load.stiffness + load.stiffness.transpose());
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(checked.stiffness);
   const double smallest = solver.eigenvalues()[0];
   if (!(smallest >= -kTolerance * norm)) {
-    refuse(index, "the stiffness has the eigenvalue ", smallest,
-           " N/m; allowed are positive semidefinite matrices");
+    base::refuse("point load ", index, ": the stiffness has the eigenvalue ", smallest,
+                 " N/m; allowed are positive semidefinite matrices");
   }
   if (smallest < 0.0) {
     checked.stiffness = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *

@@ -2,20 +2,13 @@
 
 #include <cmath>
 
+#include "haptex/cloth/forces/cross_matrix.h"
+
 namespace haptex::cloth {
-namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-Matrix3d crossMatrix(const Vector3d& v) {
-  Matrix3d matrix;
-  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return matrix;
-}
-
-}  // namespace
 
 NormalHinges::NormalHinges(const mesh::ClothMesh& mesh, const std::vector<Hinge>& hinges,
                            const std::vector<HingeCorner>& corners, const Vector2d& curvature) {
