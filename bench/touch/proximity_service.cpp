@@ -1,5 +1,5 @@
 // How long does an answer of the node proximity take, from request to response, over a persistent
-// and over a fresh connection? Against the node itself, which bench/proximity_service.launch
+// and over a fresh connection? Against the node itself, which bench/touch/proximity_service.launch
 // starts; this program plays the cloth, a sheet of 10082 triangles that moves 80 times a second. An
 // empty service of its own shows what ROS needs for a round trip.
 #include <haptex/ClothMesh.h>
@@ -144,7 +144,7 @@ void run() {
   ros::AsyncSpinner spinner(1);
   spinner.start();
   require(ros::service::waitForService("proximity/query", ros::Duration(20.0)),
-          "no service proximity/query: bench/proximity_service.launch starts the node");
+          "no service proximity/query: bench/touch/proximity_service.launch starts the node");
   auto persistent = node.serviceClient<QueryProximity>("proximity/query", true);
   double elements = 0.0;
   const auto query = [&](ros::ServiceClient& client, int i) {
