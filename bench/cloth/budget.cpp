@@ -300,7 +300,9 @@ void print(const std::string& fabric, const Record& record) {
 void runBench(const std::string& name) {
   const material::Fabric fabric =
       material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + name + ".yaml");
-  const auto front = scene::loadQualities(HAPTEX_CONFIG_DIRECTORY "/presets/front.yaml");
+  const auto front = simulation::qualitiesFor(
+      fabric, scene::loadQualities(HAPTEX_CONFIG_DIRECTORY "/presets/front.yaml"),
+      {{name, simulation::tensileModulus(fabric)}});
   std::fprintf(stderr, "%s: calibrating\n", name.c_str());
   const auto measure = [&](const scene::Quality& quality, int substeps) {
     return measureSwing(fabric, quality, substeps);

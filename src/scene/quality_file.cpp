@@ -1,5 +1,6 @@
 #include "haptex/scene/quality_file.h"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -36,8 +37,18 @@ MeasuredQuality readMeasured(const YamlValue& value) {
   return measured;
 }
 
+/// One of the fabrics that were measured.
+std::string readFabric(const YamlValue& value, const std::vector<MeasuredQuality>& measured) {
+  std::set<std::string> fabrics;
+  for (const MeasuredQuality& of : measured) fabrics.insert(of.fabric);
+  std::vector<const char*> names;
+  for (const std::string& name : fabrics) names.push_back(name.c_str());
+  return value.oneOf(names);
+}
+
 Quality readQuality(const YamlValue& value) {
-  value.requireKeys({"name", "cell_size", "time_step", "measured"}, {"integrator", "solver"});
+  value.requireKeys({"name", "cell_size", "time_step", "measured"},
+                    {"fabric", "integrator", "solver"});
   Quality quality;
   quality.name = value.at("name").text();
   quality.cell_size = readSize(value.at("cell_size"));
@@ -53,7 +64,13 @@ Quality readQuality(const YamlValue& value) {
     }
   }
   if (quality.measured.empty()) value.at("measured").refuse("must have at least one item");
+  if (value.has("fabric")) quality.fabric = readFabric(value.at("fabric"), quality.measured);
   return quality;
+}
+
+/// Whether two of one name could be meant for the same fabric.
+bool clash(const Quality& a, const Quality& b) {
+  return a.name == b.name && (a.fabric.empty() || b.fabric.empty() || a.fabric == b.fabric);
 }
 
 }  // namespace
@@ -63,10 +80,14 @@ std::vector<Quality> loadQualities(const std::string& path) {
   file.requireKeys({"machine", "qualities"});
   file.at("machine").text();
   std::vector<Quality> qualities;
-  std::set<std::string> names;
   for (const YamlValue& item : file.at("qualities").items()) {
-    qualities.push_back(readQuality(item));
-    if (!names.insert(qualities.back().name).second) item.at("name").refuse("is listed twice");
+    const Quality quality = readQuality(item);
+    const auto same = [&](const Quality& other) { return clash(quality, other); };
+    if (std::any_of(qualities.begin(), qualities.end(), same)) {
+      item.at("name").refuse("is listed twice" +
+                             (quality.fabric.empty() ? "" : " for '" + quality.fabric + "'"));
+    }
+    qualities.push_back(quality);
   }
   if (qualities.empty()) file.at("qualities").refuse("must have at least one item");
   return qualities;

@@ -11,14 +11,20 @@
 namespace haptex::simulation {
 namespace {
 
-/// The most that the study's machine took for a second of any motion.
+/// What the study's machine took for a second, the geometric mean of the motions of its fabric.
 double studiedCost(const scene::Quality& quality) {
-  double cost = 0.0;
+  double logarithms = 0.0;
+  int motions = 0;
   for (const scene::MeasuredQuality& measured : quality.measured) {
-    cost = std::max(cost, measured.cost);
+    if (!quality.fabric.empty() && measured.fabric != quality.fabric) continue;
+    logarithms += std::log(measured.cost);
+    ++motions;
   }
-  return cost;
+  return std::exp(logarithms / motions);
 }
+
+/// About what a step that ends by an error takes while stiff cloth moves (docs/mechanics.md).
+constexpr double kSolvesToAnError = 6.0;
 
 std::string milliseconds(double seconds) {
   std::ostringstream text;
@@ -149,15 +155,20 @@ std::vector<Candidate> reductions(const scene::Quality& quality, double cycle, d
   next.measured = true;
   std::vector<Candidate> rungs = {next};
   const auto solves = [](const Candidate& candidate) {
-    return static_cast<double>(candidate.quality.step.newton_iterations * candidate.substeps) /
-           candidate.cycles;
+    const cloth::StepSettings& step = candidate.quality.step;
+    const double of_step = step.newton_error > 0.0 ? kSolvesToAnError : step.newton_iterations;
+    return of_step * candidate.substeps / candidate.cycles;
   };
   next.quality.measured.clear();
   next.measured = false;
   while (cloth::isImplicit(quality.step.method)) {
     int& iterations = next.quality.step.newton_iterations;
-    if (iterations > 1) {
-      --iterations;
+    if (next.quality.step.newton_error > 0.0) {
+      next.quality.step.method = cloth::IntegrationMethod::kBackwardEuler;
+      next.quality.step.newton_error = 0.0;
+      iterations = std::min(iterations, 2);
+    } else if (iterations > 1) {
+      iterations /= 2;
     } else if (next.substeps > 1) {
       next.substeps /= 2;
     } else if (next.cycles < most_cycles) {
@@ -166,9 +177,9 @@ std::vector<Candidate> reductions(const scene::Quality& quality, double cycle, d
       break;
     }
     next.quality.time_step = next.cycles * cycle / next.substeps;
-    next.quality.name = quality.name + ", " + std::to_string(iterations) +
-                        (iterations == 1 ? " solve in " : " solves in ") +
-                        milliseconds(next.quality.time_step);
+    next.quality.name =
+        quality.name + ", " + nameOf(next.quality.step.method) + ", " + std::to_string(iterations) +
+        (iterations == 1 ? " solve in " : " solves in ") + milliseconds(next.quality.time_step);
     next.seconds = seconds * solves(next) / solves(rungs.front());
     rungs.push_back(next);
   }

@@ -273,7 +273,8 @@ const scene::Quality* nearestQuality(const scene::Scene& scene,
   for (const scene::Quality& quality : studied) {
     if (scene.effects.elasticity != cloth::Elasticity::kGreenLagrange ||
         quality.step.method != scene.step.method ||
-        quality.step.newton_iterations != scene.step.newton_iterations) {
+        quality.step.newton_iterations != scene.step.newton_iterations ||
+        quality.step.newton_error != scene.step.newton_error) {
       continue;
     }
     const double coarser = std::log(medianCellSize(scene.mesh) / quality.cell_size);

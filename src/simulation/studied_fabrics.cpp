@@ -33,6 +33,25 @@ const StudiedFabric& nearestStudied(const material::Fabric& fabric,
       [&](const StudiedFabric& a, const StudiedFabric& b) { return distance(a) < distance(b); });
 }
 
+std::vector<scene::Quality> qualitiesFor(const material::Fabric& fabric,
+                                         const std::vector<scene::Quality>& qualities,
+                                         const std::vector<StudiedFabric>& studied) {
+  std::vector<StudiedFabric> served;
+  for (const StudiedFabric& of : studied) {
+    if (std::any_of(qualities.begin(), qualities.end(),
+                    [&](const scene::Quality& quality) { return quality.fabric == of.name; })) {
+      served.push_back(of);
+    }
+  }
+  const std::string nearest = served.empty() ? "" : nearestStudied(fabric, served).name;
+  std::vector<scene::Quality> chosen;
+  std::copy_if(qualities.begin(), qualities.end(), std::back_inserter(chosen),
+               [&](const scene::Quality& quality) {
+                 return quality.fabric.empty() || quality.fabric == nearest;
+               });
+  return chosen;
+}
+
 std::vector<scene::MeasuredQuality> measurementsOf(const scene::Quality& quality,
                                                    const std::string& fabric) {
   std::vector<scene::MeasuredQuality> measurements;

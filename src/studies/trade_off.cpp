@@ -110,7 +110,7 @@ class MotionRun {
     for (int cycle = 0; cycle < cycles; ++cycle) {
       direct(cycle);
       const Vector3d momentum = momentumNow();
-      trajectory.accepted = advance(trajectory.computing_seconds);
+      trajectory.accepted = advance(trajectory);
       if (!trajectory.accepted) break;
       trajectory.simulated_seconds = (cycle + 1) * kCycle;
       if (fastest() > 1e-3) trajectory.settling_seconds = trajectory.simulated_seconds;
@@ -176,16 +176,20 @@ class MotionRun {
     }
   }
 
-  bool advance(double& seconds) {
+  /// By a cycle. False: a step was not accepted.
+  bool advance(Trajectory& trajectory) {
     const double start = simulation::threadSeconds();
     bool accepted = true;
     const double h = point_.timeStep();
     for (int i = 0; accepted && i < point_.steps_per_cycle; ++i) {
       if (i + 1 == point_.steps_per_cycle) before_.positions = state_.positions;
-      accepted = collision_ ? collision_->step(cloth_, integrator_, state_, h).accepted
-                            : integrator_.step(cloth_, state_, h).accepted;
+      const cloth::StepReport report = collision_ ? collision_->step(cloth_, integrator_, state_, h)
+                                                  : integrator_.step(cloth_, state_, h);
+      accepted = report.accepted;
+      trajectory.steps += accepted;
+      trajectory.solves += report.newton_iterations;
     }
-    seconds += simulation::threadSeconds() - start;
+    trajectory.computing_seconds += simulation::threadSeconds() - start;
     return accepted;
   }
 

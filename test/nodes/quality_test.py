@@ -20,8 +20,10 @@ SIDE = 0.2  # m, of the scene's sheet
 
 
 def front():
+    """What there is for the fabric of the scene."""
     presets = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'config', 'presets')
-    return yaml.safe_load((presets / 'front.yaml').read_text())['qualities']
+    qualities = yaml.safe_load((presets / 'front.yaml').read_text())['qualities']
+    return [item for item in qualities if item['fabric'] == 'wool']
 
 
 class Quality(NodeTest):

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -72,6 +73,7 @@ TEST_F(QualityFile, IsReadAsWritten) {
   const std::vector<Quality> qualities = load(kTwoQualities);
   ASSERT_EQ(qualities.size(), 2u);
   EXPECT_EQ(qualities[0].name, "quick");
+  EXPECT_EQ(qualities[0].fabric, "");
   EXPECT_EQ(qualities[0].cell_size, 0.025);
   EXPECT_EQ(qualities[0].step.method, cloth::IntegrationMethod::kBackwardEuler);
   EXPECT_EQ(qualities[0].step.newton_iterations, 1);
@@ -101,6 +103,35 @@ TEST_F(QualityFile, RefusesWhatNoQualityHas) {
   expectRefused("name: slow", "name: quick", "qualities[1].name: 'quick' is listed twice");
 }
 
+TEST_F(QualityFile, MayHaveOneOfANameForEachFabric) {
+  std::string text = kTwoQualities;
+  const auto replace = [&](const std::string& part, const std::string& by) {
+    text.replace(text.find(part), part.size(), by);
+  };
+  replace("name: slow", "name: quick\n    fabric: linear");
+  replace("motion: hang, fabric: wool", "motion: hang, fabric: linear");
+  const auto refusal = [&] {
+    try {
+      load(text);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string("(not refused)");
+  };
+  EXPECT_NE(refusal().find("qualities[1].name: 'quick' is listed twice for 'linear'"),
+            std::string::npos)
+      << refusal() << ": the first is for any fabric";
+  replace("name: quick", "name: quick\n    fabric: wool");
+  const std::vector<Quality> qualities = load(text);
+  ASSERT_EQ(qualities.size(), 2u);
+  EXPECT_EQ(qualities[0].fabric, "wool");
+  EXPECT_EQ(qualities[1].fabric, "linear");
+  replace("fabric: linear", "fabric: silk");
+  EXPECT_NE(refusal().find("qualities[1].fabric: 'silk' must be one of linear, wool"),
+            std::string::npos)
+      << refusal();
+}
+
 TEST_F(QualityFile, RefusesMeasurementsThatCannotBe) {
   expectRefused("position_error: 0.01", "position_error: -1",
                 "qualities[0].measured[0].position_error: '-1' must be a finite number >= 0");
@@ -118,26 +149,44 @@ TEST_F(QualityFile, RefusesAFileWithoutQualitiesOrMeasurements) {
   EXPECT_THROW(load(head + "measured: []}]\n"), std::invalid_argument);
 }
 
-double largestCost(const Quality& quality) {
+/// Geometric mean of the costs of the motions of the quality's fabric.
+double meanCost(const Quality& quality) {
   double cost = 0.0;
-  for (const MeasuredQuality& measured : quality.measured) cost = std::max(cost, measured.cost);
-  return cost;
+  int motions = 0;
+  for (const MeasuredQuality& measured : quality.measured) {
+    if (measured.fabric != quality.fabric) continue;
+    cost += std::log(measured.cost);
+    ++motions;
+  }
+  return std::exp(cost / motions);
 }
 
-TEST(ShippedPresets, LoadAndAreOrderedFromTheCheapestToTheMostAccurate) {
-  const std::vector<Quality> front = loadQualities((kPresets / "front.yaml").string());
-  EXPECT_GE(front.size(), 3u);
-  for (std::size_t i = 1; i < front.size(); ++i) {
-    EXPECT_LT(largestCost(front[i - 1]), largestCost(front[i])) << front[i].name;
-  }
-  double cost = 0.0;
-  for (const char* name : {"fast", "balanced", "accurate"}) {
-    const std::vector<Quality> preset =
-        loadQualities((kPresets / (std::string(name) + ".yaml")).string());
-    ASSERT_EQ(preset.size(), 1u);
-    EXPECT_EQ(preset.front().name, name);
-    EXPECT_LT(cost, largestCost(preset.front()));
-    cost = largestCost(preset.front());
+std::vector<Quality> of(const std::string& fabric, std::vector<Quality> qualities) {
+  qualities.erase(std::remove_if(qualities.begin(), qualities.end(),
+                                 [&](const Quality& one) { return one.fabric != fabric; }),
+                  qualities.end());
+  return qualities;
+}
+
+TEST(ShippedPresets, AreOfTheFrontOfEveryFabric) {
+  const std::vector<Quality> all = loadQualities((kPresets / "front.yaml").string());
+  for (const char* fabric : {"linear", "wool", "acrylic_knit"}) {
+    const std::vector<Quality> front = of(fabric, all);
+    EXPECT_GE(front.size(), 3u);
+    for (std::size_t i = 1; i < front.size(); ++i) {
+      EXPECT_LT(meanCost(front[i - 1]), meanCost(front[i])) << front[i].name;
+    }
+    std::size_t place = 0;
+    for (const char* name : {"fast", "balanced", "accurate"}) {
+      const std::vector<Quality> preset =
+          of(fabric, loadQualities((kPresets / (std::string(name) + ".yaml")).string()));
+      ASSERT_EQ(preset.size(), 1u);
+      EXPECT_EQ(preset.front().name, name);
+      while (place < front.size() && front[place].name != name) ++place;
+      ASSERT_LT(place, front.size()) << name << " is not on the front of " << fabric;
+      EXPECT_EQ(preset.front().cell_size, front[place].cell_size);
+      EXPECT_EQ(preset.front().time_step, front[place].time_step);
+    }
   }
 }
 

@@ -176,6 +176,38 @@ TEST(StudiedFabrics, HaveTheirOwnMeasurements) {
   EXPECT_TRUE(measurementsOf(front()[0], "silk").empty());
 }
 
+TEST(StudiedFabrics, OfTheKindOfAFabricHaveItsQualities) {
+  std::vector<scene::Quality> qualities = front();
+  qualities[0].fabric = qualities[2].fabric = "wool";
+  qualities[1].fabric = "linear";
+  const std::vector<StudiedFabric> studied = {{"linear", 100.0}, {"wool", 1000.0}, {"knit", 500.0}};
+  const auto names = [&](const std::string& name, double modulus) {
+    material::Fabric fabric;
+    fabric.name = name;
+    fabric.weft.elastic = fabric.warp.elastic = material::StrainStressCurve::linear(modulus);
+    Names list;
+    for (const scene::Quality& quality : qualitiesFor(fabric, qualities, studied)) {
+      list.push_back(quality.name);
+    }
+    return list;
+  };
+  EXPECT_EQ(names("mine", 2000.0), Names({"a", "c", "d"}));  // "d" is for any fabric
+  EXPECT_EQ(names("linear", 2000.0), Names({"b", "d"}));
+  EXPECT_EQ(names("knit", 500.0), Names({"a", "c", "d"}));  // none is for it: wool is next
+  qualities = front();
+  EXPECT_EQ(names("mine", 2000.0), Names({"a", "b", "c", "d"}));
+}
+
+TEST(QualityChoice, CostsAreThoseOfTheFabricThatAQualityIsFor) {
+  std::vector<scene::Quality> qualities = front();
+  for (scene::Quality& quality : qualities) quality.fabric = "wool";
+  qualities[3].measured[1].cost = 1000.0;  // of another fabric
+  int measurements = 0;
+  const auto scaled = calibrate(qualities, 0.01, machine(3.0, measurements), {0.05, 1.0});
+  EXPECT_EQ(measurements, 1);
+  EXPECT_NEAR(scaled[3].seconds, 24e-3, 1e-12);
+}
+
 scene::Quality implicitQuality(double time_step, int solves) {
   scene::Quality quality;
   quality.name = "fine";
@@ -200,15 +232,46 @@ TEST(Reductions, AreFewerSolvesThenFewerSubstepsThenLongerSteps) {
     EXPECT_EQ(rungs[i].quality.measured.empty(), i < 3) << i;  // nobody has measured its error
   }
   EXPECT_EQ(rungs[3].quality.name, "fine");
-  EXPECT_EQ(rungs[2].quality.name, "fine, 1 solve in 5 ms");
-  EXPECT_EQ(rungs[0].quality.name, "fine, 1 solve in 20 ms");
+  EXPECT_EQ(rungs[2].quality.name, "fine, backward_euler, 1 solve in 5 ms");
+  EXPECT_EQ(rungs[0].quality.name, "fine, backward_euler, 1 solve in 20 ms");
+}
+
+TEST(Reductions, HalveManySolves) {
+  const std::vector<Candidate> rungs = reductions(implicitQuality(0.01, 10), 0.01, 1e-2, 1);
+  ASSERT_EQ(rungs.size(), 4u);
+  const std::vector<int> solves = {1, 2, 5, 10};
+  for (std::size_t i = 0; i < rungs.size(); ++i) {
+    EXPECT_EQ(rungs[i].quality.step.newton_iterations, solves[i]) << i;
+    EXPECT_NEAR(rungs[i].seconds, 1e-3 * solves[i], 1e-12) << i;
+  }
+}
+
+// With few solves they gain energy: wool's swing in the study ends with 3 J too much.
+TEST(Reductions, NeverCutStepsThatEndByAnErrorShort) {
+  for (const auto method : {cloth::IntegrationMethod::kBdf2, cloth::IntegrationMethod::kTrBdf2}) {
+    scene::Quality quality = implicitQuality(0.01, 20);
+    quality.step.method = method;
+    quality.step.newton_error = 1e-2;
+    const std::vector<Candidate> rungs = reductions(quality, 0.01, 6e-3, 1);
+    ASSERT_EQ(rungs.size(), 3u);
+    EXPECT_EQ(rungs[2].quality.step.method, method);
+    EXPECT_EQ(rungs[2].quality.step.newton_iterations, 20);
+    EXPECT_EQ(rungs[2].quality.step.newton_error, 1e-2);
+    EXPECT_EQ(rungs[2].seconds, 6e-3);
+    for (std::size_t i : {0, 1}) {
+      EXPECT_EQ(rungs[i].quality.step.method, cloth::IntegrationMethod::kBackwardEuler);
+      EXPECT_EQ(rungs[i].quality.step.newton_error, 0.0);
+      EXPECT_EQ(rungs[i].quality.step.newton_iterations, static_cast<int>(i) + 1);
+      EXPECT_LT(rungs[i].seconds, rungs[i + 1].seconds);
+    }
+  }
 }
 
 TEST(Reductions, KeepTheRateOfTheStatesWhereItIsAskedFor) {
   const std::vector<Candidate> rungs = reductions(implicitQuality(0.005, 2), 0.01, 8e-3, 1);
   ASSERT_EQ(rungs.size(), 3u);
   for (const Candidate& rung : rungs) EXPECT_EQ(rung.cycles, 1);
-  EXPECT_EQ(rungs[0].quality.name, "fine, 1 solve in 10 ms");
+  EXPECT_EQ(rungs[0].quality.name, "fine, backward_euler, 1 solve in 10 ms");
 }
 
 TEST(Reductions, KeepTheStepsOfExplicitMethods) {

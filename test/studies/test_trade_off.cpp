@@ -240,14 +240,72 @@ TEST_F(TradeOffStudy, WritesATableOfAllThatWasMeasured) {
   EXPECT_EQ(unstable, 2);
 }
 
+TEST(TradeOff, TellsErrorAndSolvesOfSteps) {
+  const material::Fabric linear = shipped("linear");
+  TradeOffPoint point = pointOf(8, 1, 2);
+  const auto solves = [&] {
+    const Trajectory trajectory = follow(Motion::kSwing, linear, point);
+    return compare(trajectory, {trajectory, {}, {1.0, 1.0, 1.0}}).solves_per_step;
+  };
+  EXPECT_EQ(nameOf(point),
+            "green_lagrange-backward_euler-12.5ms-8cells-2solves-automatic-0.000001");
+  EXPECT_EQ(solves(), 2.0);
+  point.step.newton_iterations = 20;
+  point.step.newton_error = 1e-3;
+  EXPECT_EQ(nameOf(point),
+            "green_lagrange-backward_euler-12.5ms-8cells-20solves-0.001error-automatic-0.000001");
+  EXPECT_GT(solves(), 1.5);
+  EXPECT_LT(solves(), 4.0);
+}
+
+/// What a point gave in a case.
+TradeOffResult resultOf(double cost, double error) {
+  TradeOffResult result;
+  result.followed = result.stable = true;
+  result.cost = cost;
+  result.relative_error = error;
+  return result;
+}
+
+TEST(Qualities, AreChosenForEveryFabricAmongItsOwnFront) {
+  TradeOffTable table;
+  for (Motion motion : {Motion::kSwing, Motion::kHang}) {
+    for (const char* fabric : {"linear", "wool"}) table.cases.push_back({motion, shipped(fabric)});
+  }
+  table.points = {pointOf(16, 1, 1), pointOf(16, 1, 2), pointOf(16, 2, 1), pointOf(16, 4, 1)};
+  // The second is worse than the first for wool, the third for linear; the fourth keeps up for
+  // linear only.
+  table.results = {
+      {resultOf(0.1, 0.5), resultOf(0.1, 0.5), resultOf(0.1, 0.5), resultOf(0.1, 0.5)},
+      {resultOf(0.2, 0.2), resultOf(0.2, 0.6), resultOf(0.2, 0.2), resultOf(0.2, 0.6)},
+      {resultOf(0.3, 0.4), resultOf(0.3, 0.2), resultOf(0.3, 0.4), resultOf(0.3, 0.2)},
+      {resultOf(0.9, 0.1), resultOf(1.1, 0.1), resultOf(0.8, 0.1), resultOf(0.1, 0.1)}};
+  const std::vector<scene::Quality> qualities = chooseQualities(table);
+  const auto find = [&](const std::string& fabric, const std::string& name) {
+    for (const scene::Quality& quality : qualities) {
+      if (quality.fabric == fabric && quality.name == name) return quality;
+    }
+    return scene::Quality{};
+  };
+  ASSERT_EQ(qualities.size(), 6u);
+  EXPECT_EQ(find("linear", "fast").time_step, kCycle);
+  EXPECT_EQ(find("linear", "balanced").step.newton_iterations, 2);
+  EXPECT_EQ(find("linear", "accurate").time_step, kCycle / 4);
+  EXPECT_EQ(find("linear", "accurate").measured.size(), 4u) << "those of wool, too";
+  EXPECT_EQ(find("wool", "accurate").time_step, kCycle / 2);
+  EXPECT_EQ(find("wool", "point_3").time_step, kCycle / 4) << "which does not keep up in a swing";
+}
+
 TEST(Qualities, AreWrittenAsYaml) {
   scene::Quality quality;
   quality.name = "fast";
+  quality.fabric = "wool";
   quality.cell_size = 0.2 / 24.0;
   quality.time_step = 0.0125;
   quality.step.method = cloth::IntegrationMethod::kBdf2;
   quality.step.tolerance = 1e-4;
   quality.step.newton_iterations = 2;
+  quality.step.newton_error = 0.01;
   quality.measured = {{"swing", "wool", 1.23456e-4, 0.01, 2e-5, 0.25}};
   std::ostringstream out;
   writeQualities(out, {quality}, "some processor");
@@ -256,10 +314,12 @@ TEST(Qualities, AreWrittenAsYaml) {
             "machine: \"some processor\"\n"
             "qualities:\n"
             "  - name: fast\n"
+            "    fabric: wool\n"
             "    cell_size: 0.00833334  # m\n"
             "    time_step: 0.0125  # s\n"
             "    integrator: bdf2\n"
-            "    solver: {method: automatic, tolerance: 0.0001, newton_iterations: 2}\n"
+            "    solver: {method: automatic, tolerance: 0.0001, newton_iterations: 2, "
+            "error: 0.01}\n"
             "    measured:\n"
             "      - {motion: swing, fabric: wool, position_error: 0.0001235, force_error: 0.01, "
             "energy_error: 2e-05, cost: 0.25}\n");

@@ -23,6 +23,7 @@ struct MeasuredQuality {
 /// give. Files in config/presets hold them.
 struct Quality {
   std::string name;
+  std::string fabric;      ///< of config/fabrics, on whose front it lies; empty: for any fabric
   double cell_size = 0.0;  ///< m, largest edge length of the cells of a sheet
   double time_step = 0.0;  ///< s, largest
   cloth::StepSettings step;

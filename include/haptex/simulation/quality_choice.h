@@ -76,9 +76,11 @@ std::vector<Candidate> ladder(const std::vector<Candidate>& candidates);
 std::vector<Candidate> ladder(const std::vector<Candidate>& candidates, double cell_size,
                               std::vector<Candidate> borrowed);
 
-/// A quality and the ways down from it on the same cells, in ascending order of cost: fewer solves
-/// in every substep, then fewer substeps, then more cycles in one step. An explicit method, whose
-/// steps must be short, has none. Times follow from the number of solves.
+/// A quality and the ways down from it on the same cells, in ascending order of cost: half as many
+/// solves in every substep, then half as many substeps, then more cycles in one step. Steps that
+/// end by an error become those of backward Euler with two solves first: cut short, BDF-2 and
+/// TR-BDF2 can gain energy. An explicit method, whose steps must be short, has no way down. Times
+/// follow from the number of solves.
 /// @param cycle   s
 /// @param seconds of a cycle by the quality
 /// @param most_cycles in one step: 1 or more

@@ -31,8 +31,9 @@ scene::Scene withoutEffect(scene::Scene scene, const std::string& name);
 double medianCellSize(const mesh::ClothMesh& mesh);
 
 /// The studied quality that is nearest to a scene, of those with the same integrator, as many
-/// solves, a time step that differs by less than a factor of 1.5, and cells more than two thirds as
-/// large. They may be much larger: the errors of the study are those of the step nearly all.
+/// solves and the same error, a time step that differs by less than a factor of 1.5, and cells more
+/// than two thirds as large. They may be much larger: the errors of the study are those of the step
+/// nearly all.
 /// @returns null if there is none
 const scene::Quality* nearestQuality(const scene::Scene& scene,
                                      const std::vector<scene::Quality>& studied);

@@ -27,6 +27,13 @@ std::vector<std::string> studiedFabricNames(const std::vector<scene::Quality>& q
 const StudiedFabric& nearestStudied(const material::Fabric& fabric,
                                     const std::vector<StudiedFabric>& studied);
 
+/// Of qualities for several fabrics (Quality::fabric) those for the fabric's nearestStudied(), and
+/// those for any, in their order.
+/// @param studied fabrics that the qualities are for
+std::vector<scene::Quality> qualitiesFor(const material::Fabric& fabric,
+                                         const std::vector<scene::Quality>& qualities,
+                                         const std::vector<StudiedFabric>& studied);
+
 /// The measurements of a quality for one fabric.
 std::vector<scene::MeasuredQuality> measurementsOf(const scene::Quality& quality,
                                                    const std::string& fabric);

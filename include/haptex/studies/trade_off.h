@@ -60,6 +60,8 @@ struct Trajectory {
   bool accepted = true;             ///< every step; false: there are fewer snapshots than instants
   double simulated_seconds = 0.0;
   double computing_seconds = 0.0;  ///< of this thread, for the steps alone
+  int steps = 0;                   ///< that were accepted
+  int solves = 0;                  ///< linear solves of the implicit methods in all steps
   double settling_seconds = 0.0;   ///< after which no particle was faster than 1 mm/s at the end of
                                    ///< a cycle; simulated_seconds if one was at the very end
 };

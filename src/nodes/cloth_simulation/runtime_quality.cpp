@@ -34,11 +34,15 @@ double meanCellSize(const mesh::ClothMesh& mesh) {
   return std::sqrt(doubled_area / static_cast<double>(mesh.triangles.size()));
 }
 
-scene::Quality loadPreset(const std::string& path) {
-  const std::vector<scene::Quality> qualities = scene::loadQualities(path);
+/// @throws std::invalid_argument if there is not one for the fabric
+scene::Quality presetFor(const material::Fabric& fabric, const std::string& path,
+                         const std::vector<scene::Quality>& of_file,
+                         const std::vector<simulation::StudiedFabric>& studied) {
+  const std::vector<scene::Quality> qualities = qualitiesFor(fabric, of_file, studied);
   if (qualities.size() != 1) {
     throw std::invalid_argument(path + ": has " + std::to_string(qualities.size()) +
-                                " qualities: allowed is a file with one");
+                                " qualities for '" + fabric.name +
+                                "': allowed is a file with one for every fabric");
   }
   return qualities.front();
 }
@@ -65,9 +69,13 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
       reducible_(request.reducible()) {
   const double cycle = scene_.time_step;
   if (reducible_) budget_ = std::min(budget_, kMaxShare * cycle);
-  std::vector<scene::Quality> preset;
-  if (!request.preset_path.empty()) preset.push_back(loadPreset(request.preset_path));
-  std::vector<scene::Quality> front = scene::loadQualities(findConfigFile("presets", "front"));
+  std::vector<scene::Quality> preset, front;
+  front = scene::loadQualities(findConfigFile("presets", "front"));
+  if (!request.preset_path.empty()) preset = scene::loadQualities(request.preset_path);
+  study(front);
+  study(preset);
+  front = qualitiesFor(fabric_, front, studied_);
+  if (!preset.empty()) preset = {presetFor(fabric_, request.preset_path, preset, studied_)};
   if (!scene_.any_cells) front = simulation::settingsAlone(front, meanCellSize(scene_.mesh));
   const auto measure = [&](const scene::Quality& quality, int substeps) {
     return simulation::measureCycle(scene_path, fabric_, quality, substeps);
@@ -89,8 +97,12 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
   }
   cell_size_ = rungs_[first_].quality.cell_size;
   if (scene_.any_cells && !request.of_scene) scene_ = scene::loadScene(scene_path, cell_size_);
-  front.insert(front.end(), preset.begin(), preset.end());
-  for (const std::string& name : simulation::studiedFabricNames(front)) {
+}
+
+void RuntimeQuality::study(const std::vector<scene::Quality>& qualities) {
+  for (const std::string& name : simulation::studiedFabricNames(qualities)) {
+    const auto same = [&](const simulation::StudiedFabric& of) { return of.name == name; };
+    if (std::any_of(studied_.begin(), studied_.end(), same)) continue;
     const material::Fabric fabric = material::loadFabric(findConfigFile("fabrics", name));
     studied_.push_back({name, simulation::tensileModulus(fabric)});
   }

@@ -21,7 +21,7 @@ namespace haptex::nodes {
 /// What a person asks for: a quality, a budget to choose a quality for, or a quality that may be
 /// reduced for a budget.
 struct QualityRequest {
-  std::string preset_path;  ///< ~quality: of a file with one quality; empty: none
+  std::string preset_path;  ///< ~quality: of a file with one for the fabric; empty: none
   double budget = 0.0;      ///< ~budget_ms: s of computing time per cycle; 0: none
   bool of_scene = false;    ///< ~quality is kOfScene: the scene's own cells and settings
 
@@ -69,6 +69,8 @@ class RuntimeQuality {
                     haptex::QueryBudget::Response& response) const;
 
  private:
+  /// Learns the fabrics of their measurements.
+  void study(const std::vector<scene::Quality>& qualities);
   void choose(const std::string& scene_path);
   void reduce(const std::string& scene_path, const scene::Quality& wanted);
   scene::Quality qualityOfScene() const;
