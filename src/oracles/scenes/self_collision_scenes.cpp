@@ -8,6 +8,8 @@
 
 #include "haptex/base/constants.h"
 #include "haptex/oracles/scenes/obstacle_scenes.h"
+#include "haptex/oracles/scenes/obstacle_sets.h"
+#include "haptex/proximity/intersections.h"
 
 namespace haptex::oracles {
 namespace {
@@ -88,6 +90,7 @@ Set folded(int cells) {
 Set heaped(int cells) {
   Set set;
   set.name = "heaped";
+  set.falls = true;
   // Not quite upright, and bent, so that it does not stand.
   set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, at({0.0, 0.0, 0.0}));
   for (Vector3d& place : set.mesh.initial_positions) {
@@ -121,6 +124,7 @@ Set gathered(int cells) {
 Set towel(int cells) {
   Set set;
   set.name = "towel";
+  set.falls = true;
   set.mesh = flatSheet({0.4, 0.1}, 4 * cells, cells, at({0.02, 0.0, 0.28}));
   mesh::Obstacle pole{"pole", mesh::ObstacleCapsule{0.01, 0.4},
                       Isometry3d(Eigen::AngleAxisd(0.5 * kPi, Vector3d::UnitX()))};
@@ -198,8 +202,23 @@ SelfCollidingCloth::SelfCollidingCloth(const Set& set, const material::Fabric& f
     : cloth(set.mesh, fabric, effectsOf(set, fabric)),
       state(cloth.initialState()),
       move_(set.move),
+      obstacles_(set.obstacles),
       integrator_(cloth, settings) {
   if (!set.obstacles.empty()) collision_.emplace(cloth, set.obstacles);
+  std::fill(state.velocities.begin(), state.velocities.end(), set.velocity);
+}
+
+double SelfCollidingCloth::energy() const {
+  return cloth.potentialEnergy(state) + cloth.kineticEnergy(state);
+}
+
+std::size_t SelfCollidingCloth::intersections() const {
+  const auto& triangles = cloth.mesh().triangles;
+  std::size_t count = proximity::countIntersections(state.positions, triangles);
+  for (const mesh::Obstacle& obstacle : obstacles_) {
+    count += countIntersections(state.positions, triangles, obstacle, state.time);
+  }
+  return count;
 }
 
 cloth::StepReport SelfCollidingCloth::step(double h) {
@@ -211,8 +230,10 @@ cloth::StepReport SelfCollidingCloth::step(double h) {
 }
 
 std::vector<Set> selfCollisionScenes(int cells) {
-  return {folded(cells), heaped(cells),  gathered(cells),
-          towel(cells),  ribbons(cells), twisted(cells)};
+  std::vector<Set> all = {folded(cells), heaped(cells),  gathered(cells),
+                          towel(cells),  ribbons(cells), twisted(cells)};
+  for (Set& set : obstacleSets(cells)) all.push_back(std::move(set));
+  return all;
 }
 
 double thicknessAt(const material::Compression& compression, double pressure) {

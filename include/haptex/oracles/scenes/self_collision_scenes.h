@@ -24,11 +24,13 @@ class SelfCollidingCloth {
  public:
   struct Set {
     mesh::ClothMesh mesh;
-    double gravity = 9.81;  ///< m/s^2
+    double gravity = 9.81;                               ///< m/s^2
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s, at the start
     std::vector<mesh::Obstacle> obstacles = {};
     /// Before every step: moves attachments to where they are at the end of it (s).
     std::function<void(cloth::Cloth& cloth, const cloth::ClothState& state, double end)> move = {};
     double duration = 1.0;  ///< s
+    bool falls = false;     ///< and nothing else does work on it
     std::string name = {};
   };
 
@@ -38,12 +40,17 @@ class SelfCollidingCloth {
 
   /// @throws std::runtime_error if the step is not accepted
   cloth::StepReport step(double h);
+  /// J, potential and kinetic.
+  double energy() const;
+  /// Pairs of triangles of the cloth that intersect, and countIntersections() with all obstacles.
+  std::size_t intersections() const;
 
   cloth::Cloth cloth;
   cloth::ClothState state;
 
  private:
   std::function<void(cloth::Cloth& cloth, const cloth::ClothState& state, double end)> move_;
+  std::vector<mesh::Obstacle> obstacles_;
   cloth::Integrator integrator_;
   std::optional<contact::ObstacleCollision> collision_;
 };
@@ -53,7 +60,8 @@ class SelfCollidingCloth {
 /// - gathered: a curtain on rings is drawn to a tenth of its width,
 /// - towel: falls over a pole, so that its ends swing together,
 /// - ribbons: two that cross are wound around each other and pulled tight,
-/// - twisted: the ends of a strip are turned against each other by a whole turn.
+/// - twisted: the ends of a strip are turned against each other by a whole turn,
+/// and those of obstacleSets().
 /// @param cells along 100 mm, > 0
 std::vector<SelfCollidingCloth::Set> selfCollisionScenes(int cells);
 

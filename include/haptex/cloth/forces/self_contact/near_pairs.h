@@ -20,6 +20,8 @@ class NearPairs {
     proximity::ElementPairKind kind;
     int first, second;            ///< ElementPair
     std::array<int, 4> vertices;  ///< proximity::verticesOf()
+    int obstacle = -1;            ///< that has one of the elements; -1: none (NearObstacles)
+    double radius = 0.0;          ///< m, within which that element is solid
   };
 
   /// @param reference positions (m) of the particles in the flat fabric
@@ -44,6 +46,8 @@ class NearPairs {
   const std::vector<Pair>& neighbours() const { return neighbours_; }
 
   double searched() const { return self_.distance(); }  ///< m
+  const std::vector<std::array<int, 3>>& triangles() const { return hierarchy_.triangles(); }
+  std::size_t particleCount() const { return hierarchy_.positions().size(); }
 
  private:
   Pair named(const proximity::ElementPair& pair) const;
