@@ -41,22 +41,24 @@ MotionCut SafeMotion::go(NearPairs& near, NearObstacles* obstacles,
   stopped_by_.assign(particles, {-1, -1, -1, -1});
   const int most_ways = obstacles != nullptr ? kMostWaysAmongObstacles : kMostWays;
   for (int pass = 0; pass < most_ways; ++pass) {
-    bool arrived = true;
+    double longest = 0.0;
     for (std::size_t i = 0; i < particles; ++i) {
       const bool stopped = stopped_by_[i][0] >= 0;
       left_[i] = stopped ? Vector3d::Zero() : Vector3d(to[i] - place_[i]);
-      arrived = arrived && left_[i].isZero(0.0);
+      longest = std::max(longest, left_[i].squaredNorm());
     }
-    if (arrived) break;
-    const double known = kKnown * near.searched();
-    if (!near.find(place_, known)) break;
-    chooseWays(kOfReach * known, true);
+    if (longest == 0.0) break;
+    // Short ways need no new search: they bring nothing to the margin from farther away.
+    const double reach = kOfReach * kKnown * near.searched();
+    known_ = std::min(kKnown * near.searched(), 2.0 * std::sqrt(longest) + margin_);
+    if (!near.find(place_, known_)) break;
+    chooseWays(reach, true);
     if (obstacles != nullptr && !chooseObstaclePairs(*obstacles)) {
-      chooseWays(kOfReach * known, false);
+      chooseWays(reach, false);
       chooseObstaclePairs(*obstacles);
     }
     if (!stopOnWay(near, obstacles)) {
-      chooseWays(kOfReach * known, false);
+      chooseWays(reach, false);
       chooseObstaclePairs(*obstacles);
       stopOnWay(near, obstacles);
     }
@@ -114,7 +116,7 @@ void SafeMotion::chooseWays(double reach, bool common) {
 bool SafeMotion::chooseObstaclePairs(NearObstacles& obstacles) {
   obstacle_way_.assign(obstacle_place_.size(), -common_);
   if (common_.isZero(0.0)) {
-    obstacles.find(place_, obstacle_place_, kKnown * obstacles.searched());
+    obstacles.find(place_, obstacle_place_, known_);
     obstacle_pairs_ = &obstacles.pairs();
     return true;
   }
@@ -138,6 +140,9 @@ bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles
   static const std::vector<Pair> none;
   const std::vector<Pair>& at_obstacles = obstacles != nullptr ? *obstacle_pairs_ : none;
   const bool is_common = !common_.isZero(0.0);
+  double longest = 0.0;
+  for (const Vector3d& way : way_) longest = std::max(longest, way.squaredNorm());
+  longest = std::sqrt(longest);
   stops_.assign(near.pairs().size(), 0);
   neighbour_stops_.assign(near.neighbours().size(), 0);
   obstacle_stops_.assign(at_obstacles.size(), 0);
@@ -146,7 +151,9 @@ bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles
   for (round_ = 1; stopped; ++round_) {
     stopped = false;
     for (std::size_t p = 0; p < stops_.size(); ++p) {
-      stopped = stopBeforeContact(near.pairs()[p], stops_[p]) || stopped;
+      const Pair& pair = near.pairs()[p];
+      if (near.isBeyond(pair, margin_ + 2.0 * longest)) continue;
+      stopped = stopBeforeContact(pair, stops_[p]) || stopped;
     }
     for (std::size_t p = 0; p < neighbour_stops_.size(); ++p) {
       stopped = stopBeforeContact(near.neighbours()[p], neighbour_stops_[p]) || stopped;
@@ -156,7 +163,8 @@ bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles
         stopped_by_.assign(stopped_by_.size(), {-1, -1, -1, -1});
         return false;
       }
-      if (!is_common) stopped = stopBeforeContact(at_obstacles[p], obstacle_stops_[p]) || stopped;
+      if (is_common || obstacles->isBeyond(at_obstacles[p], 0.5 * margin_ + longest)) continue;
+      stopped = stopBeforeContact(at_obstacles[p], obstacle_stops_[p]) || stopped;
     }
   }
   return true;

@@ -4,9 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "haptex/contact/obstacles.h"
 #include "haptex/oracles/scenes/obstacle_scenes.h"
-#include "haptex/proximity/intersections.h"
 
 namespace haptex::oracles {
 namespace {
@@ -126,33 +124,6 @@ std::vector<Set> obstacleSets(int cells) {
   return {thrown("box_edge", edgeAt("edge", Vector3d::Zero()), cells),
           thrown("needle", needleAt("needle", Vector3d::Zero()), cells), towelOnEdges(cells),
           funnel(cells), wound(cells)};
-}
-
-std::size_t countIntersections(const std::vector<Vector3d>& positions,
-                               const std::vector<std::array<int, 3>>& triangles,
-                               const Obstacle& obstacle, double time) {
-  std::size_t count = 0;
-  const Isometry3d pose = obstacle.poseAt(time);
-  if (const auto* surface = std::get_if<mesh::ObstacleMesh>(&obstacle.shape)) {
-    std::vector<Vector3d> all = positions;
-    std::vector<std::array<int, 3>> both = triangles;
-    const int first = static_cast<int>(positions.size());
-    for (const Vector3d& vertex : surface->vertices) all.push_back(pose * vertex);
-    for (const auto& [a, b, c] : surface->triangles) {
-      both.push_back({a + first, b + first, c + first});
-    }
-    const int of_cloth = static_cast<int>(triangles.size());
-    for (const proximity::TrianglePair& pair : proximity::intersectingTriangles(all, both)) {
-      count += pair[0] < of_cloth && pair[1] >= of_cloth;
-    }
-    return count;
-  }
-  proximity::RigidObstacle solid = contact::makeObstacle(obstacle);
-  solid.setPose(pose);
-  for (const auto& [a, b, c] : triangles) {
-    count += solid.closestPoint({positions[a], positions[b], positions[c]}).distance <= 0.0;
-  }
-  return count;
 }
 
 }  // namespace haptex::oracles

@@ -3,13 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "haptex/base/constants.h"
 #include "haptex/oracles/scenes/obstacle_scenes.h"
 #include "haptex/oracles/scenes/obstacle_sets.h"
-#include "haptex/proximity/intersections.h"
 
 namespace haptex::oracles {
 namespace {
@@ -21,16 +19,6 @@ using mesh::ClothMesh;
 using Set = SelfCollidingCloth::Set;
 
 constexpr double kPi = 3.14159265358979323846;
-
-cloth::ModelledEffects effectsOf(const Set& set, const material::Fabric& fabric) {
-  cloth::ModelledEffects effects;
-  effects.self_collision = true;
-  effects.gravity = {0.0, 0.0, -set.gravity};
-  effects.viscosity = true;
-  effects.bending = fabric.bending.has_value();
-  effects.contacts = !set.obstacles.empty();
-  return effects;
-}
 
 mesh::Obstacle floorAt(double height) {
   Isometry3d pose = Isometry3d::Identity();
@@ -195,38 +183,6 @@ ClothMesh asOneMesh(const std::vector<ClothMesh>& sheets) {
     width += 2.0 * most;
   }
   return all;
-}
-
-SelfCollidingCloth::SelfCollidingCloth(const Set& set, const material::Fabric& fabric,
-                                       const cloth::StepSettings& settings)
-    : cloth(set.mesh, fabric, effectsOf(set, fabric)),
-      state(cloth.initialState()),
-      move_(set.move),
-      obstacles_(set.obstacles),
-      integrator_(cloth, settings) {
-  if (!set.obstacles.empty()) collision_.emplace(cloth, set.obstacles);
-  std::fill(state.velocities.begin(), state.velocities.end(), set.velocity);
-}
-
-double SelfCollidingCloth::energy() const {
-  return cloth.potentialEnergy(state) + cloth.kineticEnergy(state);
-}
-
-std::size_t SelfCollidingCloth::intersections() const {
-  const auto& triangles = cloth.mesh().triangles;
-  std::size_t count = proximity::countIntersections(state.positions, triangles);
-  for (const mesh::Obstacle& obstacle : obstacles_) {
-    count += countIntersections(state.positions, triangles, obstacle, state.time);
-  }
-  return count;
-}
-
-cloth::StepReport SelfCollidingCloth::step(double h) {
-  if (move_) move_(cloth, state, state.time + h);
-  const cloth::StepReport report = collision_ ? collision_->step(cloth, integrator_, state, h)
-                                              : integrator_.step(cloth, state, h);
-  if (!report.accepted) throw std::runtime_error("a step was not accepted");
-  return report;
 }
 
 std::vector<Set> selfCollisionScenes(int cells) {

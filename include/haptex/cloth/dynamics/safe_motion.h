@@ -94,6 +94,7 @@ class SafeMotion {
   }
 
   double margin_;           // m
+  double known_ = 0.0;      // m, distance up to which all pairs are known on this way
   Vectors place_;           // m, reached
   Vectors left_;            // m, of the way of each particle that is not stopped
   Vectors way_;             // m, beyond the common one

@@ -1,11 +1,9 @@
 // Cloth that collides with itself, on and through obstacles.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
-#include "haptex/mesh/obstacle.h"
-#include "haptex/oracles/scenes/self_collision_scenes.h"
+#include "haptex/oracles/scenes/self_colliding_cloth.h"
 
 namespace haptex::oracles {
 
@@ -16,11 +14,5 @@ namespace haptex::oracles {
 /// - rotating_sphere: a sheet falls on a sphere that turns on a floor.
 /// @param cells along 100 mm, > 0
 std::vector<SelfCollidingCloth::Set> obstacleSets(int cells);
-
-/// Triangles of a cloth that touch a solid obstacle or are inside of it; or pairs of triangles, of
-/// the cloth and of a mesh, that intersect, by the exact test. @param time s
-std::size_t countIntersections(const std::vector<Eigen::Vector3d>& positions,
-                               const std::vector<std::array<int, 3>>& triangles,
-                               const mesh::Obstacle& obstacle, double time);
 
 }  // namespace haptex::oracles

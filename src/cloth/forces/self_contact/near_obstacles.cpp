@@ -16,13 +16,6 @@ std::vector<Box> emptyBoxes(std::size_t count) {
   return std::vector<Box>(count, Box(Vector3d::Zero(), Vector3d::Zero()));
 }
 
-bool staysWithin(double most, const Places& now, const Places& before) {
-  return std::equal(now.begin(), now.end(), before.begin(), before.end(),
-                    [most](const Vector3d& a, const Vector3d& b) {
-                      return (a - b).squaredNorm() <= most * most;
-                    });
-}
-
 Box grown(const Box& box, double by) {
   return {box.min() - Vector3d::Constant(by), box.max() + Vector3d::Constant(by)};
 }
@@ -78,10 +71,13 @@ void NearObstacles::fitBoxes(const Places& places, const Places* ways) {
 }
 
 void NearObstacles::find(const Places& positions, const Places& places, double distance) {
-  const double most = 0.5 * (searched_ - distance);
-  if (!searched_at_.empty() && staysWithin(most, positions, searched_at_) &&
-      staysWithin(most, places, places_searched_at_)) {
-    return;
+  if (!searched_at_.empty()) {
+    const double moved = NearPairs::farthest(positions, searched_at_) +
+                         NearPairs::farthest(places, places_searched_at_);
+    if (moved <= searched_ - distance) {
+      moved_ = moved;
+      return;
+    }
   }
   fitBoxes(places, nullptr);
   pairs_.clear();
@@ -91,18 +87,22 @@ void NearObstacles::find(const Places& positions, const Places& places, double d
     tree_.visit(grown(box, searched_),
                 [&](int other) { addPairs(static_cast<int>(t), other, pairs_); });
   }
-  const auto is_far = [&](const Pair& pair) {
+  const auto measure = [&](Pair& pair) {
     std::array<Vector3d, 4> at;
     for (int i = 0; i < 4; ++i) {
       const int vertex = pair.vertices[i];
       at[i] = vertex < particles_ ? positions[vertex] : places[vertex - particles_];
     }
     const double reach = pair.radius + searched_;
-    return proximity::isSurelyApart(pair.kind, at, reach) ||
-           proximity::distanceOf(pair.kind, at).distance > reach;
+    pair.distance = proximity::isSurelyApart(pair.kind, at, reach)
+                        ? 2.0 * searched_
+                        : proximity::distanceOf(pair.kind, at).distance - pair.radius;
   };
+  std::for_each(pairs_.begin(), pairs_.end(), measure);
+  const auto is_far = [&](const Pair& pair) { return pair.distance > searched_; };
   pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), is_far), pairs_.end());
   sort(pairs_);
+  moved_ = 0.0;
   searched_at_ = positions;
   places_searched_at_ = places;
 }

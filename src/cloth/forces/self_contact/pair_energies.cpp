@@ -77,26 +77,30 @@ void PairEnergies::setObstacles(const ObstacleSurfaces& surfaces) {
   obstacle_edge_squares_ = edgeSquares(surfaces.elements().edges, surfaces.atEnd());
 }
 
-void PairEnergies::find(const Positions& positions, const std::vector<Pair>& pairs,
+void PairEnergies::find(const Positions& positions, const NearPairs& near,
                         std::vector<PairEnergy>& found) {
   found.clear();
-  const Pair* pair = pairs.data();
-  const Pair* const end = pair + pairs.size();
+  const Pair* pair = near.pairs().data();
+  const Pair* const end = pair + near.pairs().size();
   while (pair != end && pair->kind == proximity::ElementPairKind::kVertexTriangle) {
-    const Pair* const begin = pair;
-    while (pair != end && pair->kind == begin->kind && pair->first == begin->first) ++pair;
-    addVertex(positions, begin, pair, found);
+    const int vertex = pair->first;
+    near_.clear();
+    for (; pair != end && pair->kind == proximity::ElementPairKind::kVertexTriangle &&
+           pair->first == vertex;
+         ++pair) {
+      if (!near.isBeyond(*pair, law_.thickness())) near_.push_back(pair->second);
+    }
+    if (!near_.empty()) addVertex(positions, vertex, found);
   }
-  for (; pair != end; ++pair) addEdges(positions, *pair, found);
+  for (; pair != end; ++pair) {
+    if (!near.isBeyond(*pair, law_.leastDistance())) addEdges(positions, *pair, found);
+  }
 }
 
-/// @param begin, end pairs of a vertex
-void PairEnergies::addVertex(const Positions& positions, const Pair* begin, const Pair* end,
+/// That is near the triangles near_.
+void PairEnergies::addVertex(const Positions& positions, int vertex,
                              std::vector<PairEnergy>& found) {
-  const int vertex = begin->first;
   const Vector3d& place = positions[vertex];
-  near_.clear();
-  for (const Pair* pair = begin; pair != end; ++pair) near_.push_back(pair->second);
   for (const auto& feature : cloth_.nearest(positions, place, near_, law_.thickness())) {
     if (feature.times == 0) continue;
     PairEnergy energy{};
@@ -146,24 +150,27 @@ void PairEnergies::addEdges(const Positions& positions, const Pair& pair,
   found.push_back(energy);
 }
 
-void PairEnergies::findOfObstacles(const Positions& positions, const ObstacleSurfaces& surfaces,
-                                   bool at_end, const std::vector<Pair>& pairs,
-                                   std::vector<PairEnergy>& found) {
+void PairEnergies::findOfObstacles(const Positions& positions, const NearObstacles& near,
+                                   bool at_end, std::vector<PairEnergy>& found) {
+  const ObstacleSurfaces& surfaces = near.surfaces();
   const Obstacles obstacles = {surfaces, at_end, at_end ? surfaces.atEnd() : surfaces.atBegin()};
-  const Pair* pair = pairs.data();
-  const Pair* const end = pair + pairs.size();
+  const Pair* pair = near.pairs().data();
+  const Pair* const end = pair + near.pairs().size();
   const auto is_vertex = [&](const Pair& other) {
     return other.kind == proximity::ElementPairKind::kVertexTriangle && other.first < particles_;
   };
   while (pair != end && is_vertex(*pair)) {
-    const Pair* const begin = pair;
-    while (pair != end && is_vertex(*pair) && pair->first == begin->first &&
-           pair->obstacle == begin->obstacle) {
-      ++pair;
+    const Pair& first = *pair;
+    near_.clear();
+    for (; pair != end && is_vertex(*pair) && pair->first == first.first &&
+           pair->obstacle == first.obstacle;
+         ++pair) {
+      if (!near.isBeyond(*pair, 0.5 * law_.thickness())) near_.push_back(pair->second);
     }
-    addVertexAtObstacle(positions, obstacles, begin, pair, found);
+    if (!near_.empty()) addVertexAtObstacle(positions, obstacles, first, found);
   }
   for (; pair != end; ++pair) {
+    if (near.isBeyond(*pair, 0.5 * law_.leastDistance())) continue;
     if (pair->kind == proximity::ElementPairKind::kVertexTriangle) {
       addObstacleVertex(positions, obstacles, *pair, found);
     } else {
@@ -172,14 +179,11 @@ void PairEnergies::findOfObstacles(const Positions& positions, const ObstacleSur
   }
 }
 
-/// @param begin, end pairs of a vertex and an obstacle
+/// That is near the triangles near_. @param pair any of these
 void PairEnergies::addVertexAtObstacle(const Positions& positions, const Obstacles& obstacles,
-                                       const Pair* begin, const Pair* end,
-                                       std::vector<PairEnergy>& found) {
-  const int vertex = begin->first;
-  const double reach = begin->radius + 0.5 * law_.thickness();
-  near_.clear();
-  for (const Pair* pair = begin; pair != end; ++pair) near_.push_back(pair->second);
+                                       const Pair& pair, std::vector<PairEnergy>& found) {
+  const int vertex = pair.first;
+  const double reach = pair.radius + 0.5 * law_.thickness();
   for (const auto& feature :
        obstacles_->nearest(obstacles.places, positions[vertex], near_, reach)) {
     if (feature.times == 0) continue;
@@ -190,11 +194,11 @@ void PairEnergies::addVertexAtObstacle(const Positions& positions, const Obstacl
     const double distance = away.norm();
     if (distance >= reach) continue;
     PairEnergy energy{};
-    energy.obstacle = begin->obstacle;
+    energy.obstacle = pair.obstacle;
     energy.count = 1;
     energy.vertices[0] = vertex;
     energy.weights[0] = 1.0;
-    energy.distance = gapOf(distance, begin->radius);
+    energy.distance = gapOf(distance, pair.radius);
     energy.normal = away / distance;
     const LayerPressure law = mirrored(law_.at(2.0 * energy.distance));
     const double area = 2.0 * feature.times * vertex_areas_[vertex];
@@ -202,7 +206,7 @@ void PairEnergies::addVertexAtObstacle(const Positions& positions, const Obstacl
     energy.force = area * law.pressure;
     energy.stiffness = std::max(0.0, area) * law.slope;
     energy.way = obstacles.surfaces.wayOf(energy.obstacle, feature.size, feature.ids.data(),
-                                          feature.weights.data(), begin->radius * energy.normal,
+                                          feature.weights.data(), pair.radius * energy.normal,
                                           obstacles.at_end);
     found.push_back(energy);
   }

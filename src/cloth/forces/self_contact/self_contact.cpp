@@ -91,12 +91,12 @@ const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions,
     touching_at_.clear();
     return touching_;
   }
-  energies_.find(positions, near_.pairs(), touching_);
+  energies_.find(positions, near_, touching_);
   if (obstacles_) {
     const ObstacleSurfaces& surfaces = obstacles_->surfaces();
     obstacles_->find(positions, at_end ? surfaces.atEnd() : surfaces.atBegin(),
                      0.5 * law().thickness());
-    energies_.findOfObstacles(positions, surfaces, at_end, obstacles_->pairs(), touching_);
+    energies_.findOfObstacles(positions, *obstacles_, at_end, touching_);
   }
   touching_at_ = positions;
   return touching_;

@@ -35,6 +35,10 @@ class NearObstacles {
   /// @param positions, places m, of the particles and of the vertices of the obstacles, finite
   /// @param distance  m, below the one searched for
   void find(const Places& positions, const Places& places, double distance);
+  /// As NearPairs::isBeyond().
+  bool isBeyond(const Pair& pair, double distance) const {
+    return pair.distance > distance + moved_ + kRounding;
+  }
   /// By kind, first and second.
   const std::vector<Pair>& pairs() const { return pairs_; }
 
@@ -55,6 +59,8 @@ class NearObstacles {
     std::vector<std::vector<int>> vertices, edges;
   };
 
+  static constexpr double kRounding = 1e-12;  // m, more than that of distances
+
   void fitBoxes(const Places& places, const Places* ways);
   void addPairs(int of_cloth, int of_obstacle, std::vector<Pair>& found) const;
   void sort(std::vector<Pair>& found) const;
@@ -68,6 +74,7 @@ class NearObstacles {
   proximity::BoxTree tree_;
   std::vector<Pair> pairs_, on_ways_;
   Places searched_at_, places_searched_at_;  // m; empty before the first find()
+  double moved_ = 0.0;                       // m, farthest of both since, together
 };
 
 }  // namespace haptex::cloth

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "haptex/cloth/forces/self_contact/layer_law.h"
+#include "haptex/cloth/forces/self_contact/near_obstacles.h"
 #include "haptex/cloth/forces/self_contact/near_pairs.h"
-#include "haptex/cloth/forces/self_contact/obstacle_surfaces.h"
 #include "haptex/cloth/forces/self_contact/surface_features.h"
 
 namespace haptex::cloth {
@@ -60,16 +60,15 @@ class PairEnergies {
   /// Makes room for the obstacles.
   void setObstacles(const ObstacleSurfaces& surfaces);
 
-  /// @param pairs all that are within the law's thickness at these positions, and more
+  /// @param near  has found all pairs that are within the law's thickness at these positions
   /// @param found replaced
-  void find(const std::vector<Eigen::Vector3d>& positions,
-            const std::vector<NearPairs::Pair>& pairs, std::vector<PairEnergy>& found);
-  /// @param pairs  NearObstacles::pairs(): all that are within half of the thickness, and more
+  void find(const std::vector<Eigen::Vector3d>& positions, const NearPairs& near,
+            std::vector<PairEnergy>& found);
+  /// @param near   has found all that are within half of the thickness there
   /// @param at_end of the step, or else at its beginning
   /// @param found  added to
-  void findOfObstacles(const std::vector<Eigen::Vector3d>& positions,
-                       const ObstacleSurfaces& surfaces, bool at_end,
-                       const std::vector<NearPairs::Pair>& pairs, std::vector<PairEnergy>& found);
+  void findOfObstacles(const std::vector<Eigen::Vector3d>& positions, const NearObstacles& near,
+                       bool at_end, std::vector<PairEnergy>& found);
 
   const LayerLaw& law() const { return law_; }
 
@@ -83,10 +82,9 @@ class PairEnergies {
     const Positions& places;
   };
 
-  void addVertex(const Positions& positions, const Pair* begin, const Pair* end,
-                 std::vector<PairEnergy>& found);
-  void addVertexAtObstacle(const Positions& positions, const Obstacles& obstacles,
-                           const Pair* begin, const Pair* end, std::vector<PairEnergy>& found);
+  void addVertex(const Positions& positions, int vertex, std::vector<PairEnergy>& found);
+  void addVertexAtObstacle(const Positions& positions, const Obstacles& obstacles, const Pair& pair,
+                           std::vector<PairEnergy>& found);
   void addObstacleVertex(const Positions& positions, const Obstacles& obstacles, const Pair& pair,
                          std::vector<PairEnergy>& found) const;
   void addEdges(const Positions& positions, const Pair& pair, std::vector<PairEnergy>& found) const;
