@@ -70,7 +70,7 @@ Set towelOnEdges(int cells) {
 
 /// An open surface that becomes narrower downwards, through which a sheet is drawn by its middle.
 Set funnel(int cells) {
-  constexpr double kUpper = 0.1, kLower = 0.025, kHeight = 0.08;  // m
+  constexpr double kUpper = 0.1, kLower = 0.03, kHeight = 0.08;  // m
   constexpr int kAround = 24;
   mesh::ObstacleMesh surface;
   for (int i = 0; i < kAround; ++i) {
@@ -87,7 +87,8 @@ Set funnel(int cells) {
   }
   Set set;
   set.name = "funnel";
-  set.mesh = flatSheet({0.15, 0.15}, 3 * cells / 2, 3 * cells / 2, at({0.0, 0.0, kHeight + 0.005}));
+  set.mesh =
+      flatSheet({0.125, 0.125}, 5 * cells / 4, 5 * cells / 4, at({0.0, 0.0, kHeight + 0.005}));
   set.obstacles = {{"funnel", surface, Isometry3d::Identity()}};
   set.duration = 1.5;
   int middle = 0;
