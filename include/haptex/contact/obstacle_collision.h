@@ -27,7 +27,7 @@ namespace haptex::contact {
 /// All that does not concern a cloth that collides with itself: it gets the obstacles themselves
 /// (cloth::Cloth::setObstacles()), and no part of it passes through them.
 ///
-/// A step allocates nothing.
+/// A step allocates nothing, but where such cloth is near to more than ever before.
 class ObstacleCollision {
  public:
   static constexpr double kOffset = 5e-4;     ///< m
