@@ -44,6 +44,7 @@ class TabReporter : public benchmark::BenchmarkReporter {
     printLine(runs.front().run_name.function_name, shortest, "ms");
   }
 
+  bool has(const std::string& name) const { return times_.count(name) > 0; }
   /// ms, of a benchmark that has run.
   double time(const std::string& name) const { return times_.at(name); }
   bool failed() const { return failed_; }

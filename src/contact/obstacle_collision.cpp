@@ -24,6 +24,19 @@ double frictionOf(const mesh::Obstacle& obstacle, const material::Fabric& fabric
                               fabric.name + "' has none: add the key friction to one of them");
 }
 
+/// Of a cloth that collides with itself.
+void requireApart(const mesh::ClothMesh& mesh, const std::string& name,
+                  const RigidObstacle& shape) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const auto& at = mesh.initial_positions;
+    if (shape.closestPoint({at[a], at[b], at[c]}).distance > 0.0) continue;
+    throw std::invalid_argument("self_collision is modelled and triangle " + std::to_string(t) +
+                                " of the cloth touches obstacle '" + name +
+                                "' at the start: it has to be outside");
+  }
+}
+
 /// A straight path in the frame of an obstacle.
 struct Path {
   const Vector3d& begin;
@@ -56,20 +69,20 @@ Vector3d slidingEnd(const RigidObstacle& shape, const Path& path, double touch) 
 
 }  // namespace
 
-ObstacleCollision::ObstacleCollision(const cloth::Cloth& cloth,
-                                     std::vector<mesh::Obstacle> obstacles)
+ObstacleCollision::ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles)
     : obstacles_(std::move(obstacles)), positions_(cloth.particleCount()) {
   for (const mesh::Obstacle& obstacle : obstacles_) {
     RigidObstacle shape = makeObstacle(obstacle);
+    if (cloth.selfContact() != nullptr) requireApart(cloth.mesh(), obstacle.name, shape);
     shape.setPose(Eigen::Isometry3d::Identity());
     const double reach = shape.boundingRadius() + kOffset;
     bodies_.push_back({std::move(shape), reach, obstacle.pose, obstacle.pose,
                        frictionOf(obstacle, cloth.fabric())});
   }
-  contacts_.reserve(cloth.particleCount());
-  if (const cloth::SelfContact* self = cloth.selfContact()) {
-    motion_.emplace(cloth.particleCount(), self->law().margin());
-    stepped_.resize(cloth.particleCount());
+  if (cloth.selfContact() != nullptr) {
+    cloth.setObstacles(obstacles_);
+  } else {
+    contacts_.reserve(cloth.particleCount());
   }
 }
 
@@ -79,12 +92,16 @@ void ObstacleCollision::requireFriction(const material::Fabric& fabric) const {
 
 cloth::StepReport ObstacleCollision::step(cloth::Cloth& cloth, cloth::Integrator& integrator,
                                           cloth::ClothState& state, double time_step) {
+  if (cloth.selfContact() != nullptr) {
+    cloth.moveObstacles(state.time, state.time + time_step);
+    return integrator.step(cloth, state, time_step);
+  }
   placeBodies(cloth, state.time, state.time + time_step);
   findContacts(cloth, state, time_step);
   cloth.setContacts(contacts_);
   std::copy(state.positions.begin(), state.positions.end(), positions_.begin());
   const cloth::StepReport report = integrator.step(cloth, state, time_step);
-  if (report.accepted) resolveApart(cloth, state, time_step);
+  if (report.accepted) resolve(cloth, state, time_step);
   return report;
 }
 
@@ -134,16 +151,6 @@ void ObstacleCollision::findContacts(const cloth::Cloth& cloth, const cloth::Clo
       contacts_.push_back(contact);
     }
   }
-}
-
-/// As resolve(), but no farther than the cloth can go without passing through itself.
-void ObstacleCollision::resolveApart(const cloth::Cloth& cloth, cloth::ClothState& state,
-                                     double h) {
-  if (!motion_) return resolve(cloth, state, h);
-  stepped_ = state.positions;
-  resolve(cloth, state, h);
-  if (state.positions == stepped_) return;
-  motion_->go(cloth.selfContact()->nearPairs(), stepped_, state.positions, state.positions);
 }
 
 void ObstacleCollision::resolve(const cloth::Cloth& cloth, cloth::ClothState& state,

@@ -135,7 +135,7 @@ TEST(ObstacleCollision, DoesNothingToAClothOutOfReach) {
 TEST(ObstacleCollision, NeedsACoefficientOfFriction) {
   material::Fabric bare = HangingSheet::fabric();
   bare.friction.reset();
-  const cloth::Cloth cloth(cloth::square(2), bare, HangingSheet::effects());
+  cloth::Cloth cloth(cloth::square(2), bare, HangingSheet::effects());
   Obstacle sphere{"ball", mesh::ObstacleSphere{0.04}, at({1.0, 0.0, 0.0})};
   try {
     const ObstacleCollision collision(cloth, {sphere});
@@ -145,6 +145,59 @@ TEST(ObstacleCollision, NeedsACoefficientOfFriction) {
   }
   sphere.friction = 0.0;
   EXPECT_NO_THROW(ObstacleCollision(cloth, {sphere}));
+}
+
+/// A sheet that collides with itself, too, and starts where the obstacle is 10 mm before it.
+TEST(ObstacleCollision, GivesTheObstaclesThemselvesToAClothThatCollidesWithItself) {
+  material::Fabric fabric = HangingSheet::fabric();
+  fabric.compression = material::Compression{
+      1e-3, material::StrainStressCurve::fit({{0.2, 500.0}, {0.5, 5000.0}},
+                                             material::NegativeBranch::kLinear)};
+  cloth::ModelledEffects effects = HangingSheet::effects();
+  effects.self_collision = true;
+  const mesh::ObstacleCapsule needle{5e-4, 0.05};
+  for (const double x : {0.01, 0.0}) {
+    cloth::Cloth cloth(cloth::square(10, 0.2), fabric, effects);
+    Obstacle obstacle{
+        "needle", needle,
+        at({x + 0.0255, 0.005, -0.105}) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY())};
+    if (x == 0.0) obstacle.pose.translation().x() = 0.02;  // its tip is in the sheet
+    obstacle.motion = mesh::ObstacleDrift{{-0.5, 0.0, 0.0}};
+    if (x == 0.0) {
+      try {
+        ObstacleCollision(cloth, {obstacle});
+        ADD_FAILURE();
+      } catch (const std::invalid_argument& error) {
+        EXPECT_NE(std::string(error.what()).find("touches obstacle 'needle' at the start"),
+                  std::string::npos)
+            << error.what();
+      }
+      continue;
+    }
+    for (const int particle : sideParticles(cloth.mesh(), mesh::Side::kTop)) {
+      cloth.attach(particle,
+                   {cloth.initialState().positions[particle], Vector3d::Zero(), 0.0, 0.0});
+    }
+    ObstacleCollision collision(cloth, {obstacle});
+    cloth::StepSettings settings;
+    settings.newton_iterations = 5;
+    cloth::Integrator integrator(cloth, settings);
+    ClothState state = cloth.initialState();
+    proximity::RigidObstacle shape = makeObstacle(obstacle);
+    double force = 0.0;
+    for (int i = 0; i < 8; ++i) {
+      ASSERT_TRUE(collision.step(cloth, integrator, state, 0.0125).accepted);
+      EXPECT_TRUE(cloth.contacts().empty());
+      shape.setPose(obstacle.poseAt(state.time));
+      for (const auto& [a, b, c] : cloth.mesh().triangles) {
+        EXPECT_GT(shape.closestPoint({state.positions[a], state.positions[b], state.positions[c]})
+                      .distance,
+                  0.0);
+      }
+      force = std::max(force, cloth.selfContact()->forceOn(0, state.ofForces()).x());
+    }
+    EXPECT_GT(force, 0.0);
+  }
 }
 
 }  // namespace

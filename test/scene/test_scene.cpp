@@ -270,14 +270,15 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
     names.push_back(entry.path().stem().string());
     const Scene scene = loadScene(entry.path().string());
     EXPECT_NO_THROW(requireSound(scene.mesh)) << names.back();
-    EXPECT_EQ(scene.mesh.triangles.size(), 2048u) << names.back();
-    EXPECT_EQ(scene.attached_particles.size(), 33u) << names.back();
+    const bool hangs = names.back() != "dropped_sheet";
+    EXPECT_EQ(scene.mesh.triangles.size(), hangs ? 2048u : 512u) << names.back();
+    EXPECT_EQ(scene.attached_particles.size(), hangs ? 33u : 0u) << names.back();
     EXPECT_EQ(scene.time_step, 0.0125) << names.back();
     EXPECT_GT(material::loadFabric(scene.fabric_path).areal_density, 0.0) << names.back();
   }
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{
-                       "acrylic_knit_sample", "cotton_knit_sample", "linear_sheet",
+                       "acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet", "linear_sheet",
                        "orbiting_sphere", "wool_among_obstacles", "wool_in_wind", "wool_sample"}));
 }
 

@@ -90,8 +90,8 @@ TEST_F(SceneFabric, IsRefusedWithAWrongKeyHaptics) {
 
 TEST(ShippedScenes, HaveFabricsWithWhatTheyList) {
   for (const char* name :
-       {"acrylic_knit_sample", "cotton_knit_sample", "linear_sheet", "orbiting_sphere",
-        "wool_among_obstacles", "wool_in_wind", "wool_sample"}) {
+       {"acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet", "linear_sheet",
+        "orbiting_sphere", "wool_among_obstacles", "wool_in_wind", "wool_sample"}) {
     const std::string path = kConfig + "/scenes/" + name + ".yaml";
     EXPECT_NO_THROW(loadSceneFabric(path, loadScene(path))) << name;
   }

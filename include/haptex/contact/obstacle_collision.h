@@ -2,12 +2,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <optional>
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/cloth/dynamics/safe_motion.h"
 #include "haptex/mesh/obstacle.h"
 #include "haptex/proximity/rigid_obstacle.h"
 
@@ -26,16 +24,20 @@ namespace haptex::contact {
 /// What happens between the particles is not looked at: what is smaller than the mesh's cells gets
 /// through them, and a cell dips into a sphere of radius R by up to its size squared over 8 R.
 ///
-/// A step allocates nothing.
+/// All that does not concern a cloth that collides with itself: it gets the obstacles themselves
+/// (cloth::Cloth::setObstacles()), and no part of it passes through them.
+///
+/// A step allocates nothing, but where such cloth is near to more than ever before.
 class ObstacleCollision {
  public:
   static constexpr double kOffset = 5e-4;     ///< m
   static constexpr double kTolerance = 1e-6;  ///< m
 
   /// @param cloth the one that is stepped, with contacts among its effects
-  /// @throws std::invalid_argument what makeObstacle() says, or if an obstacle has no friction of
-  ///   its own and the fabric has none
-  ObstacleCollision(const cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles);
+  /// @throws std::invalid_argument what makeObstacle() says, if an obstacle has no friction of
+  ///   its own and the fabric has none, or if the cloth collides with itself and a triangle of it
+  ///   touches an obstacle or is inside of it at time 0
+  ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles);
 
   /// Takes a step as cloth::Integrator::step(), from the obstacles' poses at the state's time to
   /// those at its end, and keeps the particles out of them.
@@ -62,14 +64,11 @@ class ObstacleCollision {
   void placeBodies(const cloth::Cloth& cloth, double begin, double end);
   void findContacts(const cloth::Cloth& cloth, const cloth::ClothState& state, double h);
   void resolve(const cloth::Cloth& cloth, cloth::ClothState& state, double h) const;
-  void resolveApart(const cloth::Cloth& cloth, cloth::ClothState& state, double h);
 
   std::vector<mesh::Obstacle> obstacles_;
   std::vector<Body> bodies_;
   std::vector<Eigen::Vector3d> positions_;  // m, at the beginning of the step
   std::vector<cloth::ParticleContact> contacts_;
-  std::vector<Eigen::Vector3d> stepped_;     // m, at its end, before resolve()
-  std::optional<cloth::SafeMotion> motion_;  // if the cloth collides with itself
 };
 
 }  // namespace haptex::contact

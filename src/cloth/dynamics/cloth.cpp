@@ -112,6 +112,7 @@ void Cloth::takeFabrics(std::vector<material::Fabric> fabrics) {
   constant_ = &added;
   point_loads_ = loads;
   self_contact_ = forces_->find<SelfContact>();
+  if (obstacles_) self_contact_->setObstacles(obstacles_);
 }
 
 linear::SymmetricBlockMatrix Cloth::pattern() const {
@@ -207,6 +208,22 @@ void Cloth::setContacts(const std::vector<ParticleContact>& contacts) {
   }
   cloth::requireSound(contacts, touched_);
   contacts_.assign(contacts.begin(), contacts.end());
+}
+
+void Cloth::setObstacles(std::vector<mesh::Obstacle> obstacles) {
+  if (self_contact_ == nullptr) {
+    throw std::invalid_argument(
+        "the cloth does not collide with itself, so obstacles act on it by "
+        "contacts alone (setContacts())");
+  }
+  obstacles_.reset();
+  if (!obstacles.empty()) obstacles_ = std::make_shared<ObstacleSurfaces>(std::move(obstacles));
+  self_contact_->setObstacles(obstacles_);
+  revision_ = nextRevision();
+}
+
+void Cloth::moveObstacles(double begin, double end) {
+  if (obstacles_ && !obstacles_->move(begin, end)) revision_ = nextRevision();
 }
 
 void Cloth::attach(int particle, const AttachmentPath& path) {

@@ -87,6 +87,9 @@ double EnergyBalance::growth(const Cloth& cloth, const ClothState& begin, const 
   growth -= std::max(0.0, attachmentWork(cloth, begin, end));
   const double h = end.time - begin.time;
   growth -= std::max(0.0, contactWork(cloth, reactions, begin.positions, h));
+  if (const SelfContact* self = cloth.selfContact()) {
+    growth -= std::max(0.0, self->obstacleWork(end.ofForces()));
+  }
   if (cloth.forces().isDriven() && !(growth <= 0.0)) {
     const double at_end = std::max(0.0, h * drivenPower(cloth, end));
     growth -= growth <= at_end ? growth : std::max(at_end, h * drivenPower(cloth, begin));

@@ -10,15 +10,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostWays = 16;
-constexpr double kOfReach = 0.49;  // of the distance up to which all pairs are known
+constexpr int kMostWays = 16, kMostWaysAmongObstacles = 64;
 // What comes near stops half way into the thickness, where the pressure is still small, what is
 // nearer keeps most of its distance: it is for forces to bring it nearer.
 constexpr double kKept = 0.8;
-constexpr double kOfTime = 0.95;  // up to where the kept distance is reached
-// A pair whose particles were stopped so often stops both elements half way to what is kept, which
-// is safe whatever the other does.
-constexpr char kMostStops = 3;
 
 }  // namespace
 
@@ -27,11 +22,13 @@ SafeMotion::SafeMotion(std::size_t particles, double margin)
       place_(particles),
       left_(particles),
       way_(particles),
+      common_(Vector3d::Zero()),
       stopped_by_(particles),
       changed_(particles) {}
 
-MotionCut SafeMotion::go(NearPairs& near, const std::vector<Vector3d>& from,
-                         const std::vector<Vector3d>& to, std::vector<Vector3d>& reached) {
+MotionCut SafeMotion::go(NearPairs& near, NearObstacles* obstacles,
+                         const std::vector<Vector3d>& from, const std::vector<Vector3d>& to,
+                         std::vector<Vector3d>& reached) {
   const std::size_t particles = from.size();
   const auto is_finite = [](const Vector3d& place) { return place.allFinite(); };
   if (!std::all_of(to.begin(), to.end(), is_finite)) {
@@ -39,31 +36,31 @@ MotionCut SafeMotion::go(NearPairs& near, const std::vector<Vector3d>& from,
     return {};
   }
   place_ = from;
+  if (obstacles != nullptr) obstacle_place_ = obstacles->surfaces().atEnd();
+  obstacle_pairs_ = nullptr;
   stopped_by_.assign(particles, {-1, -1, -1, -1});
-  for (int pass = 0; pass < kMostWays; ++pass) {
-    bool arrived = true;
+  const int most_ways = obstacles != nullptr ? kMostWaysAmongObstacles : kMostWays;
+  for (int pass = 0; pass < most_ways; ++pass) {
+    double longest = 0.0;
     for (std::size_t i = 0; i < particles; ++i) {
       const bool stopped = stopped_by_[i][0] >= 0;
       left_[i] = stopped ? Vector3d::Zero() : Vector3d(to[i] - place_[i]);
-      arrived = arrived && left_[i].isZero(0.0);
+      longest = std::max(longest, left_[i].squaredNorm());
     }
-    if (arrived) break;
-    constexpr double kKnown = 0.9;  // of what is looked for
-    const double known = kKnown * near.searched();
-    if (!near.find(place_, known)) break;
-    chooseWays(kOfReach * known);
-    stops_.assign(near.pairs().size(), 0);
-    neighbour_stops_.assign(near.neighbours().size(), 0);
-    std::fill(changed_.begin(), changed_.end(), 0);
-    bool stopped = true;
-    for (round_ = 1; stopped; ++round_) {
-      stopped = false;
-      for (std::size_t p = 0; p < stops_.size(); ++p) {
-        stopped = stopBeforeContact(near.pairs()[p], stops_[p]) || stopped;
-      }
-      for (std::size_t p = 0; p < neighbour_stops_.size(); ++p) {
-        stopped = stopBeforeContact(near.neighbours()[p], neighbour_stops_[p]) || stopped;
-      }
+    if (longest == 0.0) break;
+    // Short ways need no new search: they bring nothing to the margin from farther away.
+    const double reach = kOfReach * kKnown * near.searched();
+    known_ = std::min(kKnown * near.searched(), 2.0 * std::sqrt(longest) + margin_);
+    if (!near.find(place_, known_)) break;
+    chooseWays(reach, true);
+    if (obstacles != nullptr && !chooseObstaclePairs(*obstacles)) {
+      chooseWays(reach, false);
+      chooseObstaclePairs(*obstacles);
+    }
+    if (!stopOnWay(near, obstacles)) {
+      chooseWays(reach, false);
+      chooseObstaclePairs(*obstacles);
+      stopOnWay(near, obstacles);
     }
     for (std::size_t i = 0; i < particles; ++i) {
       const Vector3d way = common_ + way_[i];
@@ -84,18 +81,22 @@ MotionCut SafeMotion::go(NearPairs& near, const std::vector<Vector3d>& from,
     cut.longest = missing;
     cut.between = stopped_by_[i];
   }
+  for (const int vertex : cut.between) {
+    if (vertex < static_cast<int>(particles)) continue;
+    cut.obstacle = obstacles->surfaces().obstacleOf(vertex - static_cast<int>(particles));
+  }
   reached = place_;
   return cut;
 }
 
 /// The common way is the mean one if far less is left beyond that, and nothing has been stopped,
 /// which would have to go with it.
-void SafeMotion::chooseWays(double reach) {
+void SafeMotion::chooseWays(double reach, bool common) {
   common_.setZero();
   for (const Vector3d& left : left_) common_ += left;
   common_ /= static_cast<double>(left_.size());
   double most = 0.0, most_beyond = 0.0;
-  bool stopped = false;
+  bool stopped = !common;
   for (std::size_t i = 0; i < left_.size(); ++i) {
     most = std::max(most, left_[i].squaredNorm());
     most_beyond = std::max(most_beyond, (left_[i] - common_).squaredNorm());
@@ -110,38 +111,123 @@ void SafeMotion::chooseWays(double reach) {
   }
 }
 
-/// @param stops how often the pair has stopped its particles
-/// @return whether it does now
-bool SafeMotion::stopBeforeContact(const Pair& pair, char& stops) {
-  if (stops > kMostStops) return false;
-  const auto& v = pair.vertices;
+/// On a common way the whole cloth goes up to where it would touch an obstacle.
+/// @return false if that is not worth while, and the particles have to go without a common way
+bool SafeMotion::chooseObstaclePairs(NearObstacles& obstacles) {
+  obstacle_way_.assign(obstacle_place_.size(), -common_);
+  if (common_.isZero(0.0)) {
+    obstacles.find(place_, obstacle_place_, known_);
+    obstacle_pairs_ = &obstacles.pairs();
+    return true;
+  }
+  obstacle_pairs_ =
+      &obstacles.onWays(place_, common_, way_, obstacle_place_, nullptr, 0.5 * margin_);
+  const Pair* first = nullptr;
+  const double time = firstTouch(*obstacle_pairs_, &first);
+  if (first == nullptr) return true;
+  constexpr double kWorthWhile = 0.1;
+  const double share = kOfTime * time;
+  if (share < kWorthWhile) return false;
+  common_ *= share;
+  for (Vector3d& way : way_) way *= share;
+  obstacle_way_.assign(obstacle_place_.size(), -common_);
+  return true;
+}
+
+/// Shortens ways until nothing touches. @return false if a part of the cloth would touch an
+/// obstacle while it goes on the common way: nothing has been stopped then
+bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles) {
+  static const std::vector<Pair> none;
+  const std::vector<Pair>& at_obstacles = obstacles != nullptr ? *obstacle_pairs_ : none;
+  const bool is_common = !common_.isZero(0.0);
+  double longest = 0.0;
+  for (const Vector3d& way : way_) longest = std::max(longest, way.squaredNorm());
+  longest = std::sqrt(longest);
+  stops_.assign(near.pairs().size(), 0);
+  neighbour_stops_.assign(near.neighbours().size(), 0);
+  obstacle_stops_.assign(at_obstacles.size(), 0);
+  std::fill(changed_.begin(), changed_.end(), 0);
+  bool stopped = true;
+  for (round_ = 1; stopped; ++round_) {
+    stopped = false;
+    for (std::size_t p = 0; p < stops_.size(); ++p) {
+      const Pair& pair = near.pairs()[p];
+      if (near.isBeyond(pair, margin_ + 2.0 * longest)) continue;
+      stopped = stopBeforeContact(pair, stops_[p]) || stopped;
+    }
+    for (std::size_t p = 0; p < neighbour_stops_.size(); ++p) {
+      stopped = stopBeforeContact(near.neighbours()[p], neighbour_stops_[p]) || stopped;
+    }
+    for (std::size_t p = 0; p < obstacle_stops_.size(); ++p) {
+      if (is_common && mayHaveChanged(at_obstacles[p]) && touch(at_obstacles[p])) {
+        stopped_by_.assign(stopped_by_.size(), {-1, -1, -1, -1});
+        return false;
+      }
+      if (is_common || obstacles->isBeyond(at_obstacles[p], 0.5 * margin_ + longest)) continue;
+      stopped = stopBeforeContact(at_obstacles[p], obstacle_stops_[p]) || stopped;
+    }
+  }
+  return true;
+}
+
+/// Whether the way of one of its particles has, in this round or the one before.
+bool SafeMotion::mayHaveChanged(const Pair& pair) const {
   int changed = 0;
-  for (int vertex : v) changed = std::max(changed, changed_[vertex]);
-  if (changed < round_ - 1) return false;
+  for (int vertex : pair.vertices) {
+    if (isParticle(vertex)) changed = std::max(changed, changed_[vertex]);
+  }
+  return changed >= round_ - 1;
+}
+
+std::optional<SafeMotion::Touch> SafeMotion::touch(const Pair& pair) const {
+  const auto& v = pair.vertices;
   std::array<Vector3d, 4> begin, end;
-  const Vector3d mean = 0.25 * (way_[v[0]] + way_[v[1]] + way_[v[2]] + way_[v[3]]);
+  const Vector3d mean = 0.25 * (wayOf(v[0]) + wayOf(v[1]) + wayOf(v[2]) + wayOf(v[3]));
   const std::size_t first_end = pair.kind == proximity::ElementPairKind::kVertexTriangle ? 1 : 2;
   double longest[2] = {0.0, 0.0};
   for (std::size_t i = 0; i < 4; ++i) {
-    begin[i] = place_[v[i]];
-    end[i] = begin[i] + way_[v[i]] - mean;
+    begin[i] = placeOf(v[i]);
+    end[i] = begin[i] + wayOf(v[i]) - mean;
     double& its = longest[i < first_end ? 0 : 1];
-    its = std::max(its, (way_[v[i]] - mean).squaredNorm());
+    its = std::max(its, (wayOf(v[i]) - mean).squaredNorm());
   }
   const double relative = std::sqrt(longest[0]) + std::sqrt(longest[1]);
-  if (relative == 0.0) return false;
-  if (proximity::isSurelyApart(pair.kind, begin, margin_ + relative / (1.0 - kKept))) return false;
-  const double distance = proximity::distanceOf(pair.kind, begin).distance;
-  const double kept = std::min(margin_, kKept * distance);
-  if (relative < distance - kept) return false;
-  const auto time = proximity::earliestContact(pair.kind, begin, end, kept);
-  if (!time) return false;
+  if (relative == 0.0) return {};
+  const double margin = pair.obstacle < 0 ? margin_ : 0.5 * margin_;
+  const double reach = margin + relative / (1.0 - kKept) + pair.radius;
+  if (proximity::isSurelyApart(pair.kind, begin, reach)) return {};
+  const double distance = proximity::distanceOf(pair.kind, begin).distance - pair.radius;
+  const double kept = std::min(margin, kKept * distance);
+  if (relative < distance - kept) return {};
+  const auto time = proximity::earliestContact(pair.kind, begin, end, pair.radius + kept);
+  if (!time) return {};
+  return Touch{*time, distance, kept};
+}
+
+/// @param first of them; null if none touches @return its time, from 0 to 1
+double SafeMotion::firstTouch(const std::vector<Pair>& pairs, const Pair** first) const {
+  double earliest = 1.0;
+  for (const Pair& pair : pairs) {
+    const auto found = touch(pair);
+    if (!found || (*first != nullptr && found->time >= earliest)) continue;
+    earliest = found->time;
+    *first = &pair;
+  }
+  return earliest;
+}
+
+/// @param stops how often the pair has stopped its particles
+/// @return whether it does now
+bool SafeMotion::stopBeforeContact(const Pair& pair, char& stops) {
+  if (stops > kMostStops || !mayHaveChanged(pair)) return false;
+  const auto found = touch(pair);
+  if (!found) return false;
   ++stops;
-  if (stops > kMostStops || *time <= 0.0) {
+  if (stops > kMostStops || found->time <= 0.0) {
     stops = kMostStops + 1;
-    limit(pair, 1.0, 0.5 * (distance - kept));
+    limit(pair, 1.0, 0.5 * (found->distance - found->kept));
   } else {
-    limit(pair, kOfTime * *time, proximity::kMaxLength);
+    limit(pair, kOfTime * found->time, proximity::kMaxLength);
   }
   return true;
 }
@@ -149,6 +235,7 @@ bool SafeMotion::stopBeforeContact(const Pair& pair, char& stops) {
 /// Shortens the ways of a pair's particles. @param most m, of each
 void SafeMotion::limit(const Pair& pair, double share, double most) {
   for (int vertex : pair.vertices) {
+    if (!isParticle(vertex)) continue;
     const double length = way_[vertex].norm();
     const double shorter = std::min(share, length > most ? most / length : 1.0);
     if (shorter == 1.0) continue;

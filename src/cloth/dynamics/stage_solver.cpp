@@ -52,7 +52,7 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
       solution_(linear::BlockVector::Zero(3, cloth.particleCount())),
       prescribed_(linear::BlockVector::Zero(3, cloth.particleCount())),
       fixed_(cloth.particleCount(), 0) {
-  if (cloth.effects().contacts) {
+  if (cloth.effects().contacts && !cloth.effects().self_collision) {
     contacts_.emplace(matrix_);
     load_change_ = solution_;
   }
@@ -115,6 +115,7 @@ bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
 void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                                   ClothState& result, StepReport& report) {
   const Clock::time_point start = Clock::now();
+  moveObstacles(cloth, stage, report);
   linearise(cloth, stage, guess);
   report.assembly_seconds += seconds(Clock::now() - start);
   report.linear_converged = solveFirst(cloth, stage, guess, report) && report.linear_converged;
@@ -124,7 +125,19 @@ void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const 
     result.positions[i] = attachment ? placeIn(stage, *attachment, i)
                                      : stage.base.positions[i] + stage.a * result.velocities[i];
   }
-  report.self_cut = keepApart(cloth, stage, stage.base.positions, result);
+  report.self_cut = keepApart(cloth, stage, start_, result);
+}
+
+/// Finds start_.
+void StageSolver::moveObstacles(const Cloth& cloth, const Stage& stage, StepReport& report) {
+  if (!motion_) return;
+  const SelfContact& contact = *cloth.selfContact();
+  if (contact.obstacles() == nullptr) {
+    start_ = stage.base.positions;
+  } else {
+    report.obstacle_cut =
+        motion_->push(contact.nearPairs(), *contact.obstacles(), stage.base.positions, start_);
+  }
 }
 
 /// Takes positions as far as they are reached without passing through, and velocities with them.
@@ -132,7 +145,8 @@ MotionCut StageSolver::keepApart(const Cloth& cloth, const Stage& stage, const P
                                  ClothState& at) {
   if (!motion_) return {};
   const MotionCut cut =
-      motion_->go(cloth.selfContact()->nearPairs(), from, at.positions, at.positions);
+      motion_->go(cloth.selfContact()->nearPairs(), cloth.selfContact()->obstacles(), from,
+                  at.positions, at.positions);
   if (cut.particles == 0) return cut;
   for (int i = 0; i < matrix_.size(); ++i) {
     at.velocities[i] = (at.positions[i] - stage.base.positions[i]) / stage.a;
@@ -161,7 +175,7 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
       trial_.positions[i] = fixed_[i] ? result.positions[i]
                                       : stage.base.positions[i] + stage.a * trial_.velocities[i];
     }
-    report.self_cut = keepApart(cloth, stage, stage.base.positions, trial_);
+    report.self_cut = keepApart(cloth, stage, start_, trial_);
     return incrementalPotential(cloth, stage, trial_);
   };
   const double at_rest = place_at(0.0);

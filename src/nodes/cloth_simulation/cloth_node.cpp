@@ -232,6 +232,12 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
                 "%d particles, by up to %.3g mm, at particles %d, %d, %d, %d", cut.particles,
                 1e3 * cut.longest, cut.between[0], cut.between[1], cut.between[2], cut.between[3]);
   }
+  if (const cloth::MotionCut& cut = loop.last_report.obstacle_cut; cut.particles > 0) {
+    status.addf("obstacles kept from pressing the cloth against each other",
+                "by up to %.3g mm, at particles %d, %d, %d, %d (from %d on: of obstacles)",
+                1e3 * cut.longest, cut.between[0], cut.between[1], cut.between[2], cut.between[3],
+                static_cast<int>(particle_count_));
+  }
   status.add("asleep", loop.asleep ? "yes" : "no");
   status.add("particles", particle_count_);
   status.add("triangles", triangle_count_);

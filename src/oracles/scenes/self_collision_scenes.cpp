@@ -3,11 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "haptex/base/constants.h"
 #include "haptex/oracles/scenes/obstacle_scenes.h"
+#include "haptex/oracles/scenes/obstacle_sets.h"
 
 namespace haptex::oracles {
 namespace {
@@ -19,16 +19,6 @@ using mesh::ClothMesh;
 using Set = SelfCollidingCloth::Set;
 
 constexpr double kPi = 3.14159265358979323846;
-
-cloth::ModelledEffects effectsOf(const Set& set, const material::Fabric& fabric) {
-  cloth::ModelledEffects effects;
-  effects.self_collision = true;
-  effects.gravity = {0.0, 0.0, -set.gravity};
-  effects.viscosity = true;
-  effects.bending = fabric.bending.has_value();
-  effects.contacts = !set.obstacles.empty();
-  return effects;
-}
 
 mesh::Obstacle floorAt(double height) {
   Isometry3d pose = Isometry3d::Identity();
@@ -88,6 +78,7 @@ Set folded(int cells) {
 Set heaped(int cells) {
   Set set;
   set.name = "heaped";
+  set.falls = true;
   // Not quite upright, and bent, so that it does not stand.
   set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, at({0.0, 0.0, 0.0}));
   for (Vector3d& place : set.mesh.initial_positions) {
@@ -121,6 +112,7 @@ Set gathered(int cells) {
 Set towel(int cells) {
   Set set;
   set.name = "towel";
+  set.falls = true;
   set.mesh = flatSheet({0.4, 0.1}, 4 * cells, cells, at({0.02, 0.0, 0.28}));
   mesh::Obstacle pole{"pole", mesh::ObstacleCapsule{0.01, 0.4},
                       Isometry3d(Eigen::AngleAxisd(0.5 * kPi, Vector3d::UnitX()))};
@@ -193,26 +185,11 @@ ClothMesh asOneMesh(const std::vector<ClothMesh>& sheets) {
   return all;
 }
 
-SelfCollidingCloth::SelfCollidingCloth(const Set& set, const material::Fabric& fabric,
-                                       const cloth::StepSettings& settings)
-    : cloth(set.mesh, fabric, effectsOf(set, fabric)),
-      state(cloth.initialState()),
-      move_(set.move),
-      integrator_(cloth, settings) {
-  if (!set.obstacles.empty()) collision_.emplace(cloth, set.obstacles);
-}
-
-cloth::StepReport SelfCollidingCloth::step(double h) {
-  if (move_) move_(cloth, state, state.time + h);
-  const cloth::StepReport report = collision_ ? collision_->step(cloth, integrator_, state, h)
-                                              : integrator_.step(cloth, state, h);
-  if (!report.accepted) throw std::runtime_error("a step was not accepted");
-  return report;
-}
-
 std::vector<Set> selfCollisionScenes(int cells) {
-  return {folded(cells), heaped(cells),  gathered(cells),
-          towel(cells),  ribbons(cells), twisted(cells)};
+  std::vector<Set> all = {folded(cells), heaped(cells),  gathered(cells),
+                          towel(cells),  ribbons(cells), twisted(cells)};
+  for (Set& set : obstacleSets(cells)) all.push_back(std::move(set));
+  return all;
 }
 
 double thicknessAt(const material::Compression& compression, double pressure) {

@@ -34,7 +34,7 @@ TEST(SafeMotion, GoesAllTheWayWhereNothingIsInIt) {
   Positions to = from, reached;
   for (Vector3d& place : to) place += Vector3d(0.3, -0.2 + 0.1 * place.x(), 10.0);
   SafeMotion motion(from.size(), 3e-4);
-  const MotionCut cut = motion.go(cloth.selfContact()->nearPairs(), from, to, reached);
+  const MotionCut cut = motion.go(cloth.selfContact()->nearPairs(), nullptr, from, to, reached);
   EXPECT_EQ(cut.particles, 0);
   EXPECT_EQ(reached, to);
 }
@@ -49,7 +49,7 @@ TEST(SafeMotion, NothingPassesThroughHoweverFarItIsToGo) {
     int cuts = 0;
     for (int i = 0; i < 6; ++i) {
       const Positions to = anywhere(at, way, random);
-      const MotionCut cut = motion.go(cloth.selfContact()->nearPairs(), at, to, at);
+      const MotionCut cut = motion.go(cloth.selfContact()->nearPairs(), nullptr, at, to, at);
       ASSERT_EQ(intersectionsOf(cloth, at), 0u) << way << ' ' << i;
       if (cut.particles == 0) continue;
       ++cuts;
@@ -69,7 +69,7 @@ TEST(SafeMotion, SaysWhatStopsALayerThatIsToGoThroughAnother) {
   for (std::size_t i = half; i < from.size(); ++i) to[i].z() = -2e-3;
   constexpr double kMargin = 3e-4;
   SafeMotion motion(from.size(), kMargin);
-  const MotionCut cut = motion.go(cloth.selfContact()->nearPairs(), from, to, reached);
+  const MotionCut cut = motion.go(cloth.selfContact()->nearPairs(), nullptr, from, to, reached);
   EXPECT_EQ(cut.particles, static_cast<int>(half));
   ASSERT_GE(cut.between[0], 0);
   for (std::size_t i = half; i < from.size(); ++i) EXPECT_GE(reached[i].z(), 0.99 * kMargin);
@@ -81,7 +81,7 @@ TEST(SafeMotion, LeavesWhatIsNotFiniteToTheStepThatRefusesIt) {
   Positions to = from, reached;
   to[3].y() = std::numeric_limits<double>::quiet_NaN();
   SafeMotion motion(from.size(), 3e-4);
-  EXPECT_EQ(motion.go(cloth.selfContact()->nearPairs(), from, to, reached).particles, 0);
+  EXPECT_EQ(motion.go(cloth.selfContact()->nearPairs(), nullptr, from, to, reached).particles, 0);
   EXPECT_TRUE(std::isnan(reached[3].y()));
 }
 

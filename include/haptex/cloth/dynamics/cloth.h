@@ -106,6 +106,13 @@ class Cloth {
   void setContacts(const std::vector<ParticleContact>& contacts);
   const std::vector<ParticleContact>& contacts() const { return contacts_; }
 
+  /// Of a cloth that collides with itself: it collides with these, too, from where they are at time
+  /// 0 on. Their friction is the fabric's if they have none. Allocates.
+  /// @throws std::invalid_argument if the cloth does not collide with itself
+  void setObstacles(std::vector<mesh::Obstacle> obstacles);
+  /// They go through a step: ObstacleSurfaces::move(). Nothing without obstacles.
+  void moveObstacles(double begin, double end);
+
   /// Attaches a particle to a place, or gives an attached one a new path.
   /// @throws std::invalid_argument if the particle does not exist, a number is not finite, or the
   ///   duration is negative
@@ -151,9 +158,10 @@ class Cloth {
   ModelledEffects effects_;
   std::vector<double> masses_;
   std::unique_ptr<ForceSum> forces_;
-  ConstantForces* constant_ = nullptr;         // of forces_
-  PointLoads* point_loads_ = nullptr;          // of forces_; null if they are not modelled
-  const SelfContact* self_contact_ = nullptr;  // likewise
+  ConstantForces* constant_ = nullptr;           // of forces_
+  PointLoads* point_loads_ = nullptr;            // of forces_; null if they are not modelled
+  SelfContact* self_contact_ = nullptr;          // likewise
+  std::shared_ptr<ObstacleSurfaces> obstacles_;  // of self_contact_; null if there are none
   int pattern_size_ = 0;
   std::vector<std::optional<AttachmentPath>> attachments_;
   // Both are empty unless contacts are modelled, and have a capacity of one per particle then.

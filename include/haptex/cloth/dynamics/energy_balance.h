@@ -37,7 +37,8 @@ class EnergyBalance {
   /// Euler, or of the mean of those at both ends, as it is to the second order, if that is more;
   /// but no more than that of a jump at the beginning of the step. That of the air is its power at
   /// the beginning or the end, whichever is more. That of contacts is of their forces over the ways
-  /// of the bodies and out of what they had penetrated.
+  /// of the bodies and out of what they had penetrated, that of obstacles of a cloth that collides
+  /// with itself what SelfContact::obstacleWork() says.
   /// @param begin as for begin()
   /// @param end   its time included
   /// @param reactions in the order of Cloth::contacts(); empty: none acted

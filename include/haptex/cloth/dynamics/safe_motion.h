@@ -1,10 +1,13 @@
-// How far particles of a cloth may go without any part of it passing through another.
+// How far particles of a cloth may go without any part of it passing through another, or through an
+// obstacle.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "haptex/cloth/forces/self_contact/near_obstacles.h"
 #include "haptex/cloth/forces/self_contact/near_pairs.h"
 
 namespace haptex::cloth {
@@ -14,8 +17,9 @@ struct MotionCut {
   int particles = 0;     ///< that did not get where they were to go
   double longest = 0.0;  ///< m, that one of them was short of
   /// The pair that stopped this one (proximity::verticesOf()); -1 if none did, but the number of
-  /// ways was spent.
+  /// ways was spent. Vertices of obstacles are numbered after the particles.
   std::array<int, 4> between = {-1, -1, -1, -1};
+  int obstacle = -1;  ///< that the pair has an element of; -1: none
 };
 
 /// Moves particles from one state without intersections to another, along straight ways between
@@ -23,7 +27,7 @@ struct MotionCut {
 /// than half of the distance up to which pairs are known; pairs that might touch within that are
 /// tested by continuous detection (proximity::earliestContact()), and their particles stopped
 /// before they touch. So two elements keep a margin, or where they are nearer already a part of
-/// their distance, on every way.
+/// their distance, on every way. Of obstacles it is half of the margin.
 ///
 /// Allocates nothing once its buffers have had the size that they need.
 class SafeMotion {
@@ -32,28 +36,76 @@ class SafeMotion {
   SafeMotion(std::size_t particles, double margin);
 
   /// @param near of the cloth
+  /// @param obstacles null if there are none. Stay where they are at the end of the step
   /// @param from m, without intersections
   /// @param to   m, where the particles are to go
   /// @param reached m, where they get without touching on the way: exactly `to` where nothing is
   ///   cut, or a number of it is not finite. May be `to`.
-  MotionCut go(NearPairs& near, const std::vector<Eigen::Vector3d>& from,
+  MotionCut go(NearPairs& near, NearObstacles* obstacles, const std::vector<Eigen::Vector3d>& from,
                const std::vector<Eigen::Vector3d>& to, std::vector<Eigen::Vector3d>& reached);
+
+  /// Lets obstacles go through their step while the cloth stays, but for what is in their way: that
+  /// is carried with them, and whatever this runs into. Where they cannot go on, because they would
+  /// press cloth against each other, they stop (ObstacleSurfaces::stopAt()), all at once.
+  /// @param from m, without intersections with the obstacles at the beginning of the step
+  /// @param reached m, without intersections with them at its end. May be `from`
+  /// @return what the obstacles were short of: `particles` counts their vertices
+  MotionCut push(NearPairs& near, NearObstacles& obstacles,
+                 const std::vector<Eigen::Vector3d>& from, std::vector<Eigen::Vector3d>& reached);
 
  private:
   using Pair = NearPairs::Pair;
+  using Vectors = std::vector<Eigen::Vector3d>;
+  /// How a pair would touch.
+  struct Touch {
+    double time;      // of the way, from 0 to 1
+    double distance;  // m, at its beginning
+    double kept;      // m
+  };
 
-  void chooseWays(double reach);
+  static constexpr double kKnown = 0.9;     // of the distance that is searched for
+  static constexpr double kOfReach = 0.49;  // of the distance up to which all pairs are known
+  static constexpr double kOfTime = 0.95;   // up to where the kept distance is reached
+  // A pair whose particles were stopped so often stops both elements half way to what is kept,
+  // which is safe whatever the other does.
+  static constexpr char kMostStops = 3;
+
+  void chooseWays(double reach, bool common);
+  bool chooseObstaclePairs(NearObstacles& obstacles);
+  bool stopOnWay(const NearPairs& near, const NearObstacles* obstacles);
   bool stopBeforeContact(const Pair& pair, char& stops);
   void limit(const Pair& pair, double share, double most);
+  std::optional<Touch> touch(const Pair& pair) const;
+  bool mayHaveChanged(const Pair& pair) const;
+  double firstTouch(const std::vector<Pair>& pairs, const Pair** first) const;
 
-  double margin_;                       // m
-  std::vector<Eigen::Vector3d> place_;  // m, reached
-  std::vector<Eigen::Vector3d> left_;   // m, of the way of each particle that is not stopped
-  std::vector<Eigen::Vector3d> way_;    // m, beyond the common one
-  Eigen::Vector3d common_;              // m
-  std::vector<std::array<int, 4>> stopped_by_;  // per particle; -1: not stopped
-  std::vector<int> changed_;                    // round in which the way last did
-  std::vector<char> stops_, neighbour_stops_;   // per pair, how often it has stopped something
+  double pushOn(NearPairs& near, NearObstacles& obstacles, MotionCut& cut);
+  void advanceObstacles(double share, const Vectors& end);
+  void carry(const NearPairs& near, const NearObstacles& obstacles);
+  bool carry(const Pair& pair, char& times);
+  Eigen::Vector3d wayOfCarrier(const Pair& pair) const;
+
+  bool isParticle(int vertex) const { return vertex < static_cast<int>(place_.size()); }
+  const Eigen::Vector3d& placeOf(int vertex) const {
+    return isParticle(vertex) ? place_[vertex] : obstacle_place_[vertex - place_.size()];
+  }
+  const Eigen::Vector3d& wayOf(int vertex) const {
+    return isParticle(vertex) ? way_[vertex] : obstacle_way_[vertex - place_.size()];
+  }
+
+  double margin_;           // m
+  double known_ = 0.0;      // m, distance up to which all pairs are known on this way
+  Vectors place_;           // m, reached
+  Vectors left_;            // m, of the way of each particle that is not stopped
+  Vectors way_;             // m, beyond the common one
+  Eigen::Vector3d common_;  // m
+  Vectors obstacle_place_;  // m
+  Vectors obstacle_way_;    // m, beyond the common one of the cloth
+  const std::vector<Pair>* obstacle_pairs_ = nullptr;  // of this way; null: there are none
+  std::vector<std::array<int, 4>> stopped_by_;         // per particle; -1: not stopped
+  std::vector<int> changed_;                           // round in which the way last did
+  // Per pair, how often it has stopped or carried something.
+  std::vector<char> stops_, neighbour_stops_, obstacle_stops_;
   int round_ = 0;
 };
 

@@ -39,7 +39,8 @@ namespace haptex::cloth {
 /// Where the cloth collides with itself, the first solve's result and every trial of a line search
 /// are taken as far only as they can be reached without passing through (SafeMotion), and
 /// velocities follow; Newton iterations go on for a while as long as something is cut, whatever the
-/// settings say. That holds for stages from the beginning of a step, x* = x0, alone.
+/// settings say. Obstacles go through the step before, and what they carry with them is where the
+/// first solve's way begins. That holds for stages from the beginning of a step, x* = x0, alone.
 ///
 /// Allocates nothing after construction, but where more of the cloth is near itself than before.
 class StageSolver {
@@ -82,6 +83,7 @@ class StageSolver {
                  ClothState& result);
 
   void hold(const Cloth& cloth, const Stage& stage, const ClothState& at, bool passive);
+  void moveObstacles(const Cloth& cloth, const Stage& stage, StepReport& report);
   MotionCut keepApart(const Cloth& cloth, const Stage& stage, const Positions& from,
                       ClothState& at);
   double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result,
@@ -124,6 +126,7 @@ class StageSolver {
   bool any_fixed_ = false;
   std::optional<ActiveSetContactSolver> contacts_;
   std::optional<SafeMotion> motion_;   // if the cloth collides with itself
+  Positions start_;                    // m, likewise: that of the step beside moved obstacles
   linear::BlockVector load_change_;    // of the solution, by other loads of friction
   ClothState trial_;                   // of a line search; empty where there is none
   std::vector<Eigen::Vector3d> held_;  // by the forces: Force::hold()

@@ -96,9 +96,13 @@ struct StepReport {
                                  ///< the end of the step, 1/2, which is backward Euler
   double energy_taken = 0;  ///< J, that the step had gained and was taken out of its velocities
   bool taken_anew = false;  ///< by backward Euler, because it had gained much (Integrator)
-  /// What the cloth was kept from because it would have passed through itself, in the last motion
-  /// of the step: where the step has converged, nothing.
+  /// What the cloth was kept from because it would have passed through itself, or through an
+  /// obstacle if it collides with itself, in the last motion of the step: where the step has
+  /// converged, nothing.
   MotionCut self_cut;
+  /// What obstacles of such a cloth were kept from because they would have pressed cloth against
+  /// each other (SafeMotion::push()). They go on from there in the next step.
+  MotionCut obstacle_cut;
   int contact_rounds = 0;  ///< linear solves among them that looked for what touches
   double assembly_seconds = 0;
   double solve_seconds = 0;

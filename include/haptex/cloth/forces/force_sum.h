@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "haptex/cloth/forces/force.h"
@@ -34,6 +35,10 @@ class ForceSum final : public Force {
       if (const auto* found = dynamic_cast<const AForce*>(force.get())) return found;
     }
     return nullptr;
+  }
+  template <typename AForce>
+  AForce* find() {
+    return const_cast<AForce*>(std::as_const(*this).find<AForce>());
   }
 
   std::vector<std::array<int, 2>> pairs() const override;

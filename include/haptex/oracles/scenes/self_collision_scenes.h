@@ -1,59 +1,24 @@
 // Cloth that folds, heaps, twists and pulls tight, and does not pass through itself.
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "haptex/cloth/dynamics/cloth.h"
-#include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/contact/obstacle_collision.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
+#include "haptex/oracles/scenes/self_colliding_cloth.h"
 
 namespace haptex::oracles {
 
 /// Sheets of their own as one mesh. Their rest coordinates lie beside each other.
 mesh::ClothMesh asOneMesh(const std::vector<mesh::ClothMesh>& sheets);
 
-/// A cloth that collides with itself, stepped by backward Euler.
-class SelfCollidingCloth {
- public:
-  struct Set {
-    mesh::ClothMesh mesh;
-    double gravity = 9.81;  ///< m/s^2
-    std::vector<mesh::Obstacle> obstacles = {};
-    /// Before every step: moves attachments to where they are at the end of it (s).
-    std::function<void(cloth::Cloth& cloth, const cloth::ClothState& state, double end)> move = {};
-    double duration = 1.0;  ///< s
-    std::string name = {};
-  };
-
-  /// @param settings of backward Euler
-  SelfCollidingCloth(const Set& set, const material::Fabric& fabric,
-                     const cloth::StepSettings& settings);
-
-  /// @throws std::runtime_error if the step is not accepted
-  cloth::StepReport step(double h);
-
-  cloth::Cloth cloth;
-  cloth::ClothState state;
-
- private:
-  std::function<void(cloth::Cloth& cloth, const cloth::ClothState& state, double end)> move_;
-  cloth::Integrator integrator_;
-  std::optional<contact::ObstacleCollision> collision_;
-};
-
 /// - folded: a sheet that lies on a floor is folded twice,
 /// - heaped: a sheet falls on its edge and heaps up,
 /// - gathered: a curtain on rings is drawn to a tenth of its width,
 /// - towel: falls over a pole, so that its ends swing together,
 /// - ribbons: two that cross are wound around each other and pulled tight,
-/// - twisted: the ends of a strip are turned against each other by a whole turn.
+/// - twisted: the ends of a strip are turned against each other by a whole turn,
+/// and those of obstacleSets().
 /// @param cells along 100 mm, > 0
 std::vector<SelfCollidingCloth::Set> selfCollisionScenes(int cells);
 

@@ -44,11 +44,11 @@ NearPairs::NearPairs(const std::vector<std::array<int, 3>>& triangles,
 
 bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
   if (!searched_at_.empty()) {
-    const double most = 0.5 * (searched() - distance);
-    const auto is_near = [most](const Vector3d& a, const Vector3d& b) {
-      return (a - b).squaredNorm() <= most * most;
-    };
-    if (std::equal(positions.begin(), positions.end(), searched_at_.begin(), is_near)) return true;
+    const double moved = farthest(positions, searched_at_);
+    if (moved <= 0.5 * (searched() - distance)) {
+      moved_ = moved;
+      return true;
+    }
   }
   const auto is_allowed = [](const Vector3d& place) {
     return place.allFinite() && place.cwiseAbs().maxCoeff() <= proximity::kMaxLength;
@@ -57,12 +57,27 @@ bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
   hierarchy_.refit(positions);
   self_.find(found_);
   searched_at_ = positions;
+  moved_ = 0.0;
   pairs_.clear();
-  for (const proximity::NearPair& pair : found_) pairs_.push_back(named(pair.elements));
+  for (const proximity::NearPair& pair : found_) {
+    pairs_.push_back(named(pair.elements));
+    pairs_.back().distance = pair.nearest.distance;
+  }
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
     return std::tie(a.kind, a.first, a.second) < std::tie(b.kind, b.first, b.second);
   });
   return true;
+}
+
+/// Infinite where one is not a number.
+double NearPairs::farthest(const std::vector<Vector3d>& now, const std::vector<Vector3d>& before) {
+  double square = 0.0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const double its = (now[i] - before[i]).squaredNorm();
+    if (std::isnan(its)) return std::numeric_limits<double>::infinity();
+    square = std::max(square, its);
+  }
+  return std::sqrt(square);
 }
 
 NearPairs::Pair NearPairs::named(const proximity::ElementPair& pair) const {

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace haptex::cloth {
 namespace {
@@ -13,10 +12,37 @@ using Eigen::Vector3d;
 // Of the squares of both rest lengths: edges at an angle of less than about 1.8 degrees.
 constexpr double kParallel = 1e-3;
 
-using Edge = std::array<int, 2>;
-Edge edgeFrom(const std::array<int, 3>& triangle, int corner) {
-  const int a = triangle[corner], b = triangle[(corner + 1) % 3];
-  return {std::min(a, b), std::max(a, b)};
+std::vector<double> edgeSquares(const std::vector<proximity::Edge>& edges,
+                                const std::vector<Vector3d>& positions) {
+  std::vector<double> squares;
+  for (const auto& [a, b] : edges) squares.push_back((positions[b] - positions[a]).squaredNorm());
+  return squares;
+}
+
+/// Of one layer, and at half of the distance, from that of two layers that mirror each other.
+LayerPressure mirrored(const LayerPressure& layers) {
+  return {0.5 * layers.energy, layers.pressure, 2.0 * layers.slope};
+}
+
+/// m, between the surface of an obstacle and the cloth. Places that no state has, where attachments
+/// have jumped for a comparison of energies, may lie inside.
+double gapOf(double distance, double radius) { return std::max(1e-9, distance - radius); }
+
+/// Of two edges with the edge vectors a and b; whole: at 1.
+void fadeWhereParallel(const Vector3d& a, const Vector3d& b, double whole, double area,
+                       const LayerPressure& law, PairEnergy& energy) {
+  const Vector3d product = a.cross(b);
+  const double c = std::min(1.0, product.squaredNorm() / whole);
+  const double m = c * (2.0 - c);
+  energy.energy = m * area * law.energy;
+  energy.force = m * area * law.pressure;
+  energy.stiffness = m * area * law.slope;
+  if (c < 1.0) {
+    energy.parallel = true;
+    const double slope = area * law.energy * 2.0 * (1.0 - c) * 2.0 / whole;
+    energy.by_first = slope * b.cross(product);
+    energy.by_second = slope * product.cross(a);
+  }
 }
 
 }  // namespace
@@ -24,62 +50,58 @@ Edge edgeFrom(const std::array<int, 3>& triangle, int corner) {
 PairEnergies::PairEnergies(const std::vector<std::array<int, 3>>& triangles,
                            const std::vector<Vector3d>& reference, const LayerLaw& law)
     : law_(law),
+      particles_(static_cast<int>(reference.size())),
       triangles_(triangles),
-      across_(triangles.size(), {-1, -1, -1}),
-      around_(reference.size()),
+      cloth_(triangles, reference.size()),
       vertex_areas_(reference.size(), 0.0) {
-  const std::vector<Edge> edges = proximity::MeshElements(triangles).edges;
+  const std::vector<proximity::Edge> edges = proximity::MeshElements(triangles).edges;
   edge_areas_.assign(edges.size(), 0.0);
-  for (const Edge& edge : edges) {
-    edge_squares_.push_back((reference[edge[1]] - reference[edge[0]]).squaredNorm());
-  }
-  std::map<Edge, std::vector<std::array<int, 2>>> owners;  // triangle and corner
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
-    const auto& [a, b, c] = triangles[t];
+  edge_squares_ = edgeSquares(edges, reference);
+  for (const auto& triangle : triangles) {
+    const auto& [a, b, c] = triangle;
     const Vector3d ab = reference[b] - reference[a], ac = reference[c] - reference[a];
-    const double part = 0.5 * ab.cross(ac).norm() / 6.0;
+    const double area = 0.5 * ab.cross(ac).norm();
+    const double part = area / 6.0;
+    triangle_areas_.push_back(area);
     for (int i = 0; i < 3; ++i) {
-      const Edge edge = edgeFrom(triangles[t], i);
-      vertex_areas_[triangles[t][i]] += part;
+      const int from = triangle[i], to = triangle[(i + 1) % 3];
+      const proximity::Edge edge = {std::min(from, to), std::max(from, to)};
+      vertex_areas_[from] += part;
       edge_areas_[std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin()] += part;
-      around_[triangles[t][i]].push_back(t);
-      owners[edge].push_back({t, i});
-    }
-  }
-  for (const auto& [edge, of_edge] : owners) {
-    if (of_edge.size() == 2) {
-      across_[of_edge[0][0]][of_edge[0][1]] = of_edge[1][0];
-      across_[of_edge[1][0]][of_edge[1][1]] = of_edge[0][0];
-    } else {
-      for (int vertex : edge) around_[vertex].clear();
     }
   }
 }
 
-void PairEnergies::find(const Positions& positions, const std::vector<Pair>& pairs,
+void PairEnergies::setObstacles(const ObstacleSurfaces& surfaces) {
+  obstacles_.emplace(surfaces.elements().triangles, surfaces.vertexCount());
+  obstacle_edge_squares_ = edgeSquares(surfaces.elements().edges, surfaces.atEnd());
+}
+
+void PairEnergies::find(const Positions& positions, const NearPairs& near,
                         std::vector<PairEnergy>& found) {
   found.clear();
-  const Pair* pair = pairs.data();
-  const Pair* const end = pair + pairs.size();
+  const Pair* pair = near.pairs().data();
+  const Pair* const end = pair + near.pairs().size();
   while (pair != end && pair->kind == proximity::ElementPairKind::kVertexTriangle) {
-    const Pair* const begin = pair;
-    while (pair != end && pair->kind == begin->kind && pair->first == begin->first) ++pair;
-    addVertex(positions, begin, pair, found);
+    const int vertex = pair->first;
+    near_.clear();
+    for (; pair != end && pair->kind == proximity::ElementPairKind::kVertexTriangle &&
+           pair->first == vertex;
+         ++pair) {
+      if (!near.isBeyond(*pair, law_.thickness())) near_.push_back(pair->second);
+    }
+    if (!near_.empty()) addVertex(positions, vertex, found);
   }
-  for (; pair != end; ++pair) addEdges(positions, *pair, found);
+  for (; pair != end; ++pair) {
+    if (!near.isBeyond(*pair, law_.leastDistance())) addEdges(positions, *pair, found);
+  }
 }
 
-/// @param begin, end pairs of a vertex
-void PairEnergies::addVertex(const Positions& positions, const Pair* begin, const Pair* end,
+/// That is near the triangles near_.
+void PairEnergies::addVertex(const Positions& positions, int vertex,
                              std::vector<PairEnergy>& found) {
-  const int vertex = begin->first;
   const Vector3d& place = positions[vertex];
-  near_.clear();
-  features_.clear();
-  for (const Pair* pair = begin; pair != end; ++pair) near_.push_back(pair->second);
-  for (int triangle : near_) countTriangle(positions, vertex, triangles_[triangle]);
-  for (int triangle : near_) countShared(positions, vertex, triangle);
-  for (const Feature& feature : features_) {
+  for (const auto& feature : cloth_.nearest(positions, place, near_, law_.thickness())) {
     if (feature.times == 0) continue;
     PairEnergy energy{};
     energy.count = 1 + feature.size;
@@ -103,67 +125,6 @@ void PairEnergies::addVertex(const Positions& positions, const Pair* begin, cons
   }
 }
 
-void PairEnergies::countTriangle(const Positions& positions, int vertex,
-                                 const std::array<int, 3>& corners) {
-  const proximity::TrianglePoint nearest = proximity::closestPoint(
-      {positions[corners[0]], positions[corners[1]], positions[corners[2]]}, positions[vertex]);
-  if (nearest.distance >= law_.thickness()) return;
-  Feature feature = {0, {-1, -1, -1}, {}, 1};
-  for (int i = 0; i < 3; ++i) {
-    if (nearest.barycentric[i] == 0.0) continue;
-    feature.ids[feature.size] = corners[i];
-    feature.weights[feature.size++] = nearest.barycentric[i];
-  }
-  count(feature);
-}
-
-/// Counts down.
-void PairEnergies::countEdge(const Positions& positions, int vertex, int from, int to) {
-  const Vector3d way = positions[to] - positions[from];
-  const double square = way.squaredNorm();
-  const double t = way.dot(positions[vertex] - positions[from]);
-  if (!(t > 0.0)) return count({1, {from, -1, -1}, {1.0}, -1});
-  if (!(t < square)) return count({1, {to, -1, -1}, {1.0}, -1});
-  count({2, {from, to, -1}, {1.0 - t / square, t / square}, -1});
-}
-
-void PairEnergies::count(Feature feature) {
-  // In ascending order, with the weights.
-  for (int i = 0; i + 1 < feature.size; ++i) {
-    for (int j = i + 1; j < feature.size; ++j) {
-      if (feature.ids[j] > feature.ids[i]) continue;
-      std::swap(feature.ids[i], feature.ids[j]);
-      std::swap(feature.weights[i], feature.weights[j]);
-    }
-  }
-  for (Feature& known : features_) {
-    if (known.ids != feature.ids) continue;
-    known.times += feature.times;
-    return;
-  }
-  features_.push_back(feature);
-}
-
-/// The inner edges and vertices whose first triangle this is: all of their triangles are near.
-void PairEnergies::countShared(const Positions& positions, int vertex, int triangle) {
-  for (int i = 0; i < 3; ++i) {
-    const int corner = triangles_[triangle][i];
-    if (across_[triangle][i] > triangle && isNear(across_[triangle][i])) {
-      countEdge(positions, vertex, corner, triangles_[triangle][(i + 1) % 3]);
-    }
-    const std::vector<int>& around = around_[corner];
-    if (around.empty() || around.front() != triangle) continue;
-    const auto is_near = [this](int other) { return isNear(other); };
-    if (std::all_of(around.begin(), around.end(), is_near)) {
-      count({1, {corner, -1, -1}, {1.0}, 1});
-    }
-  }
-}
-
-bool PairEnergies::isNear(int triangle) const {
-  return std::binary_search(near_.begin(), near_.end(), triangle);
-}
-
 void PairEnergies::addEdges(const Positions& positions, const Pair& pair,
                             std::vector<PairEnergy>& found) const {
   const auto& v = pair.vertices;
@@ -182,22 +143,132 @@ void PairEnergies::addEdges(const Positions& positions, const Pair& pair,
   }
   energy.distance = nearest.distance;
   energy.normal = away / nearest.distance;
-  const LayerPressure law = law_.guardAt(nearest.distance);
-  const double area = 0.5 * (edge_areas_[pair.first] + edge_areas_[pair.second]);
-  const Vector3d a = places[1] - places[0], b = places[3] - places[2];
-  const Vector3d product = a.cross(b);
-  const double whole = kParallel * edge_squares_[pair.first] * edge_squares_[pair.second];
-  const double c = std::min(1.0, product.squaredNorm() / whole);
-  const double m = c * (2.0 - c);
-  energy.energy = m * area * law.energy;
-  energy.force = m * area * law.pressure;
-  energy.stiffness = m * area * law.slope;
-  if (c < 1.0) {
-    energy.parallel = true;
-    const double slope = area * law.energy * 2.0 * (1.0 - c) * 2.0 / whole;
-    energy.by_first = slope * b.cross(product);
-    energy.by_second = slope * product.cross(a);
+  fadeWhereParallel(places[1] - places[0], places[3] - places[2],
+                    kParallel * edge_squares_[pair.first] * edge_squares_[pair.second],
+                    0.5 * (edge_areas_[pair.first] + edge_areas_[pair.second]),
+                    law_.guardAt(nearest.distance), energy);
+  found.push_back(energy);
+}
+
+void PairEnergies::findOfObstacles(const Positions& positions, const NearObstacles& near,
+                                   bool at_end, std::vector<PairEnergy>& found) {
+  const ObstacleSurfaces& surfaces = near.surfaces();
+  const Obstacles obstacles = {surfaces, at_end, at_end ? surfaces.atEnd() : surfaces.atBegin()};
+  const Pair* pair = near.pairs().data();
+  const Pair* const end = pair + near.pairs().size();
+  const auto is_vertex = [&](const Pair& other) {
+    return other.kind == proximity::ElementPairKind::kVertexTriangle && other.first < particles_;
+  };
+  while (pair != end && is_vertex(*pair)) {
+    const Pair& first = *pair;
+    near_.clear();
+    for (; pair != end && is_vertex(*pair) && pair->first == first.first &&
+           pair->obstacle == first.obstacle;
+         ++pair) {
+      if (!near.isBeyond(*pair, 0.5 * law_.thickness())) near_.push_back(pair->second);
+    }
+    if (!near_.empty()) addVertexAtObstacle(positions, obstacles, first, found);
   }
+  for (; pair != end; ++pair) {
+    if (near.isBeyond(*pair, 0.5 * law_.leastDistance())) continue;
+    if (pair->kind == proximity::ElementPairKind::kVertexTriangle) {
+      addObstacleVertex(positions, obstacles, *pair, found);
+    } else {
+      addEdgesAtObstacle(positions, obstacles, *pair, found);
+    }
+  }
+}
+
+/// That is near the triangles near_. @param pair any of these
+void PairEnergies::addVertexAtObstacle(const Positions& positions, const Obstacles& obstacles,
+                                       const Pair& pair, std::vector<PairEnergy>& found) {
+  const int vertex = pair.first;
+  const double reach = pair.radius + 0.5 * law_.thickness();
+  for (const auto& feature :
+       obstacles_->nearest(obstacles.places, positions[vertex], near_, reach)) {
+    if (feature.times == 0) continue;
+    Vector3d away = positions[vertex];
+    for (int i = 0; i < feature.size; ++i) {
+      away -= feature.weights[i] * obstacles.places[feature.ids[i]];
+    }
+    const double distance = away.norm();
+    if (distance >= reach) continue;
+    PairEnergy energy{};
+    energy.obstacle = pair.obstacle;
+    energy.count = 1;
+    energy.vertices[0] = vertex;
+    energy.weights[0] = 1.0;
+    energy.distance = gapOf(distance, pair.radius);
+    energy.normal = away / distance;
+    const LayerPressure law = mirrored(law_.at(2.0 * energy.distance));
+    const double area = 2.0 * feature.times * vertex_areas_[vertex];
+    energy.energy = area * law.energy;
+    energy.force = area * law.pressure;
+    energy.stiffness = std::max(0.0, area) * law.slope;
+    energy.way = obstacles.surfaces.wayOf(energy.obstacle, feature.size, feature.ids.data(),
+                                          feature.weights.data(), pair.radius * energy.normal,
+                                          obstacles.at_end);
+    found.push_back(energy);
+  }
+}
+
+void PairEnergies::addObstacleVertex(const Positions& positions, const Obstacles& obstacles,
+                                     const Pair& pair, std::vector<PairEnergy>& found) const {
+  const auto& v = pair.vertices;
+  const int vertex = v[0] - particles_;
+  const std::array<Vector3d, 4> places = {obstacles.places[vertex], positions[v[1]],
+                                          positions[v[2]], positions[v[3]]};
+  const double reach = pair.radius + 0.5 * law_.leastDistance();
+  if (proximity::isSurelyApart(pair.kind, places, reach)) return;
+  const proximity::PairDistance nearest = proximity::vertexTriangleDistance(places);
+  if (nearest.distance >= reach) return;
+  PairEnergy energy{};
+  energy.obstacle = pair.obstacle;
+  energy.count = 3;
+  Vector3d away = -places[0];
+  for (int i = 0; i < 3; ++i) {
+    energy.vertices[i] = v[i + 1];
+    energy.weights[i] = nearest.weights[i + 1];
+    away += nearest.weights[i + 1] * places[i + 1];
+  }
+  energy.distance = gapOf(nearest.distance, pair.radius);
+  energy.normal = away / away.norm();
+  const LayerPressure law = mirrored(law_.guardAt(2.0 * energy.distance));
+  const double area = triangle_areas_[pair.second] / 3.0;
+  energy.energy = area * law.energy;
+  energy.force = area * law.pressure;
+  energy.stiffness = area * law.slope;
+  constexpr double kWhole = 1.0;
+  energy.way = obstacles.surfaces.wayOf(pair.obstacle, 1, &vertex, &kWhole,
+                                        pair.radius * energy.normal, obstacles.at_end);
+  found.push_back(energy);
+}
+
+void PairEnergies::addEdgesAtObstacle(const Positions& positions, const Obstacles& obstacles,
+                                      const Pair& pair, std::vector<PairEnergy>& found) const {
+  const auto& v = pair.vertices;
+  const std::array<int, 2> ends = {v[2] - particles_, v[3] - particles_};
+  const std::array<Vector3d, 4> places = {positions[v[0]], positions[v[1]],
+                                          obstacles.places[ends[0]], obstacles.places[ends[1]]};
+  const double reach = pair.radius + 0.5 * law_.leastDistance();
+  if (proximity::isSurelyApart(pair.kind, places, reach)) return;
+  const proximity::PairDistance nearest = proximity::edgeEdgeDistance(places);
+  if (nearest.distance >= reach) return;
+  const auto& w = nearest.weights;
+  PairEnergy energy{};
+  energy.obstacle = pair.obstacle;
+  energy.count = 2;
+  energy.vertices = {v[0], v[1], -1, -1};
+  energy.weights = {w[0], w[1], 0.0, 0.0};
+  energy.distance = gapOf(nearest.distance, pair.radius);
+  energy.normal = (w[0] * places[0] + w[1] * places[1] - w[2] * places[2] - w[3] * places[3]) /
+                  nearest.distance;
+  fadeWhereParallel(places[1] - places[0], places[3] - places[2],
+                    kParallel * edge_squares_[pair.first] * obstacle_edge_squares_[pair.second],
+                    edge_areas_[pair.first], mirrored(law_.guardAt(2.0 * energy.distance)), energy);
+  const std::array<double, 2> of_obstacle = {w[2], w[3]};
+  energy.way = obstacles.surfaces.wayOf(pair.obstacle, 2, ends.data(), of_obstacle.data(),
+                                        pair.radius * energy.normal, obstacles.at_end);
   found.push_back(energy);
 }
 

@@ -56,12 +56,6 @@ void addBlocks(const Pair& pair, const Matrix3d& block, linear::SymmetricBlockMa
   }
 }
 
-/// Friction of a pair at velocities (N), on the weighted sum of its vertices.
-Vector3d frictionAt(const PairEnergy& pair, double coefficient, const Velocities& velocities) {
-  const Vector3d speed = tangential(weightedSum(pair, velocities), pair.normal);
-  return -coefficient * pair.force * smoothed(speed.norm(), SelfContact::kSlipSpeed).secant * speed;
-}
-
 }  // namespace
 
 SelfContact::SelfContact(const std::vector<std::array<int, 3>>& triangles,
@@ -70,38 +64,102 @@ SelfContact::SelfContact(const std::vector<std::array<int, 3>>& triangles,
       near_(triangles, reference, LayerLaw(fabric).thickness()),
       energies_(triangles, reference, LayerLaw(fabric)) {}
 
-const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions) const {
-  if (positions == touching_at_) return touching_;
-  if (near_.find(positions, law().thickness())) {
-    energies_.find(positions, near_.pairs(), touching_);
-    touching_at_ = positions;
-  } else {
+void SelfContact::setObstacles(std::shared_ptr<ObstacleSurfaces> surfaces) {
+  obstacle_friction_.clear();
+  touching_at_.clear();
+  obstacles_.reset();
+  if (!surfaces) return;
+  for (int i = 0; i < surfaces->count(); ++i) {
+    obstacle_friction_.push_back(surfaces->obstacle(i).friction.value_or(friction_));
+  }
+  energies_.setObstacles(*surfaces);
+  obstacles_.emplace(near_.triangles(), near_.particleCount(), std::move(surfaces),
+                     near_.searched());
+}
+
+const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions,
+                                                     bool at_end) const {
+  const int revision = obstacles_ ? obstacles_->surfaces().revision() : 0;
+  at_end = at_end || !obstacles_ || !obstacles_->surfaces().moved();
+  if (at_end == touching_at_end_ && revision == touching_revision_ && positions == touching_at_) {
+    return touching_;
+  }
+  touching_at_end_ = at_end;
+  touching_revision_ = revision;
+  if (!near_.find(positions, law().thickness())) {
     touching_.clear();
     touching_at_.clear();
+    return touching_;
   }
+  energies_.find(positions, near_, touching_);
+  if (obstacles_) {
+    const ObstacleSurfaces& surfaces = obstacles_->surfaces();
+    obstacles_->find(positions, at_end ? surfaces.atEnd() : surfaces.atBegin(),
+                     0.5 * law().thickness());
+    energies_.findOfObstacles(positions, *obstacles_, at_end, touching_);
+  }
+  touching_at_ = positions;
   return touching_;
+}
+
+double SelfContact::frictionOf(const PairEnergy& pair) const {
+  return pair.obstacle < 0 ? friction_ : obstacle_friction_[pair.obstacle];
+}
+
+/// m/s, of both sides of a pair against each other.
+Vector3d SelfContact::velocityOf(const PairEnergy& pair, const Velocities& velocities) const {
+  const Vector3d sum = weightedSum(pair, velocities);
+  if (pair.obstacle < 0 || pair.way.isZero(0.0)) return sum;
+  return sum - pair.way / obstacles_->surfaces().timeStep();
+}
+
+/// N, on the weighted sum of its vertices.
+Vector3d SelfContact::frictionAt(const PairEnergy& pair, const Velocities& velocities) const {
+  if (!(pair.force > 0.0)) return Vector3d::Zero();
+  const Vector3d speed = tangential(velocityOf(pair, velocities), pair.normal);
+  return -frictionOf(pair) * pair.force * smoothed(speed.norm(), kSlipSpeed).secant * speed;
 }
 
 double SelfContact::energy(const ForceState& state) const {
   double energy = 0.0;
-  for (const PairEnergy& pair : touching(state.positions)) energy += pair.energy;
+  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time))) {
+    energy += pair.energy;
+  }
   return touching_at_.empty() ? std::numeric_limits<double>::quiet_NaN() : energy;
 }
 
 void SelfContact::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
-  for (const PairEnergy& pair : touching(state.positions)) {
-    const Vector3d friction =
-        pair.force > 0.0 ? frictionAt(pair, friction_, state.velocities) : Vector3d::Zero();
+  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time))) {
+    const Vector3d friction = frictionAt(pair, state.velocities);
     for (int i = 0; i < pair.count; ++i) {
       forces[pair.vertices[i]] += pair.weights[i] * friction - pair.gradient(i);
     }
   }
 }
 
+Vector3d SelfContact::forceOn(int obstacle, const ForceState& state) const {
+  Vector3d sum = Vector3d::Zero();
+  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time))) {
+    if (pair.obstacle != obstacle) continue;
+    sum -= pair.force * pair.normal + frictionAt(pair, state.velocities);
+  }
+  return sum;
+}
+
+double SelfContact::obstacleWork(const ForceState& end) const {
+  if (!obstacles_ || !obstacles_->surfaces().moved()) return 0.0;
+  double work = 0.0;
+  for (const PairEnergy& pair : touching(end.positions)) {
+    if (pair.obstacle < 0) continue;
+    work += (pair.force * pair.normal + frictionAt(pair, end.velocities)).dot(pair.way);
+  }
+  return work;
+}
+
 void SelfContact::addJacobian(const ForceState& state, JacobianRows& rows) const {
   constexpr double kWay = 1e-8, kSpeed = 1e-6;  // m, m/s
   std::vector<int> moved;
-  for (const PairEnergy& pair : touching(state.positions)) {
+  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time))) {
     moved.insert(moved.end(), pair.vertices.begin(), pair.vertices.begin() + pair.count);
   }
   std::sort(moved.begin(), moved.end());
@@ -136,10 +194,10 @@ void SelfContact::addJacobian(const ForceState& state, JacobianRows& rows) const
 }
 
 /// The energies' part of a linear system, about what has been reached.
-void SelfContact::addEnergies(const Positions& positions, double a,
+void SelfContact::addEnergies(const std::vector<PairEnergy>& pairs, double a,
                               linear::SymmetricBlockMatrix& matrix,
                               linear::BlockVector& rhs) const {
-  for (const PairEnergy& pair : touching(positions)) {
+  for (const PairEnergy& pair : pairs) {
     for (int i = 0; i < pair.count; ++i) rhs.col(pair.vertices[i]) -= a * pair.gradient(i);
     if (pair.stiffness > 0.0) {
       addBlocks(pair, a * a * pair.stiffness * pair.normal * pair.normal.transpose(), matrix);
@@ -150,15 +208,16 @@ void SelfContact::addEnergies(const Positions& positions, double a,
 void SelfContact::assembleLinearised(const ForceState& state, const StageTimes& times,
                                      linear::SymmetricBlockMatrix& matrix,
                                      linear::BlockVector& rhs) const {
-  addEnergies(state.positions, times.a, matrix, rhs);
-  for (const PairEnergy& pair : touching(state.positions)) {
-    const Vector3d velocity = weightedSum(pair, state.velocities);
+  const std::vector<PairEnergy>& pairs = touching(state.positions, false);
+  addEnergies(pairs, times.a, matrix, rhs);
+  for (const PairEnergy& pair : pairs) {
+    const Vector3d velocity = velocityOf(pair, state.velocities);
     Vector3d impulse =
         -times.a * times.ahead * pair.stiffness * pair.normal.dot(velocity) * pair.normal;
     if (pair.force > 0.0) {
       const Vector3d speed = tangential(velocity, pair.normal);
       const double damping =
-          times.a * friction_ * pair.force * smoothed(speed.norm(), kSlipSpeed).secant;
+          times.a * frictionOf(pair) * pair.force * smoothed(speed.norm(), kSlipSpeed).secant;
       impulse -= damping * speed;
       const Matrix3d across = Matrix3d::Identity() - pair.normal * pair.normal.transpose();
       addBlocks(pair, damping * across, matrix);
@@ -169,17 +228,17 @@ void SelfContact::assembleLinearised(const ForceState& state, const StageTimes& 
 
 void SelfContact::hold(const NewtonStart& start, Vector3d* /*held*/) const {
   held_.clear();
-  for (const PairEnergy& pair : touching(start.at.positions)) {
+  for (const PairEnergy& pair : touching(start.at.positions, !start.passive)) {
     if (!(pair.force > 0.0)) continue;
-    held_.push_back({pair.count, pair.vertices, pair.weights, pair.normal, friction_ * pair.force,
-                     weightedSum(pair, start.base)});
+    held_.push_back({pair.count, pair.vertices, pair.weights, pair.normal,
+                     frictionOf(pair) * pair.force, weightedSum(pair, start.base) + pair.way});
   }
 }
 
 void SelfContact::assembleNewton(const ForceState& state, const Vector3d* /*held*/, double a,
                                  Hessian /*hessian*/, linear::SymmetricBlockMatrix& matrix,
                                  linear::BlockVector& rhs) const {
-  addEnergies(state.positions, a, matrix, rhs);
+  addEnergies(touching(state.positions), a, matrix, rhs);
   for (const HeldFriction& pair : held_) {
     const Vector3d slip = tangential(weightedSum(pair, state.positions) - pair.start, pair.normal);
     const double way = slip.norm();

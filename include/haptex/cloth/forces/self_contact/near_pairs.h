@@ -20,6 +20,9 @@ class NearPairs {
     proximity::ElementPairKind kind;
     int first, second;            ///< ElementPair
     std::array<int, 4> vertices;  ///< proximity::verticesOf()
+    int obstacle = -1;            ///< that has one of the elements; -1: none (NearObstacles)
+    double radius = 0.0;          ///< m, within which that element is solid
+    double distance = 0.0;        ///< m, at most that of the surfaces where they were searched for
   };
 
   /// @param reference positions (m) of the particles in the flat fabric
@@ -36,7 +39,15 @@ class NearPairs {
   /// @return false, and pairs() as before, if a position is not finite or beyond
   ///   proximity::kMaxLength
   bool find(const std::vector<Eigen::Vector3d>& positions, double distance);
+  /// How far (m) the farthest of some places is from where it was before; as many.
+  static double farthest(const std::vector<Eigen::Vector3d>& now,
+                         const std::vector<Eigen::Vector3d>& before);
 
+  /// Whether a pair of pairs() is surely farther apart than a distance (m) at the positions of the
+  /// last find().
+  bool isBeyond(const Pair& pair, double distance) const {
+    return pair.distance > distance + 2.0 * moved_ + kRounding;
+  }
   /// By kind, first and second.
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// Pairs that were at most 2 searched() apart in the reference: those that find() leaves out are
@@ -44,8 +55,12 @@ class NearPairs {
   const std::vector<Pair>& neighbours() const { return neighbours_; }
 
   double searched() const { return self_.distance(); }  ///< m
+  const std::vector<std::array<int, 3>>& triangles() const { return hierarchy_.triangles(); }
+  std::size_t particleCount() const { return hierarchy_.positions().size(); }
 
  private:
+  static constexpr double kRounding = 1e-12;  // m, more than that of distances
+
   Pair named(const proximity::ElementPair& pair) const;
 
   proximity::KdopHierarchy hierarchy_;
@@ -53,6 +68,7 @@ class NearPairs {
   std::vector<proximity::NearPair> found_;
   std::vector<Pair> pairs_, neighbours_;
   std::vector<Eigen::Vector3d> searched_at_;  // m; empty before the first find()
+  double moved_ = 0.0;                        // m, farthest since
 };
 
 }  // namespace haptex::cloth

@@ -3,21 +3,25 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "haptex/cloth/forces/self_contact/layer_law.h"
+#include "haptex/cloth/forces/self_contact/near_obstacles.h"
 #include "haptex/cloth/forces/self_contact/near_pairs.h"
+#include "haptex/cloth/forces/self_contact/surface_features.h"
 
 namespace haptex::cloth {
 
-/// A vertex near a face, an edge or a vertex, or two edges near each other.
+/// A vertex near a face, an edge or a vertex, or two edges near each other; or one of them of the
+/// cloth and the other one of an obstacle.
 struct PairEnergy {
-  int count;                      ///< of its vertices, 2 to 4
+  int count;                      ///< of its particles, 1 to 4
   std::array<int, 4> vertices;    ///< particles
-  std::array<double, 4> weights;  ///< sum up to 0: sum w_i x_i = distance normal
-  Eigen::Vector3d normal;         ///< unit
-  double distance;                ///< m
+  std::array<double, 4> weights;  ///< sum up to 0: sum w_i x_i = distance normal; or to 1 with an
+                                  ///< obstacle: sum w_i x_i = nearest point of the cloth
+  Eigen::Vector3d normal;         ///< unit; out of an obstacle
+  double distance;                ///< m; from the surface of an obstacle
   double energy;                  ///< J
   double force;                   ///< N along the normal, < 0 of what is subtracted
   double stiffness;               ///< N/m along the normal; 0 of what is subtracted
@@ -25,6 +29,9 @@ struct PairEnergy {
   Eigen::Vector3d by_first = Eigen::Vector3d::Zero();   ///< N, energy's derivative by the first
                                                         ///< edge vector besides by the distance
   Eigen::Vector3d by_second = Eigen::Vector3d::Zero();  ///< N, likewise the second
+  int obstacle = -1;                                    ///< -1: the cloth and itself
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();  ///< m, that the obstacle's surface goes there in
+                                                  ///< the step
 
   /// Derivative of the energy by the place of vertex i (N).
   Eigen::Vector3d gradient(int i) const {
@@ -35,58 +42,66 @@ struct PairEnergy {
 };
 
 /// Lists the energies. Of every vertex with half of its area, so that both sides together have the
-/// whole pressure, the law's energy at the distance of the surface, as
-///   sum over triangles - sum over inner edges + sum over inner vertices
-/// of the energies at their distances (Li et al., Convergent Incremental Potential Contact, 2023).
-/// All that a plane ball reaches is counted once in this sum, however it is cut into triangles, and
-/// it is C1 because distances to convex sets are. What cancels is left out. Of edges the law's
-/// guard, times
+/// whole pressure, the law's energy at the distance of the surface, counted as SurfaceFeatures
+/// says. It is C1 because distances to convex sets are. Of edges the law's guard, times
 ///   m = c (2 - c), c = |a x b|^2 / (1e-3 A B) up to 1, with the edge vectors a, b and the rest
 ///   lengths squared A, B,
 /// because the distance of edges that become parallel has a kink (Li et al. 2020).
+///
+/// An obstacle's surface mirrors the cloth: at the distance g of its middle surface from there, the
+/// fabric has the pressure of two layers 2 g apart, on the whole area of its vertices. What the
+/// obstacle's vertices and edges do between them is the guard's affair.
 class PairEnergies {
  public:
   /// @param reference positions (m) of the particles in the flat fabric, without defects
   PairEnergies(const std::vector<std::array<int, 3>>& triangles,
                const std::vector<Eigen::Vector3d>& reference, const LayerLaw& law);
 
-  /// @param pairs all that are within the law's thickness at these positions, and more
+  /// Makes room for the obstacles.
+  void setObstacles(const ObstacleSurfaces& surfaces);
+
+  /// @param near  has found all pairs that are within the law's thickness at these positions
   /// @param found replaced
-  void find(const std::vector<Eigen::Vector3d>& positions,
-            const std::vector<NearPairs::Pair>& pairs, std::vector<PairEnergy>& found);
+  void find(const std::vector<Eigen::Vector3d>& positions, const NearPairs& near,
+            std::vector<PairEnergy>& found);
+  /// @param near   has found all that are within half of the thickness there
+  /// @param at_end of the step, or else at its beginning
+  /// @param found  added to
+  void findOfObstacles(const std::vector<Eigen::Vector3d>& positions, const NearObstacles& near,
+                       bool at_end, std::vector<PairEnergy>& found);
 
   const LayerLaw& law() const { return law_; }
 
  private:
-  /// A face, an edge or a vertex that is the nearest part of some simplices.
-  struct Feature {
-    int size;                // of vertices
-    std::array<int, 3> ids;  // of the vertices, ascending, then -1
-    std::array<double, 3> weights;
-    int times;  // to be added; what is subtracted counts down
-  };
   using Positions = std::vector<Eigen::Vector3d>;
   using Pair = NearPairs::Pair;
+  /// Of the obstacles at one end of a step.
+  struct Obstacles {
+    const ObstacleSurfaces& surfaces;
+    bool at_end;
+    const Positions& places;
+  };
 
-  void addVertex(const Positions& positions, const Pair* begin, const Pair* end,
-                 std::vector<PairEnergy>& found);
-  void countTriangle(const Positions& positions, int vertex, const std::array<int, 3>& corners);
-  void countEdge(const Positions& positions, int vertex, int from, int to);
-  void count(Feature feature);
-  void countShared(const Positions& positions, int vertex, int triangle);
-  bool isNear(int triangle) const;
+  void addVertex(const Positions& positions, int vertex, std::vector<PairEnergy>& found);
+  void addVertexAtObstacle(const Positions& positions, const Obstacles& obstacles, const Pair& pair,
+                           std::vector<PairEnergy>& found);
+  void addObstacleVertex(const Positions& positions, const Obstacles& obstacles, const Pair& pair,
+                         std::vector<PairEnergy>& found) const;
   void addEdges(const Positions& positions, const Pair& pair, std::vector<PairEnergy>& found) const;
+  void addEdgesAtObstacle(const Positions& positions, const Obstacles& obstacles, const Pair& pair,
+                          std::vector<PairEnergy>& found) const;
 
   LayerLaw law_;
+  int particles_;
   std::vector<std::array<int, 3>> triangles_;
-  std::vector<std::array<int, 3>> across_;  // per triangle and edge from corner i: the triangle
-                                            // that shares it; -1: none, or several
-  std::vector<std::vector<int>> around_;    // per inner vertex its triangles, ascending; else none
-  std::vector<double> vertex_areas_;        // m^2, half of what belongs to a vertex
-  std::vector<double> edge_areas_;          // m^2, half of what belongs to an edge
-  std::vector<double> edge_squares_;        // m^2, rest length squared
-  std::vector<int> near_;                   // triangles near the vertex, ascending
-  std::vector<Feature> features_;
+  SurfaceFeatures cloth_;
+  std::optional<SurfaceFeatures> obstacles_;
+  std::vector<double> vertex_areas_;           // m^2, half of what belongs to a vertex
+  std::vector<double> edge_areas_;             // m^2, half of what belongs to an edge
+  std::vector<double> edge_squares_;           // m^2, rest length squared
+  std::vector<double> obstacle_edge_squares_;  // m^2, likewise
+  std::vector<double> triangle_areas_;         // m^2
+  std::vector<int> near_;                      // triangles near the vertex, ascending
 };
 
 }  // namespace haptex::cloth

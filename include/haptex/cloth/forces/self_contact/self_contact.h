@@ -1,10 +1,13 @@
-// Contact of a cloth with itself: pressure through its thickness, and friction.
+// Contact of a cloth with itself and with obstacles: pressure through its thickness, and friction.
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "haptex/cloth/forces/force.h"
+#include "haptex/cloth/forces/self_contact/near_obstacles.h"
 #include "haptex/cloth/forces/self_contact/near_pairs.h"
 #include "haptex/cloth/forces/self_contact/pair_energies.h"
 
@@ -17,8 +20,13 @@ namespace haptex::cloth {
 /// weights, and friction is the gradient of a convex potential of the slip since the stage's base
 /// (Li et al., Incremental Potential Contact, ACM Trans. Graphics 39(4), 2020).
 ///
-/// Both sums of forces are zero to rounding. The stiffness in matrices is that along the normals
-/// alone, which is positive semidefinite; what turns a normal is left out.
+/// Obstacles are at the end of the step (ObstacleSurfaces) in states of a time after its beginning,
+/// and in linearised stages and what is held passively, which are of the beginning, where they are
+/// then. Their friction is their own coefficient, or the fabric's where they have none, and that
+/// of their surface's velocity.
+///
+/// Without obstacles both sums of forces are zero to rounding. The stiffness in matrices is that
+/// along the normals alone, which is positive semidefinite; what turns a normal is left out.
 ///
 /// The functions keep what they found last, the result does not depend on it; so one thread at a
 /// time may call them. They allocate where more is near than ever before.
@@ -47,10 +55,20 @@ class SelfContact final : public Force {
   double incrementalPotential(const ForceState& state, const Eigen::Vector3d* held,
                               double a) const override;
 
-  /// What touches at these positions; empty where one of them is not finite.
-  const std::vector<PairEnergy>& touching(const Positions& positions) const;
+  /// What touches at these positions, the obstacles being where they are at the end of the step, or
+  /// else at its beginning; empty where one of the positions is not finite.
+  const std::vector<PairEnergy>& touching(const Positions& positions, bool at_end = true) const;
   NearPairs& nearPairs() const { return near_; }
   const LayerLaw& law() const { return energies_.law(); }
+
+  /// From now on the cloth is among these; null: among none. Allocates.
+  void setObstacles(std::shared_ptr<ObstacleSurfaces> surfaces);
+  /// Null if there are none.
+  NearObstacles* obstacles() const { return obstacles_ ? &*obstacles_ : nullptr; }
+  /// Force (N) of the cloth on an obstacle.
+  Eigen::Vector3d forceOn(int obstacle, const ForceState& state) const;
+  /// Work (J) that obstacles which move do on the cloth in the step by the forces of its end.
+  double obstacleWork(const ForceState& end) const;
 
  private:
   /// Of a pair, while Newton iterations hold it.
@@ -60,16 +78,25 @@ class SelfContact final : public Force {
     std::array<double, 4> weights;
     Eigen::Vector3d normal;
     double most;            // N, friction of what slips
-    Eigen::Vector3d start;  // m, sum of weights times positions at the stage's base
+    Eigen::Vector3d start;  // m, sum of weights times positions at the stage's base, and where
+                            // an obstacle's surface has carried it since
   };
 
-  void addEnergies(const Positions& positions, double a, linear::SymmetricBlockMatrix& matrix,
-                   linear::BlockVector& rhs) const;
+  bool isEnd(double time) const { return !obstacles_ || obstacles_->surfaces().isEnd(time); }
+  double frictionOf(const PairEnergy& pair) const;
+  Eigen::Vector3d velocityOf(const PairEnergy& pair, const Velocities& velocities) const;
+  Eigen::Vector3d frictionAt(const PairEnergy& pair, const Velocities& velocities) const;
+  void addEnergies(const std::vector<PairEnergy>& pairs, double a,
+                   linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
 
   double friction_;
   mutable NearPairs near_;
   mutable PairEnergies energies_;
+  mutable std::optional<NearObstacles> obstacles_;
+  std::vector<double> obstacle_friction_;
   mutable Positions touching_at_;
+  mutable bool touching_at_end_ = true;
+  mutable int touching_revision_ = 0;  // of the obstacles' places
   mutable std::vector<PairEnergy> touching_;
   mutable std::vector<HeldFriction> held_;
 };

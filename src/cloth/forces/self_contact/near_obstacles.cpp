@@ -1,0 +1,173 @@
+#include "haptex/cloth/forces/self_contact/near_obstacles.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace haptex::cloth {
+namespace {
+
+using Eigen::Vector3d;
+using Places = NearObstacles::Places;
+using Box = proximity::BoxTree::Box;
+using proximity::ElementPairKind;
+
+std::vector<Box> emptyBoxes(std::size_t count) {
+  return std::vector<Box>(count, Box(Vector3d::Zero(), Vector3d::Zero()));
+}
+
+Box grown(const Box& box, double by) {
+  return {box.min() - Vector3d::Constant(by), box.max() + Vector3d::Constant(by)};
+}
+
+}  // namespace
+
+NearObstacles::OwnElements::OwnElements(const proximity::MeshElements& elements)
+    : vertices(elements.triangles.size()), edges(elements.triangles.size()) {
+  std::vector<bool> vertex_taken(elements.vertices.empty() ? 0 : elements.vertices.back() + 1);
+  std::vector<bool> edge_taken(elements.edges.size());
+  const auto take = [](std::vector<bool>& taken, std::size_t element, std::vector<int>& own) {
+    if (!taken[element]) own.push_back(static_cast<int>(element));
+    taken[element] = true;
+  };
+  for (std::size_t t = 0; t < elements.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const int a = elements.triangles[t][i], b = elements.triangles[t][(i + 1) % 3];
+      take(vertex_taken, a, vertices[t]);
+      if (a == b) continue;
+      const proximity::Edge edge = {std::min(a, b), std::max(a, b)};
+      const auto at = std::lower_bound(elements.edges.begin(), elements.edges.end(), edge);
+      take(edge_taken, at - elements.edges.begin(), edges[t]);
+    }
+  }
+}
+
+NearObstacles::NearObstacles(const std::vector<std::array<int, 3>>& triangles,
+                             std::size_t particles, std::shared_ptr<ObstacleSurfaces> surfaces,
+                             double searched)
+    : surfaces_(std::move(surfaces)),
+      cloth_(triangles),
+      particles_(static_cast<int>(particles)),
+      searched_(searched),
+      own_of_cloth_(cloth_),
+      own_of_obstacles_(surfaces_->elements()),
+      boxes_(emptyBoxes(surfaces_->elements().triangles.size())),
+      tree_(boxes_) {
+  fitBoxes(surfaces_->atEnd(), nullptr);
+  tree_ = proximity::BoxTree(boxes_);
+}
+
+void NearObstacles::fitBoxes(const Places& places, const Places* ways) {
+  for (std::size_t t = 0; t < boxes_.size(); ++t) {
+    const auto& corners = surfaces_->elements().triangles[t];
+    Box box;
+    for (const int corner : corners) {
+      box.extend(places[corner]);
+      if (ways != nullptr) box.extend(places[corner] + (*ways)[corner]);
+    }
+    boxes_[t] = grown(box, surfaces_->radius(surfaces_->obstacleOf(corners[0])));
+  }
+  tree_.refit(boxes_);
+}
+
+void NearObstacles::find(const Places& positions, const Places& places, double distance) {
+  if (!searched_at_.empty()) {
+    const double moved = NearPairs::farthest(positions, searched_at_) +
+                         NearPairs::farthest(places, places_searched_at_);
+    if (moved <= searched_ - distance) {
+      moved_ = moved;
+      return;
+    }
+  }
+  fitBoxes(places, nullptr);
+  pairs_.clear();
+  for (std::size_t t = 0; t < cloth_.triangles.size(); ++t) {
+    Box box;
+    for (const int corner : cloth_.triangles[t]) box.extend(positions[corner]);
+    tree_.visit(grown(box, searched_),
+                [&](int other) { addPairs(static_cast<int>(t), other, pairs_); });
+  }
+  const auto measure = [&](Pair& pair) {
+    std::array<Vector3d, 4> at;
+    for (int i = 0; i < 4; ++i) {
+      const int vertex = pair.vertices[i];
+      at[i] = vertex < particles_ ? positions[vertex] : places[vertex - particles_];
+    }
+    const double reach = pair.radius + searched_;
+    pair.distance = proximity::isSurelyApart(pair.kind, at, reach)
+                        ? 2.0 * searched_
+                        : proximity::distanceOf(pair.kind, at).distance - pair.radius;
+  };
+  std::for_each(pairs_.begin(), pairs_.end(), measure);
+  const auto is_far = [&](const Pair& pair) { return pair.distance > searched_; };
+  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), is_far), pairs_.end());
+  sort(pairs_);
+  moved_ = 0.0;
+  searched_at_ = positions;
+  places_searched_at_ = places;
+}
+
+const std::vector<NearObstacles::Pair>& NearObstacles::onWays(
+    const Places& positions, const Vector3d& common, const Places& ways, const Places& places,
+    const Places* place_ways, double distance) {
+  fitBoxes(places, place_ways);
+  on_ways_.clear();
+  for (std::size_t t = 0; t < cloth_.triangles.size(); ++t) {
+    Box box;
+    for (const int corner : cloth_.triangles[t]) {
+      box.extend(positions[corner]);
+      box.extend(positions[corner] + common);
+      box.extend(positions[corner] + common + ways[corner]);
+    }
+    tree_.visit(grown(box, distance),
+                [&](int other) { addPairs(static_cast<int>(t), other, on_ways_); });
+  }
+  sort(on_ways_);
+  return on_ways_;
+}
+
+void NearObstacles::addPairs(int of_cloth, int of_obstacle, std::vector<Pair>& found) const {
+  const proximity::MeshElements& others = surfaces_->elements();
+  const std::array<int, 3>& face = cloth_.triangles[of_cloth];
+  std::array<int, 3> other = others.triangles[of_obstacle];
+  const int obstacle = surfaces_->obstacleOf(other[0]);
+  const double radius = surfaces_->radius(obstacle);
+  for (int& corner : other) corner += particles_;
+  for (const int vertex : own_of_cloth_.vertices[of_cloth]) {
+    found.push_back({ElementPairKind::kVertexTriangle,
+                     vertex,
+                     of_obstacle,
+                     {vertex, other[0], other[1], other[2]},
+                     obstacle,
+                     radius});
+  }
+  for (const int own : own_of_obstacles_.vertices[of_obstacle]) {
+    const int vertex = own + particles_;
+    found.push_back({ElementPairKind::kVertexTriangle,
+                     vertex,
+                     of_cloth,
+                     {vertex, face[0], face[1], face[2]},
+                     obstacle,
+                     radius});
+  }
+  for (const int first : own_of_cloth_.edges[of_cloth]) {
+    for (const int second : own_of_obstacles_.edges[of_obstacle]) {
+      const proximity::Edge& a = cloth_.edges[first];
+      const proximity::Edge& b = others.edges[second];
+      found.push_back({ElementPairKind::kEdgeEdge,
+                       first,
+                       second,
+                       {a[0], a[1], b[0] + particles_, b[1] + particles_},
+                       obstacle,
+                       radius});
+    }
+  }
+}
+
+void NearObstacles::sort(std::vector<Pair>& found) const {
+  std::sort(found.begin(), found.end(), [](const Pair& a, const Pair& b) {
+    return std::tie(a.kind, a.first, a.second) < std::tie(b.kind, b.first, b.second);
+  });
+}
+
+}  // namespace haptex::cloth
