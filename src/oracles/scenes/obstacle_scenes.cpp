@@ -46,6 +46,12 @@ ClothMesh flatSheet(const Eigen::Vector2d& size, int cells_u, int cells_v, const
   return mesh;
 }
 
+Isometry3d placedAt(const Vector3d& place) { return Isometry3d(Eigen::Translation3d(place)); }
+
+mesh::Obstacle floorAt(double height) {
+  return {"floor", mesh::ObstacleBox{{2.0, 2.0, 0.1}}, placedAt({0.0, 0.0, height - 0.05})};
+}
+
 CollidingCloth::CollidingCloth(ClothMesh mesh, const material::Fabric& fabric, double gravity,
                                const cloth::StepSettings& settings, std::vector<Obstacle> obstacles)
     : cloth(std::move(mesh), fabric, effectsOf(fabric, gravity)),

@@ -14,30 +14,22 @@ using Eigen::Vector3d;
 using mesh::Obstacle;
 using Set = SelfCollidingCloth::Set;
 
-constexpr double kPi = 3.14159265358979323846;
-
-Isometry3d at(const Vector3d& place) { return Isometry3d(Eigen::Translation3d(place)); }
-
 Isometry3d turned(const Vector3d& place, double angle, const Vector3d& axis) {
-  return at(place) * Eigen::AngleAxisd(angle, axis);
-}
-
-Obstacle floorAt(double height) {
-  return {"floor", mesh::ObstacleBox{{2.0, 2.0, 0.1}}, at({0.0, 0.0, height - 0.05})};
+  return placedAt(place) * Eigen::AngleAxisd(angle, axis);
 }
 
 /// Upright, with its tip at a place.
 Obstacle needleAt(const std::string& name, const Vector3d& tip) {
   constexpr double kRadius = 5e-4, kLength = 0.08;
   return {name, mesh::ObstacleCapsule{kRadius, kLength},
-          at(tip - Vector3d(0.0, 0.0, kRadius + 0.5 * kLength))};
+          placedAt(tip - Vector3d(0.0, 0.0, kRadius + 0.5 * kLength))};
 }
 
 /// A box of which an edge along y is on top, at a place.
 Obstacle edgeAt(const std::string& name, const Vector3d& top) {
   constexpr double kSide = 0.06;
   return {name, mesh::ObstacleBox{{kSide, 0.4, kSide}},
-          turned(top - Vector3d(0.0, 0.0, kSide / std::sqrt(2.0)), kPi / 4.0, Vector3d::UnitY())};
+          turned(top - Vector3d(0.0, 0.0, kSide / std::sqrt(2.0)), M_PI / 4.0, Vector3d::UnitY())};
 }
 
 Set thrown(const std::string& name, const Obstacle& obstacle, int cells) {
@@ -56,7 +48,7 @@ Set towelOnEdges(int cells) {
   Set set;
   set.name = "edges_and_needles";
   set.falls = true;
-  set.mesh = flatSheet({0.3, 0.1}, 3 * cells, cells, at({0.01, 0.0, 0.14}));
+  set.mesh = flatSheet({0.3, 0.1}, 3 * cells, cells, placedAt({0.01, 0.0, 0.14}));
   set.obstacles = {floorAt(0.0), edgeAt("left edge", {-0.07, 0.0, 0.1}),
                    edgeAt("right edge", {0.08, 0.0, 0.1})};
   int count = 0;
@@ -74,7 +66,7 @@ Set funnel(int cells) {
   constexpr int kAround = 24;
   mesh::ObstacleMesh surface;
   for (int i = 0; i < kAround; ++i) {
-    const double angle = 2.0 * kPi * i / kAround;
+    const double angle = 2.0 * M_PI * i / kAround;
     const Vector3d out(std::cos(angle), std::sin(angle), 0.0);
     surface.vertices.push_back(kUpper * out + Vector3d(0.0, 0.0, kHeight));
     surface.vertices.push_back(kLower * out);
@@ -87,8 +79,8 @@ Set funnel(int cells) {
   }
   Set set;
   set.name = "funnel";
-  set.mesh =
-      flatSheet({0.125, 0.125}, 5 * cells / 4, 5 * cells / 4, at({0.0, 0.0, kHeight + 0.005}));
+  set.mesh = flatSheet({0.125, 0.125}, 5 * cells / 4, 5 * cells / 4,
+                       placedAt({0.0, 0.0, kHeight + 0.005}));
   set.obstacles = {{"funnel", surface, Isometry3d::Identity()}};
   set.duration = 1.5;
   int middle = 0;
@@ -110,7 +102,7 @@ Set funnel(int cells) {
 Set wound(int cells) {
   Set set;
   set.name = "rotating_sphere";
-  set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, at({0.0, 0.0, 0.055}));
+  set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, placedAt({0.0, 0.0, 0.055}));
   Obstacle ball{"ball", mesh::ObstacleSphere{0.05}, Isometry3d::Identity()};
   ball.motion = mesh::ObstacleOrbit{Vector3d::Zero(), Vector3d::UnitZ(), 1.0};
   ball.friction = 0.8;

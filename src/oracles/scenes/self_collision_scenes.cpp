@@ -18,16 +18,6 @@ using Eigen::Vector3d;
 using mesh::ClothMesh;
 using Set = SelfCollidingCloth::Set;
 
-constexpr double kPi = 3.14159265358979323846;
-
-mesh::Obstacle floorAt(double height) {
-  Isometry3d pose = Isometry3d::Identity();
-  pose.translation().z() = height - 0.05;
-  return {"floor", mesh::ObstacleBox{{2.0, 2.0, 0.1}}, pose};
-}
-
-Isometry3d at(const Vector3d& place) { return Isometry3d(Eigen::Translation3d(place)); }
-
 /// Puts a particle to a place at a time; it is attached there.
 void put(cloth::Cloth& cloth, int particle, const Vector3d& place) {
   cloth::AttachmentPath path;
@@ -45,7 +35,7 @@ double smoothly(double time, double begin, double end) {
 Set folded(int cells) {
   Set set;
   set.name = "folded";
-  set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, at({0.0, 0.0, 0.003}));
+  set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, placedAt({0.0, 0.0, 0.003}));
   set.obstacles = {floorAt(0.0)};
   set.duration = 2.5;
   const ClothMesh mesh = set.mesh;
@@ -54,7 +44,7 @@ Set folded(int cells) {
     constexpr double kFirst = 1.0, kSecond = 1.2, kLast = 2.2;  // s
     cloth.releaseAll();
     if (end <= kFirst) {
-      const double angle = 0.97 * kPi * smoothly(end, 0.0, kFirst);
+      const double angle = 0.97 * M_PI * smoothly(end, 0.0, kFirst);
       for (const int particle : mesh::sideParticles(mesh, mesh::Side::kRight)) {
         const Vector3d start = mesh.initial_positions[particle];
         put(cloth, particle,
@@ -64,7 +54,7 @@ Set folded(int cells) {
       // Both layers, from where they are.
       const std::vector<int> edge = mesh::sideParticles(mesh, mesh::Side::kTop);
       if (state.time <= kSecond + 1e-9) *lifted = state.positions;
-      const double angle = 0.95 * kPi * smoothly(end, kSecond, kLast);
+      const double angle = 0.95 * M_PI * smoothly(end, kSecond, kLast);
       for (const int particle : edge) {
         const Vector3d start = (*lifted)[particle];
         put(cloth, particle,
@@ -80,7 +70,7 @@ Set heaped(int cells) {
   set.name = "heaped";
   set.falls = true;
   // Not quite upright, and bent, so that it does not stand.
-  set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, at({0.0, 0.0, 0.0}));
+  set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, placedAt({0.0, 0.0, 0.0}));
   for (Vector3d& place : set.mesh.initial_positions) {
     const double height = place.y() + 0.11;
     place = Vector3d(place.x(), 0.004 * std::sin(40.0 * height + 9.0 * place.x()), height);
@@ -92,7 +82,7 @@ Set heaped(int cells) {
 Set gathered(int cells) {
   Set set;
   set.name = "gathered";
-  set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, at({0.0, 0.0, 0.0}));
+  set.mesh = flatSheet({0.2, 0.2}, 2 * cells, 2 * cells, placedAt({0.0, 0.0, 0.0}));
   for (Vector3d& place : set.mesh.initial_positions) {
     place = Vector3d(place.x(), 1e-3 * std::sin(120.0 * place.x()), place.y());
   }
@@ -113,9 +103,9 @@ Set towel(int cells) {
   Set set;
   set.name = "towel";
   set.falls = true;
-  set.mesh = flatSheet({0.4, 0.1}, 4 * cells, cells, at({0.02, 0.0, 0.28}));
+  set.mesh = flatSheet({0.4, 0.1}, 4 * cells, cells, placedAt({0.02, 0.0, 0.28}));
   mesh::Obstacle pole{"pole", mesh::ObstacleCapsule{0.01, 0.4},
-                      Isometry3d(Eigen::AngleAxisd(0.5 * kPi, Vector3d::UnitX()))};
+                      Isometry3d(Eigen::AngleAxisd(0.5 * M_PI, Vector3d::UnitX()))};
   pole.pose.translation().z() = 0.23;
   set.obstacles = {floorAt(0.0), pole};
   return set;
@@ -125,8 +115,8 @@ Set ribbons(int cells) {
   Set set;
   set.name = "ribbons";
   const int across = std::max(2, cells / 4);
-  set.mesh = asOneMesh({flatSheet({0.2, 0.02}, 2 * cells, across, at({0.0, 0.0, 0.002})),
-                        flatSheet({0.02, 0.2}, across, 2 * cells, at({0.0, 0.0, -0.002}))});
+  set.mesh = asOneMesh({flatSheet({0.2, 0.02}, 2 * cells, across, placedAt({0.0, 0.0, 0.002})),
+                        flatSheet({0.02, 0.2}, across, 2 * cells, placedAt({0.0, 0.0, -0.002}))});
   set.gravity = 0.0;
   const ClothMesh mesh = set.mesh;
   set.move = [mesh](cloth::Cloth& cloth, const cloth::ClothState& /*state*/, double end) {
@@ -145,7 +135,7 @@ Set ribbons(int cells) {
 Set twisted(int cells) {
   Set set;
   set.name = "twisted";
-  set.mesh = flatSheet({0.2, 0.1}, 2 * cells, cells, at({0.0, 0.0, 0.0}));
+  set.mesh = flatSheet({0.2, 0.1}, 2 * cells, cells, placedAt({0.0, 0.0, 0.0}));
   set.gravity = 0.0;
   set.duration = 1.5;
   const ClothMesh mesh = set.mesh;
@@ -153,7 +143,7 @@ Set twisted(int cells) {
     const double share = smoothly(end, 0.0, 1.4);
     for (const auto side : {mesh::Side::kLeft, mesh::Side::kRight}) {
       const double sign = side == mesh::Side::kLeft ? -1.0 : 1.0;
-      const Eigen::AngleAxisd turn(kPi * sign * share, Vector3d::UnitX());
+      const Eigen::AngleAxisd turn(M_PI * sign * share, Vector3d::UnitX());
       for (const int particle : mesh::sideParticles(mesh, side)) {
         put(cloth, particle,
             turn * mesh.initial_positions[particle] - Vector3d(0.03 * sign * share, 0.0, 0.0));
@@ -206,7 +196,7 @@ LayerStack restingStack(const material::Fabric& fabric, int layers, int steps) {
   LayerStack result{0.0, 0.0};
   std::vector<ClothMesh> sheets;
   for (int layer = 0; layer < layers; ++layer) {
-    sheets.push_back(flatSheet({kSide, kSide}, 3, 3, at({0.0, 0.0, 1.005 * result.exact})));
+    sheets.push_back(flatSheet({kSide, kSide}, 3, 3, placedAt({0.0, 0.0, 1.005 * result.exact})));
     const double above = (layers - 1 - layer) * fabric.areal_density * base::kStandardGravity;
     if (layer + 1 < layers) result.exact += thicknessAt(*fabric.compression, above);
   }

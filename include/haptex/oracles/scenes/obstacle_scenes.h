@@ -17,6 +17,12 @@ namespace haptex::oracles {
 mesh::ClothMesh flatSheet(const Eigen::Vector2d& size, int cells_u, int cells_v,
                           const Eigen::Isometry3d& pose);
 
+/// Not turned.
+Eigen::Isometry3d placedAt(const Eigen::Vector3d& place);
+
+/// A box of 2 m, 0.1 m thick, its top at a height (m).
+mesh::Obstacle floorAt(double height);
+
 /// A cloth that is stepped among obstacles.
 struct CollidingCloth {
   cloth::Cloth cloth;
