@@ -233,7 +233,7 @@ TEST(SelfContact, RefusesWhatItCannotDo) {
                                      crossing.initial_positions[i].y() - 0.0153};
   }
   try {
-    Cloth(crossing, fabricNamed("wool"), selfCollision());
+    const Cloth cloth(crossing, fabricNamed("wool"), selfCollision());
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("pairs of triangles intersect"), std::string::npos);
