@@ -10,6 +10,7 @@ using Eigen::Vector3d;
 MotionCut SafeMotion::push(NearPairs& near, NearObstacles& obstacles, const Vectors& from,
                            Vectors& reached) {
   constexpr int kMostPasses = 1000, kMostConflicts = 8;
+  constexpr double kLittle = 0.5;
   ObstacleSurfaces& surfaces = obstacles.surfaces();
   const Vectors& end = surfaces.atEnd();
   place_ = from;
@@ -30,7 +31,7 @@ MotionCut SafeMotion::push(NearPairs& near, NearObstacles& obstacles, const Vect
   MotionCut cut;
   int conflicts = 0;
   for (int pass = 0; pass < kMostPasses && obstacle_place_ != end; ++pass) {
-    if (pushOn(near, obstacles, cut) < 1.0 && ++conflicts == kMostConflicts) break;
+    if (pushOn(near, obstacles, cut) < kLittle && ++conflicts == kMostConflicts) break;
   }
   reached = place_;
   if (obstacle_place_ == end) return {};
@@ -66,9 +67,10 @@ double SafeMotion::pushOn(NearPairs& near, NearObstacles& obstacles, MotionCut& 
     obstacle_way_[k] = end[k] - obstacle_place_[k];
     longest = std::max(longest, obstacle_way_[k].norm());
   }
-  const double reach = kOfReach * known;
-  if (longest > reach) {
-    for (Vector3d& way : obstacle_way_) way *= reach / longest;
+  // What is carried may have to go farther.
+  reach_ = kOfReach * known;
+  if (longest > 0.5 * reach_) {
+    for (Vector3d& way : obstacle_way_) way *= 0.5 * reach_ / longest;
   }
   std::fill(way_.begin(), way_.end(), Vector3d::Zero());
   carry(near, obstacles);
@@ -114,37 +116,41 @@ void SafeMotion::carry(const NearPairs& near, const NearObstacles& obstacles) {
   }
 }
 
+/// First one side of a pair goes as the nearest point of the other one does. If they still would
+/// touch, because something turns or both go somewhere else, it goes out of the way, too.
 /// @param times that the pair has been carried
 /// @return whether it is now
 bool SafeMotion::carry(const Pair& pair, char& times) {
-  if (times > kMostStops || !mayHaveChanged(pair) || !touch(pair)) return false;
+  constexpr char kMostTimes = 12;
+  constexpr double kMore = 0.02;  // of the way, each time, where something turns
+  if (times == kMostTimes || !mayHaveChanged(pair) || !touch(pair)) return false;
   ++times;
-  const Vector3d way = wayOfCarrier(pair);
-  for (const int vertex : pair.vertices) {
-    if (!isParticle(vertex) || way_[vertex].squaredNorm() >= way.squaredNorm()) continue;
-    way_[vertex] = way;
-    changed_[vertex] = round_;
-  }
-  return true;
-}
-
-/// That of the obstacle at its nearest point, or else the longest of the particles.
-Vector3d SafeMotion::wayOfCarrier(const Pair& pair) const {
   const auto& v = pair.vertices;
-  Vector3d way = Vector3d::Zero();
-  if (pair.obstacle < 0) {
-    for (const int vertex : v) {
-      if (way_[vertex].squaredNorm() > way.squaredNorm()) way = way_[vertex];
-    }
-    return way;
-  }
   const Eigen::Vector4d weights =
       proximity::distanceOf(pair.kind, {placeOf(v[0]), placeOf(v[1]), placeOf(v[2]), placeOf(v[3])})
           .weights;
+  const int first_end = pair.kind == proximity::ElementPairKind::kVertexTriangle ? 1 : 2;
+  Vector3d points[2], ways[2];
+  for (int side : {0, 1}) points[side] = ways[side] = Vector3d::Zero();
   for (int i = 0; i < 4; ++i) {
-    if (!isParticle(v[i])) way += weights[i] * wayOf(v[i]);
+    const int side = i < first_end ? 0 : 1;
+    points[side] += weights[i] * placeOf(v[i]);
+    ways[side] += weights[i] * wayOf(v[i]);
   }
-  return way;
+  const bool longer = ways[1].squaredNorm() > ways[0].squaredNorm();
+  const int carrier = pair.obstacle < 0 ? longer : isParticle(v[0]);
+  const int other = 1 - carrier;
+  const Vector3d out = (points[other] - points[carrier]).normalized();
+  const double aside =
+      std::max(0.0, out.dot(ways[carrier] - ways[other])) + kMore * times * ways[carrier].norm();
+  for (int i = other == 0 ? 0 : first_end; i < (other == 0 ? first_end : 4); ++i) {
+    Vector3d way = times == 1 ? ways[carrier] : Vector3d(way_[v[i]] + aside * out);
+    if (times == 1 && way.squaredNorm() <= way_[v[i]].squaredNorm()) continue;
+    if (way.norm() > reach_) way *= reach_ / way.norm();
+    way_[v[i]] = way;
+    changed_[v[i]] = round_;
+  }
+  return true;
 }
 
 }  // namespace haptex::cloth

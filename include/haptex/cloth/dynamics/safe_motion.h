@@ -83,7 +83,6 @@ class SafeMotion {
   void advanceObstacles(double share, const Vectors& end);
   void carry(const NearPairs& near, const NearObstacles& obstacles);
   bool carry(const Pair& pair, char& times);
-  Eigen::Vector3d wayOfCarrier(const Pair& pair) const;
 
   bool isParticle(int vertex) const { return vertex < static_cast<int>(place_.size()); }
   const Eigen::Vector3d& placeOf(int vertex) const {
@@ -94,6 +93,7 @@ class SafeMotion {
   }
 
   double margin_;           // m
+  double reach_ = 0.0;      // m, of a pass of push()
   double known_ = 0.0;      // m, distance up to which all pairs are known on this way
   Vectors place_;           // m, reached
   Vectors left_;            // m, of the way of each particle that is not stopped
