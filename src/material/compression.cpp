@@ -1,8 +1,9 @@
 #include "haptex/material/compression.h"
 
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
+#include <iomanip>
+
+#include "haptex/base/require.h"
 
 namespace haptex::material {
 namespace {
@@ -14,10 +15,7 @@ constexpr double kMaxStepStart = 0.99 * kMaxFittedPressure;
 
 template <typename... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
-  std::ostringstream message;
-  message.precision(6);
-  (message << ... << parts);
-  throw std::invalid_argument(message.str());
+  base::refuse(std::setprecision(6), parts...);
 }
 
 void requirePoints(const std::vector<ThicknessPoint>& points) {

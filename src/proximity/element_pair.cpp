@@ -62,13 +62,17 @@ MeshElements::MeshElements(const std::vector<std::array<int, 3>>& triangles_of_m
     for (int i = 0; i < 3; ++i) {
       const int a = triangle[i], b = triangle[(i + 1) % 3];
       vertices.push_back(a);
-      if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
+      if (a != b) edges.push_back(edgeBetween(a, b));
     }
   }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+}
+
+int MeshElements::indexOf(const Edge& edge) const {
+  return static_cast<int>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
 }
 
 std::array<int, 4> verticesOf(const ElementPair& pair, const MeshElements& elements) {

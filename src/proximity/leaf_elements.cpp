@@ -39,10 +39,8 @@ LeafElements::LeafElements(const KdopHierarchy& hierarchy, const MeshElements& e
         if (!has_vertex[a]) parts[kVertices].push_back(a);
         has_vertex[a] = true;
         if (a == b) continue;
-        const Edge edge = {std::min(a, b), std::max(a, b)};
-        const auto at = std::lower_bound(elements.edges.begin(), elements.edges.end(), edge) -
-                        elements.edges.begin();
-        if (!has_edge[at]) parts[kEdges].push_back(static_cast<int>(at));
+        const int at = elements.indexOf(edgeBetween(a, b));
+        if (!has_edge[at]) parts[kEdges].push_back(at);
         has_edge[at] = true;
       }
     }

@@ -192,9 +192,9 @@ std::vector<Quality> chooseQualities(const TradeOffTable& table) {
 void writeTable(std::ostream& out, const TradeOffTable& table,
                 const std::vector<Quality>& qualities) {
   out << "motion,fabric,elasticity,integrator,time_step,cell_size,newton_iterations,"
-         "error,solves_per_step,solver,tolerance,position_error,force_error,energy_error,position_"
-         "limited,force_limited,"
-         "energy_limited,relative_error,cpu_ms_per_s,stable,settling_time,front,preset\n";
+         "error,solves_per_step,solver,tolerance,position_error,force_error,energy_error,"
+         "position_limited,force_limited,energy_limited,relative_error,cpu_ms_per_s,stable,"
+         "settling_time,front,preset\n";
   out << std::setprecision(6);
   for (std::size_t i = 0; i < table.cases.size(); ++i) {
     const Reference& reference = table.references[i];

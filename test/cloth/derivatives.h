@@ -10,6 +10,29 @@
 
 namespace haptex::cloth {
 
+/// Expects forces (N) to be the negative gradient of an energy (J) of states, by the places of all
+/// particles, as central differences over a step (m) each way tell it.
+/// @param tolerance of the largest force
+template <typename Energy>
+void expectGradient(const std::vector<Eigen::Vector3d>& forces, ClothState state,
+                    const Energy& energy, double step, double tolerance) {
+  double scale = 0.0;
+  for (const Eigen::Vector3d& force : forces) scale = std::max(scale, force.norm());
+  ASSERT_GT(scale, 0.0);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      double& number = state.positions[i][axis];
+      const double middle = number;
+      number = middle + step;
+      const double above = energy(state);
+      number = middle - step;
+      const double below = energy(state);
+      number = middle;
+      EXPECT_NEAR(forces[i][axis], (below - above) / (2.0 * step), tolerance * scale) << i;
+    }
+  }
+}
+
 /// Expects the forces to be the negative gradient of the energy and the Jacobian that of the
 /// forces, by the places of some particles. For cells of 25 mm: errors of the differences near
 /// 1e-9.

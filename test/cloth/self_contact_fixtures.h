@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "derivatives.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/mesh/mesh.h"
@@ -29,6 +31,21 @@ inline mesh::ClothMesh layers(int count, double side, int cells) {
     }
   }
   return all;
+}
+
+/// Of the contact alone (N).
+inline std::vector<Eigen::Vector3d> contactForces(const Cloth& cloth, const ClothState& state) {
+  std::vector<Eigen::Vector3d> forces(cloth.particleCount(), Eigen::Vector3d::Zero());
+  cloth.selfContact()->addForces(state.ofForces(), forces);
+  return forces;
+}
+
+/// Expects them to be the negative gradient of its energy.
+inline void expectContactGradient(const Cloth& cloth, const ClothState& state, double tolerance) {
+  const auto energy = [&](const ClothState& at) {
+    return cloth.selfContact()->energy(at.ofForces());
+  };
+  expectGradient(contactForces(cloth, state), state, energy, 1e-8, tolerance);
 }
 
 inline ModelledEffects selfCollision() {

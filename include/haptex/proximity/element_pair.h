@@ -11,6 +11,7 @@
 namespace haptex::proximity {
 
 using Edge = std::array<int, 2>;  ///< vertex indices, the smaller one first
+inline Edge edgeBetween(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 /// Vertices, edges and triangles of a mesh.
 struct MeshElements {
@@ -20,6 +21,9 @@ struct MeshElements {
   std::vector<std::array<int, 3>> triangles;
   std::vector<int> vertices;  ///< those that a triangle has, ascending
   std::vector<Edge> edges;    ///< each once, ascending
+
+  /// Of the edge between two vertices, which must be one, in edges.
+  int indexOf(const Edge& edge) const;
 };
 
 enum class ElementPairKind {

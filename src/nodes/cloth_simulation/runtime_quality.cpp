@@ -69,8 +69,8 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
       reducible_(request.reducible()) {
   const double cycle = scene_.time_step;
   if (reducible_) budget_ = std::min(budget_, kMaxShare * cycle);
-  std::vector<scene::Quality> preset, front;
-  front = scene::loadQualities(findConfigFile("presets", "front"));
+  std::vector<scene::Quality> front = scene::loadQualities(findConfigFile("presets", "front"));
+  std::vector<scene::Quality> preset;
   if (!request.preset_path.empty()) preset = scene::loadQualities(request.preset_path);
   study(front);
   study(preset);

@@ -90,8 +90,7 @@ TEST(AmongObstacles, TheFloorHasThePressureOfALayerThatMirrorsTheCloth) {
   for (const double share : {0.4, 0.7, 0.9}) {
     const double gap = 0.5 * share * law.thickness();
     for (Vector3d& place : state.positions) place.z() = gap;
-    std::vector<Vector3d> forces(cloth.particleCount(), Vector3d::Zero());
-    cloth.selfContact()->addForces(state.ofForces(), forces);
+    const std::vector<Vector3d> forces = contactForces(cloth, state);
     Vector3d sum = Vector3d::Zero();
     for (const Vector3d& force : forces) sum += force;
     const double expected = law.at(2.0 * gap).pressure * 0.04 * 0.04;
@@ -115,25 +114,8 @@ TEST(AmongObstacles, ForcesAreTheGradientOfTheEnergyOnEveryShape) {
       place +=
           Vector3d(1e-3 * any(random), 1e-3 * any(random), thickness * (0.17 + 0.05 * any(random)));
     }
-    std::vector<Vector3d> forces(cloth.particleCount(), Vector3d::Zero());
-    cloth.selfContact()->addForces(state.ofForces(), forces);
-    double scale = 0.0;
-    for (const Vector3d& force : forces) scale = std::max(scale, force.norm());
-    ASSERT_GT(scale, 0.0) << obstacle.name;
-    constexpr double kStep = 1e-8;  // m
-    for (std::size_t i = 0; i < forces.size(); ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        double& number = state.positions[i][axis];
-        const double middle = number;
-        number = middle + kStep;
-        const double above = cloth.selfContact()->energy(state.ofForces());
-        number = middle - kStep;
-        const double below = cloth.selfContact()->energy(state.ofForces());
-        number = middle;
-        EXPECT_NEAR(forces[i][axis], (below - above) / (2.0 * kStep), 2e-4 * scale)
-            << obstacle.name << ' ' << i;
-      }
-    }
+    SCOPED_TRACE(obstacle.name);
+    expectContactGradient(cloth, state, 2e-4);
   }
 }
 

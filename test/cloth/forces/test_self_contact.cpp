@@ -13,34 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of the contact alone.
-std::vector<Vector3d> contactForces(const Cloth& cloth, const ClothState& state) {
-  std::vector<Vector3d> forces(cloth.particleCount(), Vector3d::Zero());
-  cloth.selfContact()->addForces(state.ofForces(), forces);
-  return forces;
-}
-
-/// Expects forces to be the negative gradient of the energy.
-void expectGradient(const Cloth& cloth, ClothState state, double tolerance) {
-  const std::vector<Vector3d> forces = contactForces(cloth, state);
-  double scale = 0.0;
-  for (const Vector3d& force : forces) scale = std::max(scale, force.norm());
-  ASSERT_GT(scale, 0.0);
-  constexpr double kStep = 1e-8;  // m
-  for (std::size_t i = 0; i < forces.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      double& number = state.positions[i][axis];
-      const double middle = number;
-      number = middle + kStep;
-      const double above = cloth.selfContact()->energy(state.ofForces());
-      number = middle - kStep;
-      const double below = cloth.selfContact()->energy(state.ofForces());
-      number = middle;
-      EXPECT_NEAR(forces[i][axis], (below - above) / (2.0 * kStep), tolerance * scale) << i;
-    }
-  }
-}
-
 TEST(LayerLaw, FollowsTheCompressionCurveAndDivergesWhereItEnds) {
   const material::Fabric fabric = fabricNamed("wool");
   const LayerLaw law(fabric);
@@ -125,7 +97,7 @@ TEST(SelfContact, ForcesAreTheGradientOfTheEnergyWhereverItTouches) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     ClothState state = crumpled(cloth, 0.1, seed);
     for (Vector3d& velocity : state.velocities) velocity.setZero();
-    expectGradient(cloth, state, 2e-4);
+    expectContactGradient(cloth, state, 2e-4);
   }
 }
 

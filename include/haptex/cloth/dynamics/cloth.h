@@ -111,6 +111,7 @@ class Cloth {
   /// @throws std::invalid_argument if the cloth does not collide with itself
   void setObstacles(std::vector<mesh::Obstacle> obstacles);
   /// They go through a step: ObstacleSurfaces::move(). Nothing without obstacles.
+  /// @param begin, end s, simulated
   void moveObstacles(double begin, double end);
 
   /// Attaches a particle to a place, or gives an attached one a new path.

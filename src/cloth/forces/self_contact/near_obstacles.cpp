@@ -1,7 +1,6 @@
 #include "haptex/cloth/forces/self_contact/near_obstacles.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 namespace haptex::cloth {
@@ -26,8 +25,8 @@ NearObstacles::OwnElements::OwnElements(const proximity::MeshElements& elements)
     : vertices(elements.triangles.size()), edges(elements.triangles.size()) {
   std::vector<bool> vertex_taken(elements.vertices.empty() ? 0 : elements.vertices.back() + 1);
   std::vector<bool> edge_taken(elements.edges.size());
-  const auto take = [](std::vector<bool>& taken, std::size_t element, std::vector<int>& own) {
-    if (!taken[element]) own.push_back(static_cast<int>(element));
+  const auto take = [](std::vector<bool>& taken, int element, std::vector<int>& own) {
+    if (!taken[element]) own.push_back(element);
     taken[element] = true;
   };
   for (std::size_t t = 0; t < elements.triangles.size(); ++t) {
@@ -35,9 +34,7 @@ NearObstacles::OwnElements::OwnElements(const proximity::MeshElements& elements)
       const int a = elements.triangles[t][i], b = elements.triangles[t][(i + 1) % 3];
       take(vertex_taken, a, vertices[t]);
       if (a == b) continue;
-      const proximity::Edge edge = {std::min(a, b), std::max(a, b)};
-      const auto at = std::lower_bound(elements.edges.begin(), elements.edges.end(), edge);
-      take(edge_taken, at - elements.edges.begin(), edges[t]);
+      take(edge_taken, elements.indexOf(proximity::edgeBetween(a, b)), edges[t]);
     }
   }
 }
@@ -101,7 +98,7 @@ void NearObstacles::find(const Places& positions, const Places& places, double d
   std::for_each(pairs_.begin(), pairs_.end(), measure);
   const auto is_far = [&](const Pair& pair) { return pair.distance > searched_; };
   pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), is_far), pairs_.end());
-  sort(pairs_);
+  std::sort(pairs_.begin(), pairs_.end());
   moved_ = 0.0;
   searched_at_ = positions;
   places_searched_at_ = places;
@@ -122,7 +119,7 @@ const std::vector<NearObstacles::Pair>& NearObstacles::onWays(
     tree_.visit(grown(box, distance),
                 [&](int other) { addPairs(static_cast<int>(t), other, on_ways_); });
   }
-  sort(on_ways_);
+  std::sort(on_ways_.begin(), on_ways_.end());
   return on_ways_;
 }
 
@@ -162,12 +159,6 @@ void NearObstacles::addPairs(int of_cloth, int of_obstacle, std::vector<Pair>& f
                        radius});
     }
   }
-}
-
-void NearObstacles::sort(std::vector<Pair>& found) const {
-  std::sort(found.begin(), found.end(), [](const Pair& a, const Pair& b) {
-    return std::tie(a.kind, a.first, a.second) < std::tie(b.kind, b.first, b.second);
-  });
 }
 
 }  // namespace haptex::cloth

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 namespace haptex::cloth {
 namespace {
@@ -63,9 +62,7 @@ bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
     pairs_.push_back(named(pair.elements));
     pairs_.back().distance = pair.nearest.distance;
   }
-  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
-    return std::tie(a.kind, a.first, a.second) < std::tie(b.kind, b.first, b.second);
-  });
+  std::sort(pairs_.begin(), pairs_.end());
   return true;
 }
 

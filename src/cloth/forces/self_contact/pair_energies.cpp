@@ -28,15 +28,20 @@ LayerPressure mirrored(const LayerPressure& layers) {
 /// have jumped for a comparison of energies, may lie inside.
 double gapOf(double distance, double radius) { return std::max(1e-9, distance - radius); }
 
+/// @param area m^2, < 0 of what is subtracted
+void spread(const LayerPressure& law, double area, PairEnergy& energy) {
+  energy.energy = area * law.energy;
+  energy.force = area * law.pressure;
+  energy.stiffness = std::max(0.0, area) * law.slope;
+}
+
 /// Of two edges with the edge vectors a and b; whole: at 1.
 void fadeWhereParallel(const Vector3d& a, const Vector3d& b, double whole, double area,
                        const LayerPressure& law, PairEnergy& energy) {
   const Vector3d product = a.cross(b);
   const double c = std::min(1.0, product.squaredNorm() / whole);
   const double m = c * (2.0 - c);
-  energy.energy = m * area * law.energy;
-  energy.force = m * area * law.pressure;
-  energy.stiffness = m * area * law.slope;
+  spread(law, m * area, energy);
   if (c < 1.0) {
     energy.parallel = true;
     const double slope = area * law.energy * 2.0 * (1.0 - c) * 2.0 / whole;
@@ -54,9 +59,9 @@ PairEnergies::PairEnergies(const std::vector<std::array<int, 3>>& triangles,
       triangles_(triangles),
       cloth_(triangles, reference.size()),
       vertex_areas_(reference.size(), 0.0) {
-  const std::vector<proximity::Edge> edges = proximity::MeshElements(triangles).edges;
-  edge_areas_.assign(edges.size(), 0.0);
-  edge_squares_ = edgeSquares(edges, reference);
+  const proximity::MeshElements elements(triangles);
+  edge_areas_.assign(elements.edges.size(), 0.0);
+  edge_squares_ = edgeSquares(elements.edges, reference);
   for (const auto& triangle : triangles) {
     const auto& [a, b, c] = triangle;
     const Vector3d ab = reference[b] - reference[a], ac = reference[c] - reference[a];
@@ -65,9 +70,8 @@ PairEnergies::PairEnergies(const std::vector<std::array<int, 3>>& triangles,
     triangle_areas_.push_back(area);
     for (int i = 0; i < 3; ++i) {
       const int from = triangle[i], to = triangle[(i + 1) % 3];
-      const proximity::Edge edge = {std::min(from, to), std::max(from, to)};
       vertex_areas_[from] += part;
-      edge_areas_[std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin()] += part;
+      edge_areas_[elements.indexOf(proximity::edgeBetween(from, to))] += part;
     }
   }
 }
@@ -116,11 +120,7 @@ void PairEnergies::addVertex(const Positions& positions, int vertex,
     energy.distance = away.norm();
     if (energy.distance >= law_.thickness()) continue;
     energy.normal = away / energy.distance;
-    const LayerPressure law = law_.at(energy.distance);
-    const double area = feature.times * vertex_areas_[vertex];
-    energy.energy = area * law.energy;
-    energy.force = area * law.pressure;
-    energy.stiffness = std::max(0.0, area) * law.slope;
+    spread(law_.at(energy.distance), feature.times * vertex_areas_[vertex], energy);
     found.push_back(energy);
   }
 }
@@ -200,11 +200,8 @@ void PairEnergies::addVertexAtObstacle(const Positions& positions, const Obstacl
     energy.weights[0] = 1.0;
     energy.distance = gapOf(distance, pair.radius);
     energy.normal = away / distance;
-    const LayerPressure law = mirrored(law_.at(2.0 * energy.distance));
-    const double area = 2.0 * feature.times * vertex_areas_[vertex];
-    energy.energy = area * law.energy;
-    energy.force = area * law.pressure;
-    energy.stiffness = std::max(0.0, area) * law.slope;
+    spread(mirrored(law_.at(2.0 * energy.distance)), 2.0 * feature.times * vertex_areas_[vertex],
+           energy);
     energy.way = obstacles.surfaces.wayOf(energy.obstacle, feature.size, feature.ids.data(),
                                           feature.weights.data(), pair.radius * energy.normal,
                                           obstacles.at_end);
@@ -233,11 +230,7 @@ void PairEnergies::addObstacleVertex(const Positions& positions, const Obstacles
   }
   energy.distance = gapOf(nearest.distance, pair.radius);
   energy.normal = away / away.norm();
-  const LayerPressure law = mirrored(law_.guardAt(2.0 * energy.distance));
-  const double area = triangle_areas_[pair.second] / 3.0;
-  energy.energy = area * law.energy;
-  energy.force = area * law.pressure;
-  energy.stiffness = area * law.slope;
+  spread(mirrored(law_.guardAt(2.0 * energy.distance)), triangle_areas_[pair.second] / 3.0, energy);
   constexpr double kWhole = 1.0;
   energy.way = obstacles.surfaces.wayOf(pair.obstacle, 1, &vertex, &kWhole,
                                         pair.radius * energy.normal, obstacles.at_end);

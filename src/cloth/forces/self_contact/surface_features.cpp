@@ -4,31 +4,23 @@
 #include <map>
 #include <utility>
 
+#include "haptex/proximity/element_pair.h"
 #include "haptex/proximity/triangle_distance.h"
 
 namespace haptex::cloth {
-namespace {
 
 using Eigen::Vector3d;
-
-using Edge = std::array<int, 2>;
-Edge edgeFrom(const std::array<int, 3>& triangle, int corner) {
-  const int a = triangle[corner], b = triangle[(corner + 1) % 3];
-  return {std::min(a, b), std::max(a, b)};
-}
-
-}  // namespace
 
 SurfaceFeatures::SurfaceFeatures(const std::vector<std::array<int, 3>>& triangles,
                                  std::size_t vertices)
     : triangles_(triangles), across_(triangles.size(), {-1, -1, -1}), around_(vertices) {
-  std::map<Edge, std::vector<std::array<int, 2>>> owners;  // triangle and corner
+  std::map<proximity::Edge, std::vector<std::array<int, 2>>> owners;  // triangle and corner
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     const auto& [a, b, c] = triangles[t];
     if (a == b || b == c || c == a) continue;
     for (int i = 0; i < 3; ++i) {
       around_[triangles[t][i]].push_back(t);
-      owners[edgeFrom(triangles[t], i)].push_back({t, i});
+      owners[proximity::edgeBetween(triangles[t][i], triangles[t][(i + 1) % 3])].push_back({t, i});
     }
   }
   for (const auto& [edge, of_edge] : owners) {

@@ -63,7 +63,6 @@ class NearObstacles {
 
   void fitBoxes(const Places& places, const Places* ways);
   void addPairs(int of_cloth, int of_obstacle, std::vector<Pair>& found) const;
-  void sort(std::vector<Pair>& found) const;
 
   std::shared_ptr<ObstacleSurfaces> surfaces_;
   proximity::MeshElements cloth_;

@@ -23,6 +23,11 @@ class NearPairs {
     int obstacle = -1;            ///< that has one of the elements; -1: none (NearObstacles)
     double radius = 0.0;          ///< m, within which that element is solid
     double distance = 0.0;        ///< m, at most that of the surfaces where they were searched for
+
+    friend bool operator<(const Pair& a, const Pair& b) {
+      return proximity::ElementPair{a.kind, a.first, a.second} <
+             proximity::ElementPair{b.kind, b.first, b.second};
+    }
   };
 
   /// @param reference positions (m) of the particles in the flat fabric
