@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "haptex/exoskeleton/control/driver_loop.h"
+#include "haptex/exoskeleton/driver/driver_loop.h"
 #include "haptex/exoskeleton/emulator/emulator.h"
 #include "haptex/realtime/duration_histogram.h"
 #include "haptex/realtime/periodic_thread.h"

@@ -5,7 +5,7 @@
 
 #include "../malloc_counter.h"
 #include "exoskeleton_fixtures.h"
-#include "haptex/exoskeleton/control/driver_loop.h"
+#include "haptex/exoskeleton/driver/driver_loop.h"
 #include "haptex/realtime/steady_clock.h"
 
 namespace haptex::exoskeleton::test_driver_allocation {

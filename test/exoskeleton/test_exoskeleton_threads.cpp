@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "exoskeleton_fixtures.h"
-#include "haptex/exoskeleton/control/driver_loop.h"
-#include "haptex/exoskeleton/control/port_keeper.h"
-#include "haptex/exoskeleton/control/request_box.h"
+#include "haptex/exoskeleton/driver/driver_loop.h"
+#include "haptex/exoskeleton/driver/port_keeper.h"
+#include "haptex/exoskeleton/driver/request_box.h"
 #include "haptex/realtime/duration_histogram.h"
 #include "haptex/realtime/periodic_thread.h"
 #include "haptex/realtime/ring.h"

@@ -19,7 +19,7 @@ material::Fabric wool() {
 
 DrapeTest coarse() {
   DrapeTest test;
-  test.rings = base::unlessSanitized(11, 8);
+  test.rings = base::unlessSanitized(11, 6);
   return test;
 }
 

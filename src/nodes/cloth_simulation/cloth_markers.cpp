@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <string>
 
-#include "haptex/nodes/common/colour_map.h"
-#include "haptex/nodes/common/marker_shapes.h"
-#include "haptex/nodes/common/obstacle_marker.h"
+#include "haptex/nodes/markers/colour_map.h"
+#include "haptex/nodes/markers/marker_shapes.h"
+#include "haptex/nodes/markers/obstacle_marker.h"
 
 namespace haptex::nodes {
 namespace {

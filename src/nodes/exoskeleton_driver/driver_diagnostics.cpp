@@ -1,10 +1,10 @@
 // The diagnostics of DriverNode: the link, the loop, and for each finger why it feels no force.
 #include <string>
 
-#include "haptex/exoskeleton/control/driver_announcement.h"
+#include "haptex/exoskeleton/driver/driver_announcement.h"
 #include "haptex/nodes/common/diagnostics_timer.h"
-#include "haptex/nodes/common/hand_markers.h"
 #include "haptex/nodes/exoskeleton_driver/driver_node.h"
+#include "haptex/nodes/markers/hand_markers.h"
 #include "haptex/realtime/steady_clock.h"
 
 namespace haptex::nodes {

@@ -10,11 +10,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "haptex/exoskeleton/control/driver_announcement.h"
+#include "haptex/exoskeleton/driver/driver_announcement.h"
 #include "haptex/nodes/common/driver_messages.h"
-#include "haptex/nodes/common/hand_markers.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/ros_time.h"
+#include "haptex/nodes/markers/hand_markers.h"
 #include "haptex/realtime/scheduling.h"
 #include "haptex/realtime/steady_clock.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "haptex/nodes/common/colour_map.h"
-#include "haptex/nodes/common/marker_shapes.h"
+#include "haptex/nodes/markers/colour_map.h"
+#include "haptex/nodes/markers/marker_shapes.h"
 #include "haptex/realtime/rate_meter.h"
 
 namespace haptex::nodes {

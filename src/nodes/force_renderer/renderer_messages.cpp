@@ -7,8 +7,8 @@
 
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
-#include "haptex/nodes/common/marker_shapes.h"
 #include "haptex/nodes/common/proximity_messages.h"
+#include "haptex/nodes/markers/marker_shapes.h"
 
 namespace haptex::nodes {
 namespace {

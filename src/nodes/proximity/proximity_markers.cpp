@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "haptex/nodes/common/colour_map.h"
-#include "haptex/nodes/common/marker_shapes.h"
-#include "haptex/nodes/common/obstacle_marker.h"
+#include "haptex/nodes/markers/colour_map.h"
+#include "haptex/nodes/markers/marker_shapes.h"
+#include "haptex/nodes/markers/obstacle_marker.h"
 
 namespace haptex::nodes {
 namespace {

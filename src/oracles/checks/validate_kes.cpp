@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptex/base/workload.h"
 #include "haptex/kes/virtual_kes.h"
 #include "haptex/oracles/checks/cloth_oracles.h"
 
@@ -66,8 +67,8 @@ material::Fabric unusual(material::Fabric fabric) {
 }  // namespace
 
 void validateKesHysteresis(const std::vector<material::Fabric>& fabrics, const Sink& sink) {
-  for (const material::Fabric& fabric : fabrics) {
-    sinkHysteresis(fabric, "hysteresis/" + fabric.name, sink);
+  for (std::size_t i = 0; i < base::unlessSanitized<std::size_t>(fabrics.size(), 1); ++i) {
+    sinkHysteresis(fabrics[i], "hysteresis/" + fabrics[i].name, sink);
   }
   sinkHysteresis(unusual(fabrics.front()), "hysteresis/unusual", sink);
 }

@@ -8,7 +8,7 @@
 #include "../simulation/small_scene.h"
 #include "haptex/nodes/cloth_simulation/cloth_markers.h"
 #include "haptex/nodes/common/cloth_messages.h"
-#include "haptex/nodes/common/colour_map.h"
+#include "haptex/nodes/markers/colour_map.h"
 
 namespace haptex::nodes::test_cloth_markers {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "haptex/nodes/common/cloth_messages.h"
-#include "haptex/nodes/common/colour_map.h"
-#include "haptex/nodes/common/marker_shapes.h"
+#include "haptex/nodes/markers/colour_map.h"
+#include "haptex/nodes/markers/marker_shapes.h"
 #include "haptex/nodes/proximity/proximity_markers.h"
 
 namespace haptex::nodes::test_proximity_markers {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "haptex/nodes/common/colour_map.h"
-#include "haptex/nodes/common/marker_shapes.h"
+#include "haptex/nodes/markers/colour_map.h"
+#include "haptex/nodes/markers/marker_shapes.h"
 #include "haptex/nodes/tactile_renderer/tactile_markers.h"
 #include "haptex/nodes/tactile_renderer/tactile_messages.h"
 #include "haptex/tactile/contactor_array.h"

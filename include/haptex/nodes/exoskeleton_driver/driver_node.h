@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "haptex/exoskeleton/control/auto_recovery.h"
-#include "haptex/exoskeleton/control/commander_watch.h"
-#include "haptex/exoskeleton/control/driver_loop.h"
 #include "haptex/exoskeleton/control/finger_kinematics.h"
+#include "haptex/exoskeleton/driver/commander_watch.h"
+#include "haptex/exoskeleton/driver/driver_loop.h"
 #include "haptex/nodes/common/immediate_queue.h"
 #include "haptex/nodes/common/loop_diagnostics.h"
 #include "haptex/nodes/common/message_pool.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "haptex/exoskeleton/control/driver_loop.h"
+#include "haptex/exoskeleton/driver/driver_loop.h"
 #include "haptex/exoskeleton/emulator/emulated_device.h"
 #include "haptex/exoskeleton/emulator/fault_injector.h"
 #include "haptex/exoskeleton/protocol/firmware_model.h"

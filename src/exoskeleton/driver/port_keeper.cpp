@@ -1,4 +1,4 @@
-#include "haptex/exoskeleton/control/port_keeper.h"
+#include "haptex/exoskeleton/driver/port_keeper.h"
 
 #include <poll.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "haptex/exoskeleton/control/port_access.h"
+#include "haptex/exoskeleton/driver/port_access.h"
 #include "haptex/exoskeleton/finger.h"
 #include "haptex/exoskeleton/protocol/serial_port.h"
 #include "haptex/realtime/semaphore.h"

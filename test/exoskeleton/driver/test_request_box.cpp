@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "haptex/exoskeleton/control/request_box.h"
+#include "haptex/exoskeleton/driver/request_box.h"
 #include "haptex/realtime/steady_clock.h"
 
 namespace haptex::exoskeleton::test_request_box {

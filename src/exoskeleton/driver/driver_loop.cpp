@@ -1,9 +1,9 @@
-#include "haptex/exoskeleton/control/driver_loop.h"
+#include "haptex/exoskeleton/driver/driver_loop.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "haptex/exoskeleton/control/port_keeper.h"
+#include "haptex/exoskeleton/driver/port_keeper.h"
 #include "haptex/realtime/steady_clock.h"
 
 namespace haptex::exoskeleton {

@@ -12,8 +12,8 @@
 #include <string>
 
 #include "haptex/exoskeleton/control/device_controller.h"
-#include "haptex/exoskeleton/control/port_access.h"
-#include "haptex/exoskeleton/control/request_box.h"
+#include "haptex/exoskeleton/driver/port_access.h"
+#include "haptex/exoskeleton/driver/request_box.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
 #include "haptex/realtime/duration_histogram.h"
 #include "haptex/realtime/ring.h"

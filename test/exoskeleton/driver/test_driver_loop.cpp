@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "exoskeleton_fixtures.h"
-#include "haptex/exoskeleton/control/driver_loop.h"
+#include "haptex/exoskeleton/driver/driver_loop.h"
 #include "haptex/realtime/periodic_thread.h"
 #include "haptex/realtime/steady_clock.h"
 

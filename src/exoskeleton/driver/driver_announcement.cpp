@@ -1,4 +1,4 @@
-#include "haptex/exoskeleton/control/driver_announcement.h"
+#include "haptex/exoskeleton/driver/driver_announcement.h"
 
 namespace haptex::exoskeleton {
 

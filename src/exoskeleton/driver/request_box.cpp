@@ -1,4 +1,4 @@
-#include "haptex/exoskeleton/control/request_box.h"
+#include "haptex/exoskeleton/driver/request_box.h"
 
 #include <utility>
 

@@ -1,11 +1,11 @@
-#include "haptex/nodes/common/obstacle_marker.h"
+#include "haptex/nodes/markers/obstacle_marker.h"
 
 #include <Eigen/Geometry>
 #include <variant>
 #include <vector>
 
-#include "haptex/nodes/common/colour_map.h"
-#include "haptex/nodes/common/marker_shapes.h"
+#include "haptex/nodes/markers/colour_map.h"
+#include "haptex/nodes/markers/marker_shapes.h"
 
 namespace haptex::nodes {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptex/nodes/common/colour_map.h"
+#include "haptex/nodes/markers/colour_map.h"
 
 #include <algorithm>
 #include <array>

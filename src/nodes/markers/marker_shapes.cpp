@@ -1,4 +1,4 @@
-#include "haptex/nodes/common/marker_shapes.h"
+#include "haptex/nodes/markers/marker_shapes.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include <limits>
 #include <set>
 
-#include "haptex/nodes/common/hand_markers.h"
+#include "haptex/nodes/markers/hand_markers.h"
 
 namespace haptex::nodes::test_hand_markers {
 namespace {
@@ -116,6 +116,19 @@ TEST(TargetMarkers, TheHandCanBeDraggedAndTurned) {
   EXPECT_NEAR(marker.pose.orientation.y, std::sin(0.35), 1e-12);
   EXPECT_EQ(countOf(marker, InteractiveMarkerControl::MOVE_AXIS), 3);
   EXPECT_EQ(countOf(marker, InteractiveMarkerControl::ROTATE_AXIS), 3);
+}
+
+TEST(StateMarker, IsATextAboveTheHandThatIsRedForAFault) {
+  using exoskeleton::Mode;
+  const auto marker = [](Mode mode) {
+    return stateMarker("a text", mode, ros::Time(1.0)).markers.at(0);
+  };
+  EXPECT_EQ(marker(Mode::kFault).text, "a text");
+  EXPECT_EQ(marker(Mode::kFault).ns, "state");
+  EXPECT_EQ(marker(Mode::kFault).header.frame_id, "hand_base");
+  EXPECT_EQ(marker(Mode::kFault).type, visualization_msgs::Marker::TEXT_VIEW_FACING);
+  EXPECT_GT(marker(Mode::kFault).color.r, 2.0F * marker(Mode::kFault).color.g);
+  EXPECT_GT(marker(Mode::kEnabled).color.g, 2.0F * marker(Mode::kEnabled).color.r);
 }
 
 }  // namespace

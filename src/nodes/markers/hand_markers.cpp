@@ -1,9 +1,9 @@
-#include "haptex/nodes/common/hand_markers.h"
+#include "haptex/nodes/markers/hand_markers.h"
 
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
-#include "haptex/nodes/common/marker_shapes.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/markers/marker_shapes.h"
 
 namespace haptex::nodes {
 namespace {

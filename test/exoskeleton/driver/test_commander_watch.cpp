@@ -1,0 +1,25 @@
+#include <gtest/gtest.h>
+
+#include "haptex/exoskeleton/driver/commander_watch.h"
+
+namespace haptex::exoskeleton::test_commander_watch {
+namespace {
+
+using base::Finger;
+
+TEST(CommanderWatch, KnowsTheDeathOfTheOneWhoCommandedLastOnce) {
+  CommanderWatch watch;
+  EXPECT_FALSE(watch.hasDied(Finger::kIndex, "")) << "nobody has commanded";
+  watch.commanded(Finger::kIndex, "/renderer");
+  EXPECT_FALSE(watch.hasDied(Finger::kThumb, "/renderer"));
+  EXPECT_FALSE(watch.hasDied(Finger::kIndex, "/rviz"));
+  EXPECT_TRUE(watch.hasDied(Finger::kIndex, "/renderer"));
+  EXPECT_FALSE(watch.hasDied(Finger::kIndex, "/renderer"));
+  watch.commanded(Finger::kIndex, "/renderer");
+  watch.commanded(Finger::kIndex, "/another");
+  EXPECT_FALSE(watch.hasDied(Finger::kIndex, "/renderer"));
+  EXPECT_TRUE(watch.hasDied(Finger::kIndex, "/another"));
+}
+
+}  // namespace
+}  // namespace haptex::exoskeleton::test_commander_watch
