@@ -6,6 +6,7 @@
 // progress on standard error, and writes the table, to build/trade_off.csv if not told. Only with a
 // DIRECTORY, config/presets for scripts/update_presets, it writes the presets there.
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -26,6 +27,7 @@ using linear::LinearSolverMethod;
 using studies::TradeOffPoint;
 
 constexpr int kThreads = 2;
+constexpr std::array kPresets = {"fast", "balanced", "accurate"};
 constexpr double kMaxCost = 3.0;  // computing time over simulated time, beyond which nobody goes
 
 TradeOffPoint pointOf(IntegrationMethod method, int cells, int steps_per_cycle, int solves) {
@@ -152,6 +154,20 @@ void printTable(const studies::TradeOffTable& table) {
   }
 }
 
+/// Those of every fabric, of its own motions.
+void printPresets(const std::vector<scene::Quality>& qualities) {
+  for (const scene::Quality& quality : qualities) {
+    if (std::find(kPresets.begin(), kPresets.end(), quality.name) == kPresets.end()) continue;
+    for (const scene::MeasuredQuality& measured : quality.measured) {
+      if (measured.fabric != quality.fabric) continue;
+      const std::string name =
+          "trade_off/presets/" + quality.fabric + "/" + quality.name + "/" + measured.motion;
+      bench::printLine(name + "/position_error", measured.position_error, "m");
+      bench::printLine(name + "/cost", 1e3 * measured.cost, "ms/s");
+    }
+  }
+}
+
 /// The processor as the kernel calls it, or "unknown".
 std::string machine() {
   std::ifstream file("/proc/cpuinfo");
@@ -178,7 +194,7 @@ bool writePresets(const std::string& directory, const std::vector<scene::Quality
     return static_cast<bool>(file.flush());
   };
   bool written = write("front", qualities);
-  for (const char* name : {"fast", "balanced", "accurate"}) {
+  for (const std::string name : kPresets) {
     std::vector<scene::Quality> preset;  // one for every fabric
     std::copy_if(qualities.begin(), qualities.end(), std::back_inserter(preset),
                  [&](const scene::Quality& quality) { return quality.name == name; });
@@ -203,6 +219,7 @@ int main(int argc, char** argv) {
                                counter(table.points.size()));
   const std::vector<scene::Quality> qualities = chooseQualities(table);
   printTable(table);
+  printPresets(qualities);
   std::ofstream csv(path);
   writeTable(csv, table, qualities);
   if (!csv.flush()) {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "../exoskeleton/shipped_urdf.h"
+#include "haptex/base/workload.h"
 #include "haptex/exoskeleton/emulator/hand_path.h"
 #include "haptex/oracles/experiments/virtual_wall.h"
 
@@ -21,7 +22,7 @@ PerFinger<WallTouch> touch(const VirtualWall& wall, int cycles) {
 }
 
 TEST(VirtualWall, IsSteadyAndPassiveWhereItsLinearisationIsSent) {
-  const auto touches = touch({1000.0, 0.0, true, 3}, 5);
+  const auto touches = touch({1000.0, 0.0, true, 3}, base::unlessSanitized(5, 2));
   for (const Finger finger : kFingers) {
     EXPECT_TRUE(touches[finger].steady()) << name(finger);
     EXPECT_TRUE(touches[finger].observedPassive()) << name(finger);
@@ -37,7 +38,7 @@ TEST(VirtualWall, OscillatesWhereItIsStifferThanTheDeviceCanBe) {
 }
 
 TEST(VirtualWall, NeedsThePassivityControllerWhereOnlyItsForceIsSent) {
-  const auto touches = touch({600.0, 0.0, false, 0}, 3);
+  const auto touches = touch({600.0, 0.0, false, 0}, base::unlessSanitized(3, 1));
   for (const Finger finger : kFingers) {
     EXPECT_FALSE(touches[finger].observedPassive()) << name(finger);
     EXPECT_GT(touches[finger].controller_share, 0.1) << name(finger);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "haptex/base/workload.h"
 #include "haptex/oracles/exact/moving_elements.h"
 #include "haptex/proximity/continuous.h"
 
@@ -29,8 +30,9 @@ double sampledDistance(const oracles::MovingElements& e, int samples) {
 // A million of them are run by scripts/bench self_collision.
 TEST(ContinuousDetection, MissesNoContactThatIsKnownExactly) {
   oracles::MovingElementCases cases;
+  constexpr int kCases = base::unlessSanitized(100000, 20000);
   int contacts = 0, late = 0, missed = 0;
-  for (int i = 0; i < 100000; ++i) {
+  for (int i = 0; i < kCases; ++i) {
     const oracles::MovingElements e = cases.next();
     if (!e.contact) continue;
     ++contacts;
@@ -38,15 +40,16 @@ TEST(ContinuousDetection, MissesNoContactThatIsKnownExactly) {
     missed += !found;
     late += found && *found > *e.contact;
   }
-  EXPECT_GT(contacts, 50000);
+  EXPECT_GT(contacts, kCases / 2);
   EXPECT_EQ(missed, 0);
   EXPECT_EQ(late, 0);
 }
 
 TEST(ContinuousDetection, ReportsNoContactWhereThereIsADistance) {
   oracles::MovingElementCases cases;
+  constexpr int kCases = base::unlessSanitized(3000, 750);
   int apart = 0, found = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < kCases; ++i) {
     const oracles::MovingElements e = cases.next();
     if (e.contact) continue;
     // Between two samples the distance changes by less than 24 sqrt(3) / 2 / 10000.
@@ -54,7 +57,7 @@ TEST(ContinuousDetection, ReportsNoContactWhereThereIsADistance) {
     ++apart;
     found += earliestContact(e.kind, e.begin, e.end).has_value();
   }
-  EXPECT_GT(apart, 400);
+  EXPECT_GT(apart, 2 * kCases / 15);
   EXPECT_EQ(found, 0);
 }
 

@@ -7,6 +7,7 @@
 
 #include "exact_distance.h"
 #include "fixtures.h"
+#include "haptex/base/workload.h"
 #include "haptex/proximity/exact_number.h"
 #include "haptex/proximity/exact_orientation.h"
 #include "haptex/proximity/intersections.h"
@@ -64,10 +65,10 @@ TEST(Orientation, IsExactWhereDoublesAreUndecided) {
 
 TEST(Intersections, OfTrianglesApartAgreeWithTheDistance) {
   int meeting = 0;
-  const int count = 20000;
+  constexpr int kCases = base::unlessSanitized(20000, 4000);
   for (int reach : {1, 2, 4}) {
     GridCorners corners(reach);
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < kCases; ++i) {
       Positions p(6);
       for (Vector3d& corner : p) corner = corners.next();
       const bool expected = touch({p[0], p[1], p[2]}, {p[3], p[4], p[5]});
@@ -76,16 +77,16 @@ TEST(Intersections, OfTrianglesApartAgreeWithTheDistance) {
       meeting += expected;
     }
   }
-  EXPECT_GT(meeting, count / 2);
-  EXPECT_LT(meeting, 5 * count / 2);
+  EXPECT_GT(meeting, kCases / 2);
+  EXPECT_LT(meeting, 5 * kCases / 2);
 }
 
 TEST(Intersections, OfTrianglesWithACommonCornerAreThoseElsewhere) {
   int meeting = 0, without_area = 0;
-  const int count = 5000;
+  constexpr int kCases = base::unlessSanitized(5000, 1000);
   for (int reach : {1, 2, 4}) {
     GridCorners corners(reach);
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < kCases; ++i) {
       Positions p(5);
       for (Vector3d& corner : p) corner = corners.next();
       const auto area = [&](int a, int b) { return (p[a] - p[0]).cross(p[b] - p[0]).norm(); };
@@ -104,8 +105,8 @@ TEST(Intersections, OfTrianglesWithACommonCornerAreThoseElsewhere) {
       meeting += expected;
     }
   }
-  EXPECT_GT(meeting, count / 4);
-  EXPECT_LT(without_area, 2 * count);
+  EXPECT_GT(meeting, kCases / 4);
+  EXPECT_LT(without_area, 2 * kCases);
 }
 
 TEST(Intersections, OfTrianglesWithACommonEdgeAreOverlaps) {
