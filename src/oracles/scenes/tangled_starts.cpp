@@ -162,17 +162,16 @@ Untangled untangle(const TangledStart& start, const material::Fabric& fabric, in
   settings.newton_iterations = 5;
   SelfCollidingCloth scene(start.set, fabric, settings);
   Untangled result{0, 0, 0.0, 0.0};
-  double first = 0.0, added = 0.0, highest = 0.0, lowest = 0.0;
+  // Energies of the start are with contact in the tangle; a step of no length leaves that out.
+  scene.step(1e-9);
+  const double first = scene.energy();
+  double added = 0.0, highest = first, lowest = first;
   for (int i = 0; i < steps; ++i) {
     const cloth::TangleReport report = scene.step(0.0125).tangle;
+    added += report.energy;
     result.left = scene.intersections();
     result.misreported += static_cast<std::size_t>(report.pairs) != result.left;
     const double energy = scene.energy();
-    if (i == 0) {
-      first = highest = lowest = energy;
-      continue;
-    }
-    added += report.energy;
     highest = std::max(highest, energy);
     lowest = std::min(lowest, energy);
     result.energy_growth = std::max(result.energy_growth, energy - first - added);

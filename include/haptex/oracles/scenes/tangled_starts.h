@@ -30,8 +30,8 @@ TangledStart tangledStart(int index);
 struct Untangled {
   std::size_t left;      ///< pairs of triangles that intersect at the end
   int misreported = 0;   ///< steps whose report tells another number than the exact test
-  double energy_growth;  ///< J, most of any state beyond the first step's and what was added since
-                         ///< by untangling (TangleReport::energy)
+  double energy_growth;  ///< J, most of any state beyond the start's and what was added since by
+                         ///< untangling (TangleReport::energy)
   double energy_range;   ///< J, between the highest and the lowest state
 };
 

@@ -25,7 +25,7 @@ double shortestAltitude(const std::vector<std::array<int, 3>>& triangles,
 /// As far as it costs little: below half of the altitudes a mesh has no neighbours to look at one
 /// by one (proximity::SelfProximity), and in layers pairs grow with the square of the distance.
 double distanceToSearch(double altitude, double distance) {
-  constexpr double kOfAltitude = 0.45, kLeast = 1.5, kMost = 3.0;
+  constexpr double kOfAltitude = 0.45, kLeast = 1.5, kMost = 8.0;
   return std::clamp(kOfAltitude * altitude, kLeast * distance, kMost * distance);
 }
 
