@@ -207,7 +207,7 @@ TEST(MeshIntersections, AreThoseOfTheSweepWhileTheMeshMoves) {
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   std::vector<std::array<int, 3>> triangles;
   std::vector<Eigen::Vector3d> positions(60);
-  for (int i = 0; i + 2 < 60; i += 2) triangles.push_back({i, i + 1, i + 2});
+  for (int i = 0; i + 2 < 60; ++i) triangles.push_back({i, i + 1, i + 2});
   for (Eigen::Vector3d& place : positions) place = {any(random), any(random), any(random)};
   MeshIntersections moving(triangles, positions);
   for (int move = 0; move < 5; ++move) {
