@@ -104,7 +104,8 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
   report.accepted = std::isfinite(report.linear_residual) && std::isfinite(end_.time) &&
                     allFinite(end_.positions) && allFinite(end_.velocities);
   if (report.accepted) {
-    const bool is_other = untangling_ && untangling_->end(cloth, time_step, *stages_, end_, report.tangle);
+    const bool is_other =
+        untangling_ && untangling_->end(cloth, time_step, *stages_, end_, report.tangle);
     cloth.remember(end_);
     if (motion_ && report.taken_anew) motion_->startAnew(end_);
     if (motion_) motion_->end(end_);
