@@ -16,6 +16,7 @@
 #include "haptex/oracles/exact/moving_elements.h"
 #include "haptex/oracles/scenes/deformed_sheets.h"
 #include "haptex/oracles/scenes/self_collision_scenes.h"
+#include "haptex/oracles/scenes/tangled_starts.h"
 #include "haptex/proximity/continuous.h"
 #include "haptex/proximity/intersections.h"
 #include "haptex/proximity/self_proximity.h"
@@ -171,6 +172,25 @@ void printScenes() {
   }
 }
 
+/// Of 100 random tangled starts, after a second.
+void printTangled() {
+  constexpr int kStarts = 100, kSteps = 80;
+  int free = 0, misreported = 0;
+  std::size_t left = 0;
+  for (int i = 0; i < kStarts; ++i) {
+    const oracles::TangledStart start = oracles::tangledStart(i);
+    const material::Fabric fabric =
+        material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + start.fabric + ".yaml");
+    const oracles::Untangled end = oracles::untangle(start, fabric, kSteps);
+    free += end.left == 0;
+    left += end.left;
+    misreported += end.misreported;
+  }
+  bench::printLine("self_collision/tangled/free", static_cast<double>(free) / kStarts, "ratio");
+  bench::printLine("self_collision/tangled/left", static_cast<double>(left), "pairs");
+  bench::printLine("self_collision/tangled/misreported", misreported, "steps");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -206,6 +226,7 @@ int main(int argc, char** argv) {
                      "ratio");
   }
   printScenes();
+  printTangled();
   printContinuous();
   printCost("flat", small, at_rest);
   for (const char* state : crumpled) {

@@ -11,6 +11,7 @@
 #include "haptex/proximity/exact_number.h"
 #include "haptex/proximity/exact_orientation.h"
 #include "haptex/proximity/intersections.h"
+#include "haptex/proximity/mesh_intersections.h"
 
 namespace haptex::proximity::test_intersections {
 namespace {
@@ -199,6 +200,22 @@ TEST(Intersections, RefuseWhatIsNoMesh) {
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("position 1"), std::string::npos) << error.what();
+  }
+}
+
+TEST(MeshIntersections, AreThoseOfTheSweepWhileTheMeshMoves) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<Eigen::Vector3d> positions(60);
+  for (int i = 0; i + 2 < 60; ++i) triangles.push_back({i, i + 1, i + 2});
+  for (Eigen::Vector3d& place : positions) place = {any(random), any(random), any(random)};
+  MeshIntersections moving(triangles, positions);
+  for (int move = 0; move < 5; ++move) {
+    const auto expected = intersectingTriangles(positions, triangles);
+    EXPECT_FALSE(expected.empty());
+    EXPECT_EQ(moving.find(positions), expected);
+    for (Eigen::Vector3d& place : positions) place = {any(random), any(random), any(random)};
   }
 }
 

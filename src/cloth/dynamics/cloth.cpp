@@ -6,8 +6,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "haptex/proximity/intersections.h"
-
 namespace haptex::cloth {
 namespace {
 
@@ -23,22 +21,6 @@ void requireDensity(const material::Fabric& fabric) {
             << " kg/m2; it must be finite and greater than 0";
     throw std::invalid_argument(message.str());
   }
-}
-
-void requireFreeOfIntersections(const mesh::ClothMesh& mesh) {
-  constexpr std::size_t kNamed = 5;
-  const std::vector<proximity::TrianglePair> found =
-      proximity::intersectingTriangles(mesh.initial_positions, mesh.triangles);
-  if (found.empty()) return;
-  std::ostringstream message;
-  message << "self_collision is modelled and " << found.size()
-          << " pairs of triangles intersect at the start:";
-  for (std::size_t i = 0; i < std::min(kNamed, found.size()); ++i) {
-    message << (i == 0 ? " " : ", ") << found[i][0] << " and " << found[i][1];
-  }
-  message << (found.size() > kNamed ? ", ..." : "")
-          << "; the start has to be free of intersections, tangles are not pulled apart";
-  throw std::invalid_argument(message.str());
 }
 
 std::vector<material::Fabric> alone(material::Fabric fabric) {
@@ -81,7 +63,6 @@ Cloth::Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
       attachments_(mesh_.rest_coordinates.size()) {
   requireSound(mesh_);
   takeFabrics(std::move(fabrics));
-  if (effects.self_collision) requireFreeOfIntersections(mesh_);
   if (!effects.contacts) return;
   contacts_.reserve(particleCount());
   touched_.resize(particleCount());

@@ -72,6 +72,7 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
     motion_.emplace(cloth);
   }
   balance_.emplace(cloth, motion_.has_value());
+  if (cloth.selfContact() != nullptr) untangling_.emplace(cloth);
   if (method == IntegrationMethod::kBackwardEuler) return;
   forces_.resize(cloth.particleCount());
   if (method != IntegrationMethod::kBackwardMidpoint) base_ = end_;
@@ -96,16 +97,20 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
   const Clock::time_point start = Clock::now();
   end_.time = state.time + time_step;
   end_.memory = state.memory;  // until the step is accepted
+  if (untangling_) untangling_->begin(cloth, state, time_step);
   advance(cloth, state, time_step, report);
   settle(end_.velocities);
   if (balance_) keepEnergy(cloth, state, time_step, report);
   report.accepted = std::isfinite(report.linear_residual) && std::isfinite(end_.time) &&
                     allFinite(end_.positions) && allFinite(end_.velocities);
   if (report.accepted) {
+    const bool is_other =
+        untangling_ && untangling_->end(cloth, time_step, *stages_, end_, report.tangle);
     cloth.remember(end_);
     if (motion_ && report.taken_anew) motion_->startAnew(end_);
     if (motion_) motion_->end(end_);
     keep(cloth, state, time_step, touches() || report.taken_anew, report.energy_taken);
+    if (is_other) balance_->forgetPotential();
   } else if (stages_) {
     stages_->forget();
     if (motion_) motion_->forget();

@@ -58,6 +58,7 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
   }
   if (const SelfContact* self = cloth.selfContact()) {
     motion_.emplace(cloth.particleCount(), self->law().margin());
+    response_ = solution_;
   }
   trial_ = cloth.initialState();
   held_.assign(cloth.forces().heldSize(), Vector3d::Zero());
@@ -216,6 +217,19 @@ void StageSolver::prescribe(const Cloth& cloth, const Stage& stage, const StageG
     any_fixed_ = true;
     const Vector3d place = placeIn(stage, *attachment, i);
     prescribed_.col(i) = (place - stage.base.positions[i]) / stage.a - guess.velocities[i];
+  }
+}
+
+void StageSolver::respond(const Cloth& cloth, const ClothState& at, double h,
+                          std::vector<Vector3d>& ways) {
+  linearise(cloth, {at, h, at.time, 1.0, {}}, {at.positions, at.velocities, 0.0});
+  prescribed_.setZero();
+  for (int i = 0; i < matrix_.size(); ++i) rhs_.col(i) = cloth.masses()[i] * ways[i];
+  eliminate();
+  response_.setZero();
+  solver_.solve(matrix_, rhs_, settings_.tolerance, response_);
+  for (int i = 0; i < matrix_.size(); ++i) {
+    ways[i] = fixed_[i] ? Vector3d::Zero() : Vector3d(response_.col(i));
   }
 }
 

@@ -6,11 +6,13 @@
 #include <sstream>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/loop_diagnostics.h"
 #include "haptex/nodes/common/node_parameters.h"
+#include "haptex/proximity/intersections.h"
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/scene/scene_fabric.h"
 
@@ -39,6 +41,18 @@ simulation::SimulatedCloth simulate(const ClothNodeParameters& parameters,
                                     const scene::Scene& scene) {
   if (quality) return quality->simulate();
   return simulation::SimulatedCloth(scene, scene::loadSceneFabric(parameters.scene_path, scene));
+}
+
+/// What a cloth that collides with itself is going to do about a start that intersects.
+void warnOfTangles(const scene::Scene& scene) {
+  if (!scene.effects.self_collision) return;
+  const std::vector<proximity::TrianglePair> pairs =
+      proximity::intersectingTriangles(scene.mesh.initial_positions, scene.mesh.triangles);
+  if (pairs.empty()) return;
+  ROS_WARN(
+      "The cloth intersects itself at the start: %zu pairs of triangles, the first %d and %d. "
+      "It is pulled apart there, and passes through nothing else.",
+      pairs.size(), pairs[0][0], pairs[0][1]);
 }
 
 }  // namespace
@@ -95,6 +109,7 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
               : simulation::RealTimeLoop::Command()) {
   ROS_INFO("Scene %s: %zu particles, %zu triangles, steps of %g ms", parameters.scene_path.c_str(),
            particle_count_, triangle_count_, 1e3 * time_step_);
+  warnOfTangles(scene);
   advertiseTopics();
   loop_.start();
   loop_.execute([this](simulation::SimulatedCloth& simulation) {
@@ -231,6 +246,10 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
     status.addf("kept from passing through itself",
                 "%d particles, by up to %.3g mm, at particles %d, %d, %d, %d", cut.particles,
                 1e3 * cut.longest, cut.between[0], cut.between[1], cut.between[2], cut.between[3]);
+  }
+  if (const cloth::TangleReport& tangle = loop.last_report.tangle; tangle.pairs > 0) {
+    status.addf("intersects itself", "%d pairs of triangles, the first %d and %d", tangle.pairs,
+                tangle.first[0], tangle.first[1]);
   }
   if (const cloth::MotionCut& cut = loop.last_report.obstacle_cut; cut.particles > 0) {
     status.addf("obstacles kept from pressing the cloth against each other",

@@ -47,8 +47,7 @@ struct AttachmentPath {
 class Cloth {
  public:
   /// @throws std::invalid_argument if the mesh has defects, the density is not finite and > 0,
-  ///   gravity is not finite, as addFabricForces(), or if collision of the cloth with itself is
-  ///   modelled and its initial positions intersect, which names the first triangles that do
+  ///   gravity is not finite, or as addFabricForces()
   Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
         const ModelledEffects& effects);
   /// Of one fabric.

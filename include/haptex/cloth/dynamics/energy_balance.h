@@ -49,6 +49,9 @@ class EnergyBalance {
   /// taken out since. Its potential energy need not be computed again if the cloth stays as it is.
   void keep(const Cloth& cloth, const ClothState& end, double taken);
 
+  /// It has to, because something else than a step has changed it since.
+  void forgetPotential() { revision_ = 0; }
+
   /// Kinetic energy (J) of the free particles at the end, of the last excess().
   double kineticAtEnd() const { return kinetic_end_; }
 

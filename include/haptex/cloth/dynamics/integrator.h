@@ -11,6 +11,7 @@
 #include "haptex/cloth/dynamics/recent_motion.h"
 #include "haptex/cloth/dynamics/stage_solver.h"
 #include "haptex/cloth/dynamics/step.h"
+#include "haptex/cloth/dynamics/untangling/untangling.h"
 
 namespace haptex::cloth {
 
@@ -33,7 +34,7 @@ namespace haptex::cloth {
 /// with every further solve twice as much may be taken, up to all (StageSolver::descend()).
 ///
 /// Backward Euler keeps a cloth that collides with itself free of intersections, if it was
-/// (StageSolver); the other methods refuse it.
+/// (StageSolver), and pulls it apart if it was not (Untangling); the other methods refuse it.
 ///
 /// A step allocates nothing: all buffers are made by the constructor, and only those that the
 /// method needs.
@@ -90,7 +91,8 @@ class Integrator {
   ClothState base_;                       // of a stage that does not start at the beginning
   std::vector<Eigen::Vector3d> forces_;   // N
   std::optional<History> history_;
-  std::optional<RecentMotion> motion_;  // of TR-BDF2 and BDF-2 where Newton iterations need it
+  std::optional<Untangling> untangling_;  // of a cloth that collides with itself
+  std::optional<RecentMotion> motion_;    // of TR-BDF2 and BDF-2 where Newton iterations need it
 };
 
 }  // namespace haptex::cloth

@@ -70,6 +70,14 @@ class StageSolver {
   bool descend(const Cloth& cloth, const Stage& stage, const std::function<bool()>& enough,
                ClothState& result, StepReport& report);
 
+  /// Where small ways of single particles take the cloth in a step: the solution d of
+  ///   (M - h D - h^2 K) d = M w,
+  /// what impulses M w / h do in it, in matrices of a state as those of a first solve.
+  /// @param at   state, h s
+  /// @param ways m, w; then d. Zero of attached particles
+  void respond(const Cloth& cloth, const ClothState& at, double h,
+               std::vector<Eigen::Vector3d>& ways);
+
   /// The next solve starts from zero, not from the solution of the last.
   void forget() { solution_.setZero(); }
 
@@ -127,6 +135,7 @@ class StageSolver {
   std::optional<ActiveSetContactSolver> contacts_;
   std::optional<SafeMotion> motion_;   // if the cloth collides with itself
   Positions start_;                    // m, likewise: that of the step beside moved obstacles
+  linear::BlockVector response_;       // m, of respond()
   linear::BlockVector load_change_;    // of the solution, by other loads of friction
   ClothState trial_;                   // of a line search; empty where there is none
   std::vector<Eigen::Vector3d> held_;  // by the forces: Force::hold()

@@ -79,6 +79,16 @@ struct StepSettings {
   int threads = 1;
 };
 
+/// Where the cloth intersects itself, and what was done against it (Untangling).
+struct TangleReport {
+  int pairs = 0;                        ///< of triangles that intersect
+  std::array<int, 2> first = {-1, -1};  ///< the first of them; -1: none
+  /// J, of the cloth's potential energy: what it was given by being pulled apart at the end of the
+  /// step, and by contact that acts from then on where it did not in the tangle. The energy balance
+  /// of steps is without it.
+  double energy = 0.0;
+};
+
 /// What a step did and took. An explicit one solves nothing: its numbers of solves are zero.
 struct StepReport {
   bool accepted = false;         ///< false: system or result was not finite, the state is as before
@@ -103,6 +113,8 @@ struct StepReport {
   /// What obstacles of such a cloth were kept from because they would have pressed cloth against
   /// each other (SafeMotion::push()). They go on from there in the next step.
   MotionCut obstacle_cut;
+  /// Of a cloth that collides with itself, in the state at the end.
+  TangleReport tangle;
   int contact_rounds = 0;  ///< linear solves among them that looked for what touches
   double assembly_seconds = 0;
   double solve_seconds = 0;

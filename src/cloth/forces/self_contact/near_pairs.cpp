@@ -25,7 +25,7 @@ double shortestAltitude(const std::vector<std::array<int, 3>>& triangles,
 /// As far as it costs little: below half of the altitudes a mesh has no neighbours to look at one
 /// by one (proximity::SelfProximity), and in layers pairs grow with the square of the distance.
 double distanceToSearch(double altitude, double distance) {
-  constexpr double kOfAltitude = 0.45, kLeast = 1.5, kMost = 3.0;
+  constexpr double kOfAltitude = 0.45, kLeast = 1.5, kMost = 8.0;
   return std::clamp(kOfAltitude * altitude, kLeast * distance, kMost * distance);
 }
 
@@ -37,8 +37,32 @@ NearPairs::NearPairs(const std::vector<std::array<int, 3>>& triangles,
       self_(hierarchy_, reference,
             distanceToSearch(shortestAltitude(triangles, reference), distance)) {
   for (const proximity::ElementPair& pair : self_.neighbours()) {
-    neighbours_.push_back(named(pair));
+    all_neighbours_.push_back(named(pair));
   }
+  neighbours_ = all_neighbours_;
+}
+
+bool NearPairs::leaveOut(const TangleSides& sides) {
+  if (sides == sides_) return false;
+  sides_ = sides;
+  searched_at_.clear();
+  neighbours_.clear();
+  for (const Pair& pair : all_neighbours_) {
+    if (!isInTangle(pair)) neighbours_.push_back(pair);
+  }
+  return true;
+}
+
+bool NearPairs::isInTangle(const Pair& pair) const {
+  if (sides_.first.empty()) return false;
+  const int first_end = pair.kind == proximity::ElementPairKind::kVertexTriangle ? 1 : 2;
+  std::array<std::uint64_t, 2> first = {0, 0}, second = {0, 0};  // of both elements
+  for (int i = 0; i < 4; ++i) {
+    const int element = i < first_end ? 0 : 1;
+    first[element] |= sides_.first[pair.vertices[i]];
+    second[element] |= sides_.second[pair.vertices[i]];
+  }
+  return ((first[0] & second[1]) | (first[1] & second[0])) != 0;
 }
 
 bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
@@ -61,6 +85,7 @@ bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
   for (const proximity::NearPair& pair : found_) {
     pairs_.push_back(named(pair.elements));
     pairs_.back().distance = pair.nearest.distance;
+    if (isInTangle(pairs_.back())) pairs_.pop_back();
   }
   std::sort(pairs_.begin(), pairs_.end());
   return true;

@@ -77,6 +77,13 @@ void SelfContact::setObstacles(std::shared_ptr<ObstacleSurfaces> surfaces) {
                      near_.searched());
 }
 
+bool SelfContact::leaveOut(const TangleSides& sides, const std::vector<TangleLink>& links) const {
+  links_ = links;
+  const bool changed = near_.leaveOut(sides);
+  if (changed) touching_at_.clear();
+  return changed;
+}
+
 const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions,
                                                      bool at_end) const {
   const int revision = obstacles_ ? obstacles_->surfaces().revision() : 0;
@@ -224,10 +231,18 @@ void SelfContact::assembleLinearised(const ForceState& state, const StageTimes& 
     }
     for (int i = 0; i < pair.count; ++i) rhs.col(pair.vertices[i]) += pair.weights[i] * impulse;
   }
+  for (const TangleLink& link : links_) {
+    const double damping = times.a * link.damping;
+    const Vector3d impulse = -damping * weightedSum(link, state.velocities);
+    for (int i = 0; i < link.count; ++i) rhs.col(link.vertices[i]) += link.weights[i] * impulse;
+    addBlocks(link, damping * Matrix3d::Identity(), matrix);
+  }
 }
 
 void SelfContact::hold(const NewtonStart& start, Vector3d* /*held*/) const {
   held_.clear();
+  held_links_.clear();
+  for (const TangleLink& link : links_) held_links_.push_back(weightedSum(link, start.base));
   for (const PairEnergy& pair : touching(start.at.positions, !start.passive)) {
     if (!(pair.force > 0.0)) continue;
     held_.push_back({pair.count, pair.vertices, pair.weights, pair.normal,
@@ -253,6 +268,13 @@ void SelfContact::assembleNewton(const ForceState& state, const Vector3d* /*held
     }
     addBlocks(pair, a * a * pair.most * block, matrix);
   }
+  for (std::size_t l = 0; l < links_.size(); ++l) {
+    const Vector3d way = weightedSum(links_[l], state.positions) - held_links_[l];
+    for (int i = 0; i < links_[l].count; ++i) {
+      rhs.col(links_[l].vertices[i]) -= links_[l].damping * links_[l].weights[i] * way;
+    }
+    addBlocks(links_[l], a * links_[l].damping * Matrix3d::Identity(), matrix);
+  }
 }
 
 double SelfContact::incrementalPotential(const ForceState& state, const Vector3d* /*held*/,
@@ -261,6 +283,10 @@ double SelfContact::incrementalPotential(const ForceState& state, const Vector3d
   for (const HeldFriction& pair : held_) {
     const Vector3d slip = tangential(weightedSum(pair, state.positions) - pair.start, pair.normal);
     potential += pair.most * smoothed(slip.norm(), kSlipSpeed * a).potential;
+  }
+  for (std::size_t l = 0; l < links_.size(); ++l) {
+    const Vector3d way = weightedSum(links_[l], state.positions) - held_links_[l];
+    potential += 0.5 * links_[l].damping / a * way.squaredNorm();
   }
   return potential;
 }

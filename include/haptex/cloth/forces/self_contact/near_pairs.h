@@ -3,12 +3,23 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "haptex/proximity/self_proximity.h"
 
 namespace haptex::cloth {
+
+/// Which particles of a cloth that intersects itself belong to which side of which tangle: a bit
+/// for each tangle, if need be for several. Empty, or all 0: to none.
+struct TangleSides {
+  std::vector<std::uint64_t> first, second;
+
+  bool operator==(const TangleSides& other) const {
+    return first == other.first && second == other.second;
+  }
+};
 
 /// Keeps the answer of proximity::SelfProximity as long as the particles have moved so little since
 /// that it still has all pairs that are asked for.
@@ -44,6 +55,10 @@ class NearPairs {
   /// @return false, and pairs() as before, if a position is not finite or beyond
   ///   proximity::kMaxLength
   bool find(const std::vector<Eigen::Vector3d>& positions, double distance);
+  /// From now on pairs() and neighbours() are without those of an element on one side of a tangle
+  /// and another one on its other side: these do not know on which side of each other they belong.
+  /// @return whether that is a change
+  bool leaveOut(const TangleSides& sides);
   /// How far (m) the farthest of some places is from where it was before; as many.
   static double farthest(const std::vector<Eigen::Vector3d>& now,
                          const std::vector<Eigen::Vector3d>& before);
@@ -67,11 +82,14 @@ class NearPairs {
   static constexpr double kRounding = 1e-12;  // m, more than that of distances
 
   Pair named(const proximity::ElementPair& pair) const;
+  bool isInTangle(const Pair& pair) const;
 
   proximity::KdopHierarchy hierarchy_;
   proximity::SelfProximity self_;
   std::vector<proximity::NearPair> found_;
   std::vector<Pair> pairs_, neighbours_;
+  std::vector<Pair> all_neighbours_;          // those in tangles, too
+  TangleSides sides_;                         // empty if there are no tangles
   std::vector<Eigen::Vector3d> searched_at_;  // m; empty before the first find()
   double moved_ = 0.0;                        // m, farthest since
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -12,6 +13,14 @@
 #include "haptex/cloth/forces/self_contact/pair_energies.h"
 
 namespace haptex::cloth {
+
+/// An edge that goes through a triangle of the same cloth: both stick to each other where it does.
+struct TangleLink {
+  static constexpr int count = 5;
+  std::array<int, 5> vertices;    ///< particles: of the edge, and of the triangle
+  std::array<double, 5> weights;  ///< of the place on the edge less that of the triangle
+  double damping;                 ///< N s/m, of their velocity against each other
+};
 
 /// The sum of PairEnergies, a function of the positions alone, and Coulomb friction with the
 /// fabric's MIU between the points of each pair that are nearest to each other. Friction is smooth:
@@ -59,6 +68,10 @@ class SelfContact final : public Force {
   /// else at its beginning; empty where one of the positions is not finite.
   const std::vector<PairEnergy>& touching(const Positions& positions, bool at_end = true) const;
   NearPairs& nearPairs() const { return near_; }
+  /// NearPairs::leaveOut(), after which the energy is another one if that is a change. Steps damp
+  /// what tangles do against themselves, so that nothing goes on through what has no contact; the
+  /// forces are without that.
+  bool leaveOut(const TangleSides& sides, const std::vector<TangleLink>& links) const;
   const LayerLaw& law() const { return energies_.law(); }
 
   /// From now on the cloth is among these; null: among none. Allocates.
@@ -99,6 +112,8 @@ class SelfContact final : public Force {
   mutable int touching_revision_ = 0;  // of the obstacles' places
   mutable std::vector<PairEnergy> touching_;
   mutable std::vector<HeldFriction> held_;
+  mutable std::vector<TangleLink> links_;
+  mutable std::vector<Eigen::Vector3d> held_links_;  // m, sums at the stage's base
 };
 
 }  // namespace haptex::cloth
