@@ -174,21 +174,10 @@ void printScenes() {
 
 /// Of 100 random tangled starts, after a second.
 void printTangled() {
-  constexpr int kStarts = 100, kSteps = 80;
-  int free = 0, misreported = 0;
-  std::size_t left = 0;
-  for (int i = 0; i < kStarts; ++i) {
-    const oracles::TangledStart start = oracles::tangledStart(i);
-    const material::Fabric fabric =
-        material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + start.fabric + ".yaml");
-    const oracles::Untangled end = oracles::untangle(start, fabric, kSteps);
-    free += end.left == 0;
-    left += end.left;
-    misreported += end.misreported;
-  }
-  bench::printLine("self_collision/tangled/free", static_cast<double>(free) / kStarts, "ratio");
-  bench::printLine("self_collision/tangled/left", static_cast<double>(left), "pairs");
-  bench::printLine("self_collision/tangled/misreported", misreported, "steps");
+  const oracles::UntangledStarts ends = oracles::untangleStarts(100, 80, HAPTEX_CONFIG_DIRECTORY);
+  bench::printLine("self_collision/tangled/free", ends.free_share, "ratio");
+  bench::printLine("self_collision/tangled/left", static_cast<double>(ends.left), "pairs");
+  bench::printLine("self_collision/tangled/misreported", ends.misreported, "steps");
 }
 
 }  // namespace

@@ -174,10 +174,17 @@ ClothMesh makeDisc(double radius, int rings) {
     inner_count = count;
     inner_phase = phase;
   }
-  for (const Eigen::Vector2d& place : mesh.rest_coordinates) {
-    mesh.initial_positions.emplace_back(place.x(), place.y(), 0.0);
-  }
+  mesh.initial_positions = flatPositions(mesh);
   return mesh;
+}
+
+std::vector<Eigen::Vector3d> flatPositions(const ClothMesh& mesh) {
+  std::vector<Eigen::Vector3d> positions;
+  positions.reserve(mesh.rest_coordinates.size());
+  for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {
+    positions.emplace_back(rest.x(), rest.y(), 0.0);
+  }
+  return positions;
 }
 
 std::vector<int> sideParticles(const ClothMesh& mesh, Side side) {

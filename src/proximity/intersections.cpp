@@ -77,6 +77,12 @@ bool isInTriangle(const Vector3d& place, const Corners& t) {
   return orientation(t[0], t[1], t[2], place) == 0 && isInPlanarTriangle(place, t, axis);
 }
 
+/// Of a line through two points that is not in the triangle's plane. The border counts.
+bool lineMeetsTriangle(const Vector3d& p, const Vector3d& q, const Corners& t) {
+  return agree(orientation(p, q, t[0], t[1]), orientation(p, q, t[1], t[2]),
+               orientation(p, q, t[2], t[0]));
+}
+
 bool segmentMeetsTriangle(const Vector3d& p, const Vector3d& q, const Corners& t) {
   const int axis = axisOfArea(t[0], t[1], t[2]);
   if (axis < 0) {
@@ -92,8 +98,7 @@ bool segmentMeetsTriangle(const Vector3d& p, const Vector3d& q, const Corners& t
     }
     return false;
   }
-  return agree(orientation(p, q, t[0], t[1]), orientation(p, q, t[1], t[2]),
-               orientation(p, q, t[2], t[0]));
+  return lineMeetsTriangle(p, q, t);
 }
 
 /// Two triangles that have nothing to do with each other: an edge of one meets the other.
@@ -161,18 +166,30 @@ std::vector<Eigen::AlignedBox3d> boxesOf(const std::vector<Vector3d>& positions,
 
 }  // namespace
 
-bool intersect(const std::vector<Vector3d>& positions, const std::array<int, 3>& first,
-               const std::array<int, 3>& second) {
-  // Shared corners come first, in the same order.
-  std::array<int, 3> s = first, t = second;
+int bringSharedFirst(std::array<int, 3>& first, std::array<int, 3>& second) {
   int shared = 0;
   for (int i = 0; i < 3; ++i) {
-    const auto same = std::find(t.begin() + shared, t.end(), s[i]);
-    if (same == t.end()) continue;
-    std::iter_swap(t.begin() + shared, same);
-    std::swap(s[shared], s[i]);
+    const auto same = std::find(second.begin() + shared, second.end(), first[i]);
+    if (same == second.end()) continue;
+    std::iter_swap(second.begin() + shared, same);
+    std::swap(first[shared], first[i]);
     ++shared;
   }
+  return shared;
+}
+
+bool passesThrough(const std::vector<Vector3d>& positions, const std::array<int, 2>& segment,
+                   const std::array<int, 3>& triangle) {
+  const Vector3d &p = positions[segment[0]], &q = positions[segment[1]];
+  const Corners t = {positions[triangle[0]], positions[triangle[1]], positions[triangle[2]]};
+  return orientation(t[0], t[1], t[2], p) * orientation(t[0], t[1], t[2], q) < 0 &&
+         lineMeetsTriangle(p, q, t);
+}
+
+bool intersect(const std::vector<Vector3d>& positions, const std::array<int, 3>& first,
+               const std::array<int, 3>& second) {
+  std::array<int, 3> s = first, t = second;
+  const int shared = bringSharedFirst(s, t);
   const Corners of_s = {positions[s[0]], positions[s[1]], positions[s[2]]};
   const Corners of_t = {positions[t[0]], positions[t[1]], positions[t[2]]};
   switch (shared) {

@@ -17,14 +17,7 @@ using Corners = std::array<Vector3d, 3>;
 bool isSurelyApart(const std::vector<Vector3d>& positions, std::array<int, 3> s,
                    std::array<int, 3> t) {
   constexpr double kMargin = 1e-9;
-  std::size_t shared = 0;  // corners, first in both
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto same = std::find(t.begin() + shared, t.end(), s[i]);
-    if (same == t.end()) continue;
-    std::iter_swap(t.begin() + shared, same);
-    std::swap(s[shared], s[i]);
-    ++shared;
-  }
+  const int shared = bringSharedFirst(s, t);
   if (shared == 3) return false;
   Corners of_s, of_t;  // from the first shared corner, or one of them
   for (int i = 0; i < 3; ++i) {
@@ -44,7 +37,7 @@ bool isSurelyApart(const std::vector<Vector3d>& positions, std::array<int, 3> s,
   }
   double highest = shared == 0 ? of_s[0].dot(across) : -1e300;
   double lowest = shared == 0 ? of_t[0].dot(across) : 1e300, largest = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i) {
     largest = std::max({largest, of_s[i].norm(), of_t[i].norm()});
     if (i < shared) continue;
     highest = std::max(highest, of_s[i].dot(across));

@@ -11,7 +11,7 @@
 
 #include "haptex/mesh/mesh.h"
 #include "haptex/nodes/common/cloth_messages.h"
-#include "haptex/nodes/markers/marker_shapes.h"
+#include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/proximity/cloth_proximity.h"
 
 namespace haptex::nodes {

@@ -72,6 +72,9 @@ ClothMesh makeRectangle(double width, double height, int cells_u, int cells_v,
 /// @throws std::invalid_argument naming the parameter and its value
 ClothMesh makeDisc(double radius, int rings);
 
+/// Positions (m) of the particles of a sheet that lies in the plane z = 0: their rest coordinates.
+std::vector<Eigen::Vector3d> flatPositions(const ClothMesh& mesh);
+
 /// The particles on one side of the bounding rectangle of the rest coordinates, in ascending order:
 /// those within 1e-9 of its diagonal.
 enum class Side { kBottom, kTop, kLeft, kRight };  // v min, v max, u min, u max

@@ -17,6 +17,16 @@ namespace haptex::proximity {
 bool intersect(const std::vector<Eigen::Vector3d>& positions, const std::array<int, 3>& first,
                const std::array<int, 3>& second);
 
+/// Whether a segment goes through a triangle, from one side of its plane to the other. Its border
+/// counts. Exact, likewise.
+/// @param segment, triangle vertex indices, not checked
+bool passesThrough(const std::vector<Eigen::Vector3d>& positions, const std::array<int, 2>& segment,
+                   const std::array<int, 3>& triangle);
+
+/// Brings the vertices that two triangles share to the beginning of both, in the same order.
+/// @return how many they are
+int bringSharedFirst(std::array<int, 3>& first, std::array<int, 3>& second);
+
 /// Two triangles, by index, the smaller one first.
 using TrianglePair = std::array<int, 2>;
 

@@ -23,8 +23,6 @@ class MeshIntersections {
   /// @param positions m, each isPlace()
   const std::vector<TrianglePair>& find(const std::vector<Eigen::Vector3d>& positions);
 
-  const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
-
  private:
   void fitBoxes(const std::vector<Eigen::Vector3d>& positions);
 

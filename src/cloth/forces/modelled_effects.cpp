@@ -76,11 +76,7 @@ void addSelfContact(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
     throw std::invalid_argument("self_collision knows one panel, and the mesh has " +
                                 std::to_string(mesh.panelCount()));
   }
-  std::vector<Eigen::Vector3d> reference;
-  for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {
-    reference.emplace_back(rest.x(), rest.y(), 0.0);
-  }
-  forces.add(std::make_unique<SelfContact>(mesh.triangles, reference, fabric));
+  forces.add(std::make_unique<SelfContact>(mesh.triangles, mesh::flatPositions(mesh), fabric));
 }
 
 void addMembrane(std::vector<MembraneElement> elements, const material::Fabric& fabric,

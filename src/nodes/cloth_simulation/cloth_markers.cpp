@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
 #include "haptex/nodes/markers/obstacle_marker.h"

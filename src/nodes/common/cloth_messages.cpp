@@ -2,17 +2,15 @@
 
 #include <stdexcept>
 
+#include "haptex/nodes/common/vector_messages.h"
+
 namespace haptex::nodes {
 namespace {
 
 template <typename Message>
 void fillVectors(const std::vector<Eigen::Vector3d>& vectors, std::vector<Message>& messages) {
   messages.resize(vectors.size());
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    messages[i].x = vectors[i].x();
-    messages[i].y = vectors[i].y();
-    messages[i].z = vectors[i].z();
-  }
+  for (std::size_t i = 0; i < vectors.size(); ++i) fillVector(vectors[i], messages[i]);
 }
 
 void appendRowByRow(const Eigen::Matrix3d& block, std::vector<double>& numbers) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/common/vector_messages.h"
 
 namespace haptex::nodes {
 namespace {
@@ -15,14 +16,6 @@ std_msgs::Header header(const ros::Time& stamp) {
   header.stamp = stamp;
   header.frame_id = kHandFrame;
   return header;
-}
-
-geometry_msgs::Vector3 toMessage(const Eigen::Vector3d& vector) {
-  geometry_msgs::Vector3 message;
-  message.x = vector.x();
-  message.y = vector.y();
-  message.z = vector.z();
-  return message;
 }
 
 }  // namespace
@@ -39,8 +32,8 @@ geometry_msgs::TwistStamped twistMessage(const FingerMeasurement& measured,
                                          const ros::Time& stamp) {
   geometry_msgs::TwistStamped message;
   message.header = header(stamp);
-  message.twist.linear = toMessage(measured.velocity);
-  message.twist.angular = toMessage(angular_velocity);
+  message.twist.linear = vectorMessage(measured.velocity);
+  message.twist.angular = vectorMessage(angular_velocity);
   return message;
 }
 
@@ -48,7 +41,7 @@ geometry_msgs::WrenchStamped wrenchMessage(const FingerMeasurement& measured,
                                            const ros::Time& stamp) {
   geometry_msgs::WrenchStamped message;
   message.header = header(stamp);
-  message.wrench.force = toMessage(measured.force);
+  message.wrench.force = vectorMessage(measured.force);
   return message;
 }
 
@@ -77,9 +70,9 @@ void fillFingertips(base::PerFinger<exoskeleton::FingerKinematics>& kinematics,
     const FingerMeasurement& of = measured[finger];
     const auto i = static_cast<std::size_t>(finger);
     message.poses[i] = poseMessage(of.pose);
-    message.twists[i].linear = toMessage(of.velocity);
+    message.twists[i].linear = vectorMessage(of.velocity);
     message.twists[i].angular =
-        toMessage(angularVelocity(kinematics[finger], of.joint_angles, of.joint_velocities));
+        vectorMessage(angularVelocity(kinematics[finger], of.joint_angles, of.joint_velocities));
   }
 }
 

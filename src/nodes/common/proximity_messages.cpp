@@ -7,6 +7,7 @@
 #include <string>
 
 #include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/vector_messages.h"
 
 namespace haptex::nodes {
 namespace {
@@ -94,13 +95,9 @@ NearElement elementMessage(const proximity::NearElement& element) {
   message.triangle = element.triangle;
   message.part = element.part;
   message.distance = element.distance;
-  message.point.x = element.point.x();
-  message.point.y = element.point.y();
-  message.point.z = element.point.z();
+  message.point = pointMessage(element.point);
   for (int i = 0; i < 3; ++i) message.barycentric[i] = element.barycentric[i];
-  message.normal.x = element.normal.x();
-  message.normal.y = element.normal.y();
-  message.normal.z = element.normal.z();
+  message.normal = vectorMessage(element.normal);
   return message;
 }
 

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/nodes/common/vector_messages.h"
+
 namespace haptex::nodes {
 namespace {
 
@@ -39,9 +41,7 @@ Eigen::Isometry3d fromMessage(const geometry_msgs::Pose& message) {
 geometry_msgs::Transform transformMessage(const Eigen::Isometry3d& pose) {
   const Eigen::Quaterniond rotation(pose.linear());
   geometry_msgs::Transform message;
-  message.translation.x = pose.translation().x();
-  message.translation.y = pose.translation().y();
-  message.translation.z = pose.translation().z();
+  message.translation = vectorMessage(pose.translation());
   message.rotation.w = rotation.w();
   message.rotation.x = rotation.x();
   message.rotation.y = rotation.y();
@@ -50,12 +50,9 @@ geometry_msgs::Transform transformMessage(const Eigen::Isometry3d& pose) {
 }
 
 geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& pose) {
-  const geometry_msgs::Transform transform = transformMessage(pose);
   geometry_msgs::Pose message;
-  message.position.x = transform.translation.x;
-  message.position.y = transform.translation.y;
-  message.position.z = transform.translation.z;
-  message.orientation = transform.rotation;
+  message.position = pointMessage(pose.translation());
+  message.orientation = transformMessage(pose).rotation;
   return message;
 }
 

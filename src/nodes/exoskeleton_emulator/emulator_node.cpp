@@ -16,6 +16,7 @@
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/common/vector_messages.h"
 
 namespace haptex::nodes {
 namespace {
@@ -44,9 +45,7 @@ geometry_msgs::WrenchStamped forceMessage(const Eigen::Vector3d& force, const ro
   geometry_msgs::WrenchStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = kHandFrame;
-  message.wrench.force.x = force.x();
-  message.wrench.force.y = force.y();
-  message.wrench.force.z = force.z();
+  message.wrench.force = vectorMessage(force);
   return message;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
 #include "haptex/realtime/rate_meter.h"

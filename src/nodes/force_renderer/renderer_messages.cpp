@@ -8,7 +8,7 @@
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/proximity_messages.h"
-#include "haptex/nodes/markers/marker_shapes.h"
+#include "haptex/nodes/common/vector_messages.h"
 
 namespace haptex::nodes {
 namespace {
@@ -17,14 +17,6 @@ using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr double kFastest = 1e4;         // m/s, of a cloth
 constexpr double kLongestStep = 3600.0;  // s, of the steady clock, likewise
-
-geometry_msgs::Vector3 vectorMessage(const Eigen::Vector3d& vector) {
-  geometry_msgs::Vector3 message;
-  message.x = vector.x();
-  message.y = vector.y();
-  message.z = vector.z();
-  return message;
-}
 
 /// Without allocation if it is that frame already.
 void setHeader(const ros::Time& stamp, const std::string& frame, std_msgs::Header& header) {

@@ -3,6 +3,7 @@
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/marker_shapes.h"
 
 namespace haptex::nodes {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/vector_messages.h"
 
 namespace haptex::nodes {
 namespace {
@@ -66,14 +67,6 @@ visualization_msgs::Marker makeMarker(const std::string& name, int id, int type)
   marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
   marker.color.a = 1.0F;
   return marker;
-}
-
-geometry_msgs::Point pointMessage(const Eigen::Vector3d& point) {
-  geometry_msgs::Point message;
-  message.x = point.x();
-  message.y = point.y();
-  message.z = point.z();
-  return message;
 }
 
 std_msgs::ColorRGBA colourMessage(const Eigen::Vector3f& colour, float opacity) {

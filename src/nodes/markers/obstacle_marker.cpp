@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
 

@@ -67,8 +67,9 @@ material::Fabric unusual(material::Fabric fabric) {
 }  // namespace
 
 void validateKesHysteresis(const std::vector<material::Fabric>& fabrics, const Sink& sink) {
-  for (std::size_t i = 0; i < base::unlessSanitized<std::size_t>(fabrics.size(), 0); ++i) {
-    sinkHysteresis(fabrics[i], "hysteresis/" + fabrics[i].name, sink);
+  for (const material::Fabric& fabric : fabrics) {
+    if (base::kSanitized) break;  // the same lines run below
+    sinkHysteresis(fabric, "hysteresis/" + fabric.name, sink);
   }
   sinkHysteresis(unusual(fabrics.front()), "hysteresis/unusual", sink);
 }

@@ -26,14 +26,6 @@ Time timeOf(double seconds) {
   return std::chrono::round<Time>(std::chrono::duration<double>(seconds));
 }
 
-std::vector<Vector3d> restPositions(const mesh::ClothMesh& mesh) {
-  std::vector<Vector3d> positions;
-  for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {
-    positions.emplace_back(rest.x(), rest.y(), 0.0);
-  }
-  return positions;
-}
-
 scene::Scene sceneOf(const HapticLoopSettings& settings) {
   scene::Scene scene;
   scene.mesh = settings.mesh;
@@ -50,7 +42,7 @@ scene::Scene sceneOf(const HapticLoopSettings& settings) {
 HapticLoop::HapticLoop(HapticLoopSettings settings)
     : settings_(std::move(settings)),
       cloth_(sceneOf(settings_), settings_.fabric),
-      hierarchy_(settings_.mesh.triangles, restPositions(settings_.mesh)),
+      hierarchy_(settings_.mesh.triangles, mesh::flatPositions(settings_.mesh)),
       force_loop_(settings_.radii),
       supply_(settings_.haptics, settings_.mesh.triangles.size()) {
   offerLayer();

@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <cstdint>
 #include <vector>
 
 #include "haptex/base/constants.h"
+#include "haptex/base/repeatable_random.h"
+#include "haptex/material/fabric_file.h"
 #include "haptex/oracles/scenes/obstacle_scenes.h"
 #include "haptex/oracles/scenes/self_collision_scenes.h"
 #include "haptex/proximity/intersections.h"
@@ -14,6 +16,7 @@
 namespace haptex::oracles {
 namespace {
 
+using base::RepeatableRandom;
 using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Vector2d;
@@ -22,26 +25,14 @@ using mesh::ClothMesh;
 
 constexpr double kDegree = M_PI / 180.0;
 
-/// The same numbers everywhere: distributions of the standard library are not.
-class Random {
- public:
-  explicit Random(int seed) : engine_(static_cast<unsigned>(seed)) { engine_.discard(8); }
-  double between(double least, double most) {
-    return least + (most - least) * (engine_() / 4294967296.0);
-  }
-
- private:
-  std::mt19937 engine_;
-};
-
 struct Sheet {
   Vector2d size;      // m
   int across, along;  // cells
 };
 
-Sheet anySheet(Random& random) {
-  const double cell = random.between(0.005, 0.010);
-  const Vector2d size(random.between(0.06, 0.10), random.between(0.06, 0.10));
+Sheet anySheet(RepeatableRandom& random) {
+  const double cell = random.uniform(0.005, 0.010);
+  const Vector2d size(random.uniform(0.06, 0.10), random.uniform(0.06, 0.10));
   return {size, static_cast<int>(std::lround(size.x() / cell)),
           static_cast<int>(std::lround(size.y() / cell))};
 }
@@ -50,29 +41,29 @@ ClothMesh lay(const Sheet& sheet, const Isometry3d& pose) {
   return flatSheet(sheet.size, sheet.across, sheet.along, pose);
 }
 
-Isometry3d anyPose(Random& random, double tilt, double height) {
-  const double direction = random.between(0.0, 2.0 * M_PI);
+Isometry3d anyPose(RepeatableRandom& random, double tilt, double height) {
+  const double direction = random.uniform(0.0, 2.0 * M_PI);
   Isometry3d pose = Isometry3d::Identity();
-  pose.translate(Vector3d(random.between(-0.03, 0.03), random.between(-0.03, 0.03), height));
+  pose.translate(Vector3d(random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), height));
   pose.rotate(AngleAxisd(tilt, Vector3d(std::cos(direction), std::sin(direction), 0.0)));
-  pose.rotate(AngleAxisd(random.between(0.0, 2.0 * M_PI), Vector3d::UnitZ()));
+  pose.rotate(AngleAxisd(random.uniform(0.0, 2.0 * M_PI), Vector3d::UnitZ()));
   return pose;
 }
 
-std::vector<ClothMesh> shoved(Random& random) {
+std::vector<ClothMesh> shoved(RepeatableRandom& random) {
   const ClothMesh lower = lay(anySheet(random), placedAt({0.0, 0.0, 0.0}));
-  const double tilt = random.between(2.0, 10.0) * kDegree;
-  const double height = random.between(-0.003, 0.003);
+  const double tilt = random.uniform(2.0, 10.0) * kDegree;
+  const double height = random.uniform(-0.003, 0.003);
   return {lower, lay(anySheet(random), anyPose(random, tilt, height))};
 }
 
 /// What lies beyond an oblique line goes on around a half circle, and from there down.
-std::vector<ClothMesh> flap(Random& random) {
+std::vector<ClothMesh> flap(RepeatableRandom& random) {
   ClothMesh sheet = lay(anySheet(random), placedAt({0.0, 0.0, 0.0}));
-  const double direction = random.between(-40.0, 40.0) * kDegree;
+  const double direction = random.uniform(-40.0, 40.0) * kDegree;
   const Vector3d out(std::cos(direction), std::sin(direction), 0.0);
-  const double line = random.between(-0.01, 0.01), radius = random.between(0.002, 0.004);
-  const double slope = random.between(12.0, 30.0) * kDegree;
+  const double line = random.uniform(-0.01, 0.01), radius = random.uniform(0.002, 0.004);
+  const double slope = random.uniform(12.0, 30.0) * kDegree;
   const double turn = M_PI + slope;
   for (Vector3d& place : sheet.initial_positions) {
     const double beyond = out.dot(place) - line;
@@ -86,13 +77,13 @@ std::vector<ClothMesh> flap(Random& random) {
   return {sheet};
 }
 
-std::vector<ClothMesh> bump(Random& random) {
+std::vector<ClothMesh> bump(RepeatableRandom& random) {
   const ClothMesh lower = lay(anySheet(random), placedAt({0.0, 0.0, 0.0}));
-  const double gap = random.between(0.0015, 0.003);
+  const double gap = random.uniform(0.0015, 0.003);
   ClothMesh upper = lay(anySheet(random), anyPose(random, 0.0, gap));
-  const Vector3d middle(random.between(-0.02, 0.02), random.between(-0.02, 0.02), gap);
-  const double radius = random.between(0.015, 0.03);
-  const double depth = gap + random.between(0.002, 0.006);
+  const Vector3d middle(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), gap);
+  const double radius = random.uniform(0.015, 0.03);
+  const double depth = gap + random.uniform(0.002, 0.006);
   for (Vector3d& place : upper.initial_positions) {
     const double from_middle = (place - middle).norm() / radius;
     if (from_middle >= 1.0) continue;
@@ -101,13 +92,13 @@ std::vector<ClothMesh> bump(Random& random) {
   return {lower, upper};
 }
 
-std::vector<ClothMesh> waves(Random& random) {
+std::vector<ClothMesh> waves(RepeatableRandom& random) {
   const ClothMesh lower = lay(anySheet(random), placedAt({0.0, 0.0, 0.0}));
   ClothMesh upper = lay(anySheet(random), anyPose(random, 0.0, 0.002));
-  const double height = random.between(0.003, 0.006);
-  const double first = 2.0 * M_PI / random.between(0.03, 0.06), of_first = random.between(0.0, 6.0);
-  const double second = 2.0 * M_PI / random.between(0.03, 0.06);
-  const double of_second = random.between(0.0, 6.0);
+  const double height = random.uniform(0.003, 0.006);
+  const double first = 2.0 * M_PI / random.uniform(0.03, 0.06), of_first = random.uniform(0.0, 6.0);
+  const double second = 2.0 * M_PI / random.uniform(0.03, 0.06);
+  const double of_second = random.uniform(0.0, 6.0);
   for (Vector3d& place : upper.initial_positions) {
     place.z() +=
         height * std::sin(first * place.x() + of_first) * std::sin(second * place.y() + of_second);
@@ -134,9 +125,9 @@ void hold(SelfCollidingCloth::Set& set, const ClothMesh& sheet, std::vector<mesh
 
 TangledStart tangledStart(int index) {
   using mesh::Side;
-  Random random(index);
+  RepeatableRandom random(static_cast<std::uint64_t>(index));
   const char* const names[] = {"shoved", "flap", "bump", "waves"};
-  std::vector<ClothMesh> (*const kinds[])(Random&) = {shoved, flap, bump, waves};
+  std::vector<ClothMesh> (*const kinds[])(RepeatableRandom&) = {shoved, flap, bump, waves};
   const int kind = index % 4;
   TangledStart start;
   std::vector<ClothMesh> sheets;
@@ -177,6 +168,23 @@ Untangled untangle(const TangledStart& start, const material::Fabric& fabric, in
     result.energy_growth = std::max(result.energy_growth, energy - first - added);
   }
   result.energy_range = highest - lowest;
+  return result;
+}
+
+UntangledStarts untangleStarts(int count, int steps, const std::string& config_directory) {
+  UntangledStarts result;
+  int free = 0;
+  for (int i = 0; i < count; ++i) {
+    const TangledStart start = tangledStart(i);
+    const material::Fabric fabric =
+        material::loadFabric(config_directory + "/fabrics/" + start.fabric + ".yaml");
+    const Untangled end = untangle(start, fabric, steps);
+    free += end.left == 0;
+    result.left += end.left;
+    result.misreported += end.misreported;
+    result.energy_growth = std::max(result.energy_growth, end.energy_growth / end.energy_range);
+  }
+  result.free_share = static_cast<double>(free) / count;
   return result;
 }
 

@@ -16,8 +16,6 @@ namespace haptex::nodes {
 /// A marker to be added in the frame kFixedFrame, at its origin, of scale 1, opaque.
 visualization_msgs::Marker makeMarker(const std::string& name, int id, int type);
 
-geometry_msgs::Point pointMessage(const Eigen::Vector3d& point);
-
 /// @param colour red, green and blue from 0 to 1 @param opacity from 0 to 1
 std_msgs::ColorRGBA colourMessage(const Eigen::Vector3f& colour, float opacity = 1.0F);
 

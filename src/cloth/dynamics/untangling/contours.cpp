@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptex/proximity/exact_orientation.h"
+#include "haptex/proximity/intersections.h"
 
 namespace haptex::cloth {
 namespace {
@@ -15,22 +15,6 @@ using Triangle = std::array<int, 3>;
 
 bool has(const Triangle& triangle, int vertex) {
   return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
-}
-
-/// Whether a segment goes through a triangle, from one side of its plane to the other. Exact.
-bool goesThrough(const Positions& x, const proximity::Edge& edge, const Triangle& t) {
-  const Vector3d &p = x[edge[0]], &q = x[edge[1]];
-  const int of_p = proximity::orientation(x[t[0]], x[t[1]], x[t[2]], p);
-  const int of_q = proximity::orientation(x[t[0]], x[t[1]], x[t[2]], q);
-  if (of_p * of_q >= 0) return false;
-  const int a = proximity::orientation(p, q, x[t[0]], x[t[1]]);
-  const int b = proximity::orientation(p, q, x[t[1]], x[t[2]]);
-  const int c = proximity::orientation(p, q, x[t[2]], x[t[0]]);
-  return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
-}
-
-Vector3d normalOf(const Positions& x, const Triangle& t) {
-  return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).normalized();
 }
 
 }  // namespace
@@ -52,6 +36,11 @@ MeshTopology::MeshTopology(const std::vector<Triangle>& triangles, std::size_t p
     neighbours_of[a].push_back(b);
     neighbours_of[b].push_back(a);
   }
+}
+
+Vector3d MeshTopology::normalOf(const Positions& positions, int triangle) const {
+  const auto& [a, b, c] = elements.triangles[triangle];
+  return (positions[b] - positions[a]).cross(positions[c] - positions[a]).normalized();
 }
 
 IntersectionContours::IntersectionContours(const MeshTopology& topology) : topology_(topology) {}
@@ -94,11 +83,11 @@ void IntersectionContours::findHits(const Positions& positions, const proximity:
   const std::size_t first = hits_.size();
   for (const bool of_first : {true, false}) {
     const int own = pair[of_first ? 0 : 1], other = pair[of_first ? 1 : 0];
-    const Vector3d normal = normalOf(positions, triangles[other]);
+    const Vector3d normal = topology_.normalOf(positions, other);
     for (const int edge : topology_.edges_of[own]) {
       const auto& [a, b] = topology_.elements.edges[edge];
       if (has(triangles[other], a) || has(triangles[other], b)) continue;
-      if (!goesThrough(positions, {a, b}, triangles[other])) continue;
+      if (!proximity::passesThrough(positions, {a, b}, triangles[other])) continue;
       const double from = normal.dot(positions[a] - positions[triangles[other][0]]);
       const double to = normal.dot(positions[b] - positions[triangles[other][0]]);
       const double share = from / (from - to);
@@ -165,7 +154,7 @@ void IntersectionContours::nameContours() {
 Vector3d IntersectionContours::shorter(const Positions& positions, const Hit& hit) const {
   const auto& [a, b] = topology_.elements.edges[hit.edge];
   const Vector3d along = (positions[b] - positions[a]).normalized();
-  const Vector3d normal = normalOf(positions, topology_.elements.triangles[hit.triangle]);
+  const Vector3d normal = topology_.normalOf(positions, hit.triangle);
   const double across = along.dot(normal);
   if (across == 0.0) return Vector3d::Zero();
   const Vector3d way = hit.ahead - 2.0 * along.dot(hit.ahead) / across * normal;

@@ -11,10 +11,6 @@ namespace {
 using Eigen::Vector3d;
 using Positions = std::vector<Vector3d>;
 
-Vector3d normalOf(const Positions& x, const std::array<int, 3>& t) {
-  return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).normalized();
-}
-
 /// Zero of what has no direction.
 Vector3d unit(const Vector3d& vector) {
   const double length = vector.norm();
@@ -124,7 +120,7 @@ Vector3d TangleRegions::wayBack(const Positions& positions, const Crossing& cros
   };
   if ((region_of_[ends[0]] == wrong) != (region_of_[ends[1]] == wrong)) {
     const Vector3d back = positions[ends[1]] - positions[ends[0]];
-    return along(normalOf(positions, corners),
+    return along(topology_.normalOf(positions, crossing.triangle),
                  region_of_[ends[0]] == wrong ? back : Vector3d(-back));
   }
   Vector3d of_wrong = Vector3d::Zero(), of_others = Vector3d::Zero();
@@ -137,7 +133,7 @@ Vector3d TangleRegions::wayBack(const Positions& positions, const Crossing& cros
   if (wrong_corners == 0 || wrong_corners == 3) return Vector3d::Zero();
   Vector3d normal = Vector3d::Zero();
   for (const int triangle : topology_.triangles_at[crossing.edge]) {
-    normal += normalOf(positions, topology_.elements.triangles[triangle]);
+    normal += topology_.normalOf(positions, triangle);
   }
   const Vector3d back = of_others / (3 - wrong_corners) - of_wrong / wrong_corners;
   return -along(unit(normal), back);

@@ -19,14 +19,6 @@ constexpr double kLongest = 0.25;
 // Of what sticks where it crosses, in masses of a particle per step.
 constexpr double kDamping = 5.0;
 
-Positions restPlaces(const mesh::ClothMesh& mesh) {
-  Positions places;
-  for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {
-    places.emplace_back(rest.x(), rest.y(), 0.0);
-  }
-  return places;
-}
-
 double meanLength(const std::vector<proximity::Edge>& edges, const Positions& places) {
   double sum = 0.0;
   for (const auto& [a, b] : edges) sum += (places[b] - places[a]).norm();
@@ -37,11 +29,11 @@ double meanLength(const std::vector<proximity::Edge>& edges, const Positions& pl
 
 Untangling::Untangling(const Cloth& cloth)
     : topology_(cloth.mesh().triangles, cloth.particleCount()),
-      intersections_(cloth.mesh().triangles, restPlaces(cloth.mesh())),
+      intersections_(cloth.mesh().triangles, mesh::flatPositions(cloth.mesh())),
       contours_(topology_),
       regions_(topology_, cloth.particleCount()),
       motion_(cloth.particleCount(), cloth.selfContact()->law().margin()),
-      edge_length_(meanLength(topology_.elements.edges, restPlaces(cloth.mesh()))),
+      edge_length_(meanLength(topology_.elements.edges, mesh::flatPositions(cloth.mesh()))),
       ways_(cloth.particleCount()),
       weights_(cloth.particleCount()) {
   last_.reserve(cloth.particleCount());
@@ -147,12 +139,10 @@ void Untangling::chooseWays(const Positions& positions) {
   }
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     if (is_crossed_[contours_.contourOf(p)] != 0) continue;
-    const auto& first = topology_.elements.triangles[pairs_[p][0]];
-    const Vector3d& corner = positions[first[0]];
-    const Vector3d normal =
-        (positions[first[1]] - corner).cross(positions[first[2]] - corner).normalized();
-    for (const int particle : first) add(particle, normal);
-    for (const int particle : topology_.elements.triangles[pairs_[p][1]]) add(particle, -normal);
+    const auto& [first, second] = pairs_[p];
+    const Vector3d normal = topology_.normalOf(positions, first);
+    for (const int particle : topology_.elements.triangles[first]) add(particle, normal);
+    for (const int particle : topology_.elements.triangles[second]) add(particle, -normal);
   }
   for (std::size_t i = 0; i < ways_.size(); ++i) {
     if (weights_[i] > 0.0) ways_[i] /= weights_[i];

@@ -157,23 +157,12 @@ void validateScenes(const material::Fabric& fabric, const Sink& sink) {
 
 /// The share of random tangled starts that is free after a second.
 void validateTangledStarts(const std::string& config_directory, const Sink& sink) {
-  constexpr int kStarts = base::unlessSanitized(20, 2), kSteps = base::unlessSanitized(80, 4);
-  int free = 0, misreported = 0;
-  double growth = 0.0;
-  for (int i = 0; i < kStarts; ++i) {
-    const TangledStart start = tangledStart(i);
-    const material::Fabric fabric =
-        material::loadFabric(config_directory + "/fabrics/" + start.fabric + ".yaml");
-    const Untangled end = untangle(start, fabric, kSteps);
-    free += end.left == 0;
-    misreported += end.misreported;
-    growth = std::max(growth, end.energy_growth / end.energy_range);
-  }
-  const double share = static_cast<double>(free) / kStarts;
-  sink({"self_collision/tangled_starts/free", 1.0, share, 1.0 - share,
+  const UntangledStarts ends =
+      untangleStarts(base::unlessSanitized(20, 2), base::unlessSanitized(80, 4), config_directory);
+  const double misreported = ends.misreported, growth = ends.energy_growth;
+  sink({"self_collision/tangled_starts/free", 1.0, ends.free_share, 1.0 - ends.free_share,
         base::unlessSanitized(0.05, 1.0)});
-  sink({"self_collision/tangled_starts/misreported", 0.0, 1.0 * misreported, 1.0 * misreported,
-        0.0});
+  sink({"self_collision/tangled_starts/misreported", 0.0, misreported, misreported, 0.0});
   sink({"self_collision/tangled_starts/energy_growth", 0.0, growth, growth, 1e-9});
 }
 

@@ -16,6 +16,9 @@ struct MeshTopology {
   /// @param triangles without defects
   MeshTopology(const std::vector<std::array<int, 3>>& triangles, std::size_t particles);
 
+  /// Unit, of a triangle; zero of one without an area.
+  Eigen::Vector3d normalOf(const std::vector<Eigen::Vector3d>& positions, int triangle) const;
+
   proximity::MeshElements elements;
   std::vector<std::array<int, 3>> edges_of;     ///< of a triangle, edge i from its corner i on
   std::vector<std::vector<int>> triangles_at;   ///< of an edge, ascending
