@@ -32,9 +32,13 @@ class ContactSearch {
 
   /// Depth first through the halves of the time, the earlier one first. The directions tried
   /// are those at begin and end of the interval.
-  std::optional<double> run() {
+  /// @param nearest weights of the nearest points at the beginning
+  std::optional<double> run(const Eigen::Vector4d& nearest) {
+    // The whole way first: mostly one direction will do.
+    Vector3d at_begin = directionOf(begin_, nearest);
+    if (separate(at_begin, 0.0, 1.0)) return {};
     double time = 0.0, length = 1.0;
-    Vector3d at_begin = directionAt(time), at_end = directionAt(time + length);
+    Vector3d at_end = directionAt(time + length);
     for (int tested = 0; tested < kMostIntervals; ++tested) {
       const double end = time + length;
       if (separate(at_begin, time, end) || separate(at_end, time, end)) {
@@ -54,12 +58,15 @@ class ContactSearch {
   }
 
  private:
-  /// Between the nearest points, or normal to both elements where they touch. Any direction is
-  /// right, this one is good.
   Vector3d directionAt(double time) const {
     Places places;
     for (int i = 0; i < 4; ++i) places[i] = begin_[i] + time * (end_[i] - begin_[i]);
-    const Eigen::Vector4d w = distanceOf(kind_, places).weights;
+    return directionOf(places, distanceOf(kind_, places).weights);
+  }
+
+  /// Between the nearest points, or normal to both elements where they touch. Any direction is
+  /// right, this one is good.
+  Vector3d directionOf(const Places& places, const Eigen::Vector4d& w) const {
     const bool is_face = kind_ == ElementPairKind::kVertexTriangle;
     Vector3d direction =
         is_face
@@ -101,7 +108,12 @@ class ContactSearch {
 
 std::optional<double> earliestContact(ElementPairKind kind, const Places& begin, const Places& end,
                                       double least_distance) {
-  return ContactSearch(kind, begin, end, least_distance).run();
+  return earliestContact(kind, begin, end, least_distance, distanceOf(kind, begin).weights);
+}
+
+std::optional<double> earliestContact(ElementPairKind kind, const Places& begin, const Places& end,
+                                      double least_distance, const Eigen::Vector4d& nearest) {
+  return ContactSearch(kind, begin, end, least_distance).run(nearest);
 }
 
 }  // namespace haptex::proximity

@@ -28,6 +28,12 @@ std::optional<double> earliestContact(ElementPairKind kind,
                                       const std::array<Eigen::Vector3d, 4>& begin,
                                       const std::array<Eigen::Vector3d, 4>& end,
                                       double least_distance = 0.0);
+/// The same, where the nearest points at the beginning are known.
+/// @param nearest PairDistance::weights at `begin`
+std::optional<double> earliestContact(ElementPairKind kind,
+                                      const std::array<Eigen::Vector3d, 4>& begin,
+                                      const std::array<Eigen::Vector3d, 4>& end,
+                                      double least_distance, const Eigen::Vector4d& nearest);
 
 constexpr double kShortestInterval = 1.0 / (1 << 24);  ///< of the motion
 constexpr int kMostIntervals = 4096;                   ///< that are tested

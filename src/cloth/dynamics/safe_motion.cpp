@@ -35,6 +35,8 @@ MotionCut SafeMotion::go(NearPairs& near, NearObstacles* obstacles,
     reached = to;
     return {};
   }
+  near_ = &near;
+  obstacles_ = obstacles;
   place_ = from;
   if (obstacles != nullptr) obstacle_place_ = obstacles->surfaces().atEnd();
   obstacle_pairs_ = nullptr;
@@ -194,12 +196,17 @@ std::optional<SafeMotion::Touch> SafeMotion::touch(const Pair& pair) const {
   const double relative = std::sqrt(longest[0]) + std::sqrt(longest[1]);
   if (relative == 0.0) return {};
   const double margin = pair.obstacle < 0 ? margin_ : 0.5 * margin_;
+  const double least =
+      pair.obstacle < 0 ? near_->leastDistance(pair) : obstacles_->leastDistance(pair);
+  if (relative < least - std::min(margin, kKept * least)) return {};
   const double reach = margin + relative / (1.0 - kKept) + pair.radius;
   if (proximity::isSurelyApart(pair.kind, begin, reach)) return {};
-  const double distance = proximity::distanceOf(pair.kind, begin).distance - pair.radius;
+  const proximity::PairDistance nearest = proximity::distanceOf(pair.kind, begin);
+  const double distance = nearest.distance - pair.radius;
   const double kept = std::min(margin, kKept * distance);
   if (relative < distance - kept) return {};
-  const auto time = proximity::earliestContact(pair.kind, begin, end, pair.radius + kept);
+  const auto time =
+      proximity::earliestContact(pair.kind, begin, end, pair.radius + kept, nearest.weights);
   if (!time) return {};
   return Touch{*time, distance, kept};
 }

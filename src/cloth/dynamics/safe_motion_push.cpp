@@ -13,6 +13,8 @@ MotionCut SafeMotion::push(NearPairs& near, NearObstacles& obstacles, const Vect
   constexpr double kLittle = 0.5;
   ObstacleSurfaces& surfaces = obstacles.surfaces();
   const Vectors& end = surfaces.atEnd();
+  near_ = &near;
+  obstacles_ = &obstacles;
   place_ = from;
   if (end == surfaces.atBegin()) {
     reached = place_;

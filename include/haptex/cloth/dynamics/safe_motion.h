@@ -92,8 +92,11 @@ class SafeMotion {
     return isParticle(vertex) ? way_[vertex] : obstacle_way_[vertex - place_.size()];
   }
 
-  double margin_;           // m
-  double reach_ = 0.0;      // m, of a pass of push()
+  double margin_;  // m
+  // Of the motion at hand.
+  const NearPairs* near_ = nullptr;
+  const NearObstacles* obstacles_ = nullptr;  // null if there are none
+  double reach_ = 0.0;                        // m, of a pass of push()
   double known_ = 0.0;      // m, distance up to which all pairs are known on this way
   Vectors place_;           // m, reached
   Vectors left_;            // m, of the way of each particle that is not stopped

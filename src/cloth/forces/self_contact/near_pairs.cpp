@@ -67,7 +67,7 @@ bool NearPairs::isInTangle(const Pair& pair) const {
 
 bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
   if (!searched_at_.empty()) {
-    const double moved = farthest(positions, searched_at_);
+    const double moved = farthestBeyondCommon(positions, searched_at_);
     if (moved <= 0.5 * (searched() - distance)) {
       moved_ = moved;
       return true;
@@ -96,6 +96,21 @@ double NearPairs::farthest(const std::vector<Vector3d>& now, const std::vector<V
   double square = 0.0;
   for (std::size_t i = 0; i < now.size(); ++i) {
     const double its = (now[i] - before[i]).squaredNorm();
+    if (std::isnan(its)) return std::numeric_limits<double>::infinity();
+    square = std::max(square, its);
+  }
+  return std::sqrt(square);
+}
+
+/// What all have in common is the middle of their box.
+double NearPairs::farthestBeyondCommon(const std::vector<Vector3d>& now,
+                                       const std::vector<Vector3d>& before) {
+  Eigen::AlignedBox3d ways;
+  for (std::size_t i = 0; i < now.size(); ++i) ways.extend(now[i] - before[i]);
+  const Vector3d common = ways.center();
+  double square = 0.0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const double its = (now[i] - before[i] - common).squaredNorm();
     if (std::isnan(its)) return std::numeric_limits<double>::infinity();
     square = std::max(square, its);
   }

@@ -35,10 +35,9 @@ class NearObstacles {
   /// @param positions, places m, of the particles and of the vertices of the obstacles, finite
   /// @param distance  m, below the one searched for
   void find(const Places& positions, const Places& places, double distance);
-  /// As NearPairs::isBeyond().
-  bool isBeyond(const Pair& pair, double distance) const {
-    return pair.distance > distance + moved_ + kRounding;
-  }
+  /// As NearPairs::leastDistance() and isBeyond(), of the surfaces.
+  double leastDistance(const Pair& pair) const { return pair.distance - moved_ - kRounding; }
+  bool isBeyond(const Pair& pair, double distance) const { return leastDistance(pair) > distance; }
   /// By kind, first and second.
   const std::vector<Pair>& pairs() const { return pairs_; }
 

@@ -62,12 +62,15 @@ class NearPairs {
   /// How far (m) the farthest of some places is from where it was before; as many.
   static double farthest(const std::vector<Eigen::Vector3d>& now,
                          const std::vector<Eigen::Vector3d>& before);
+  /// The same beyond a motion that all have in common: no two of them have come nearer to each
+  /// other by more than twice that (m).
+  static double farthestBeyondCommon(const std::vector<Eigen::Vector3d>& now,
+                                     const std::vector<Eigen::Vector3d>& before);
 
-  /// Whether a pair of pairs() is surely farther apart than a distance (m) at the positions of the
-  /// last find().
-  bool isBeyond(const Pair& pair, double distance) const {
-    return pair.distance > distance + 2.0 * moved_ + kRounding;
-  }
+  /// m, that a pair of pairs() is at least apart at the positions of the last find(). May be < 0.
+  double leastDistance(const Pair& pair) const { return pair.distance - 2.0 * moved_ - kRounding; }
+  /// Whether it is surely farther apart than a distance (m).
+  bool isBeyond(const Pair& pair, double distance) const { return leastDistance(pair) > distance; }
   /// By kind, first and second.
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// Pairs that were at most 2 searched() apart in the reference: those that find() leaves out are
@@ -91,7 +94,7 @@ class NearPairs {
   std::vector<Pair> all_neighbours_;          // those in tangles, too
   TangleSides sides_;                         // empty if there are no tangles
   std::vector<Eigen::Vector3d> searched_at_;  // m; empty before the first find()
-  double moved_ = 0.0;                        // m, farthest since
+  double moved_ = 0.0;                        // m, farthest since, beyond a common motion
 };
 
 }  // namespace haptex::cloth
