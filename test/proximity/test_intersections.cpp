@@ -176,7 +176,9 @@ TEST(Intersections, OfSheetsAreCounted) {
 
 TEST(Intersections, SweepFindsWhatAllPairsHave) {
   const mesh::ClothMesh mesh = sheet(6);
+  int states = 0;
   for (const auto& state : oracles::deformedSheets(mesh)) {
+    if (base::kSanitized && states++ % 3 != 0) continue;
     std::vector<TrianglePair> expected;
     for (int i = 0; i < static_cast<int>(mesh.triangles.size()); ++i) {
       for (int j = i + 1; j < static_cast<int>(mesh.triangles.size()); ++j) {

@@ -89,7 +89,8 @@ TEST(Drape, IsTheSameForTheSameSeedOnly) {
 TEST(Drape, DoesNotDependOnTheTimeStep) {
   DrapeTest test = coarse();
   const double coefficient = drape(wool(), test, 1).coefficient;
-  for (const double time_step : {0.005, 0.0125}) {
+  for (const double time_step : {0.0125, 0.005}) {
+    if (base::kSanitized && time_step < 0.01) break;
     test.time_step = time_step;
     EXPECT_NEAR(drape(wool(), test, 1).coefficient, coefficient, 0.01) << time_step;
   }

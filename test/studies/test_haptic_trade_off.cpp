@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "haptex/base/workload.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/studies/haptic_trade_off.h"
 
@@ -35,6 +36,7 @@ HapticPoint point(int refinement, double large_scale_step = 4e-3) {
 }
 
 TEST(HapticTradeOff, FinerIsNearerToTheReferenceAndHasMoreParticles) {
+  if (base::kSanitized) GTEST_SKIP() << "the tests below run the same code";
   constexpr double kStep = 1e-3;  // s: loads of no age, whose error no refinement mends
   const HapticCost coarse = measureTouch(shortPress(), point(0, kStep), reference());
   const HapticCost fine = measureTouch(shortPress(), point(1, kStep), reference());
@@ -45,22 +47,18 @@ TEST(HapticTradeOff, FinerIsNearerToTheReferenceAndHasMoreParticles) {
   EXPECT_EQ(fine.rejected_steps, 0);
 }
 
-TEST(HapticTradeOff, ErrorsRepeatBitForBit) {
+TEST(HapticTradeOff, ErrorsRepeatBitForBitAndWorstOnesAreAtLeastMeanOnes) {
   const HapticCost once = measureTouch(shortPress(), point(1), reference());
   const HapticCost again = measureTouch(shortPress(), point(1), reference());
   EXPECT_EQ(once.force_error, again.force_error);
   EXPECT_EQ(once.worst_error, again.worst_error);
   EXPECT_EQ(once.rest_error, again.rest_error);
-}
-
-TEST(HapticTradeOff, WorstErrorsAreAtLeastMeanOnesAndTimesAreAboveZero) {
-  const HapticCost cost = measureTouch(shortPress(), point(1), reference());
-  EXPECT_GT(cost.force_error, 0.0);
-  EXPECT_GE(cost.worst_error, cost.force_error);
-  EXPECT_GE(cost.worst_error, cost.rest_error);
-  EXPECT_GT(cost.tick_time, 0.0);
-  EXPECT_GT(cost.large_scale_time, 0.0);
-  EXPECT_DOUBLE_EQ(cost.forceLoopTime(point(1)), cost.tick_time / 1e-3);
+  EXPECT_GT(once.force_error, 0.0);
+  EXPECT_GE(once.worst_error, once.force_error);
+  EXPECT_GE(once.worst_error, once.rest_error);
+  EXPECT_GT(once.tick_time, 0.0);
+  EXPECT_GT(once.large_scale_time, 0.0);
+  EXPECT_DOUBLE_EQ(once.forceLoopTime(point(1)), once.tick_time / 1e-3);
 }
 
 TEST(HapticTradeOff, TheReferenceIsNearerToItsLimitThanItsForce) {

@@ -38,6 +38,7 @@ void validateCantilevers(const Sink& sink) {
     for (const NamedStripMesh& mesh : kStripMeshes) {
       for (const auto& [model, model_name] : kModels) {
         for (kes::Direction along : {kes::Direction::kWeft, kes::Direction::kWarp}) {
+          if (base::kSanitized && along == kes::Direction::kWarp) continue;
           Cantilever cantilever{gamma, mesh.mesh, along};
           cantilever.model = model;
           sink(base::relativeTo(exact,
@@ -55,6 +56,7 @@ void validateRestCurvature(const NamedStripMesh& mesh, const Sink& sink) {
   for (const auto& [model, model_name] : kModels) {
     for (const auto& [along, curvature] :
          {std::pair(kes::Direction::kWeft, 20.0), std::pair(kes::Direction::kWarp, -40.0)}) {
+      if (base::kSanitized && along == kes::Direction::kWeft) continue;
       sink(base::relativeTo(
           curvature,
           std::string("cloth/rest_curvature/") + model_name + "/" + mesh.name + "/" + nameOf(along),
@@ -68,6 +70,7 @@ void validateResidualCurvature(const NamedStripMesh& mesh, const Sink& sink) {
   for (const auto& [model, model_name] : kModels) {
     for (const auto& [along, held] :
          {std::pair(kes::Direction::kWeft, 20.0), std::pair(kes::Direction::kWarp, 10.0)}) {
+      if (base::kSanitized && along == kes::Direction::kWarp) continue;
       sink(base::relativeTo(held,
                             std::string("cloth/residual_curvature/") + model_name + "/" +
                                 mesh.name + "/" + nameOf(along),
