@@ -9,7 +9,7 @@
 //   <rate>/force, ...  the same in two layers with so many large-scale states a second
 //   <rate>/error       largest difference of the force from one layer, in any millisecond
 // Patches are refined once, not twice as shipped, because the whole cloth is as fine: then
-// all takes half a minute. In one layer what is lifted and lowered makes the same forces to 5 %.
+// all takes a minute or two. In one layer what is lifted and lowered makes the same forces to 5 %.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
