@@ -14,11 +14,9 @@ using base::kFingers;
 using contact::Fingertip;
 using Eigen::Vector3d;
 
-constexpr int kCells = 32;
-
-HapticLoopSettings sampleAt(const material::Fabric& fabric, double large_scale_rate) {
+HapticLoopSettings sampleAt(const material::Fabric& fabric, double large_scale_rate, int cells) {
   HapticLoopSettings settings;
-  settings.mesh = mesh::makeRectangle(kSampleSide, kSampleSide, kCells, kCells,
+  settings.mesh = mesh::makeRectangle(kSampleSide, kSampleSide, cells, cells,
                                       mesh::Triangulation::kAlternating);
   settings.fabric = fabric;
   settings.effects.viscosity = true;
@@ -35,8 +33,8 @@ HapticLoopSettings sampleAt(const material::Fabric& fabric, double large_scale_r
 }  // namespace
 
 HapticLoopSettings hangingSample(const material::Fabric& fabric, kes::Direction up,
-                                 double large_scale_rate) {
-  HapticLoopSettings settings = sampleAt(fabric, large_scale_rate);
+                                 double large_scale_rate, int cells) {
+  HapticLoopSettings settings = sampleAt(fabric, large_scale_rate, cells);
   settings.effects.gravity = {0.0, 0.0, -base::kStandardGravity};
   settings.attached_particles = sideParticles(
       settings.mesh, up == kes::Direction::kWarp ? mesh::Side::kTop : mesh::Side::kLeft);
@@ -50,7 +48,7 @@ HapticLoopSettings hangingSample(const material::Fabric& fabric, kes::Direction 
 
 HapticLoopSettings tautSample(const material::Fabric& fabric, double strain,
                               double large_scale_rate) {
-  HapticLoopSettings settings = sampleAt(fabric, large_scale_rate);
+  HapticLoopSettings settings = sampleAt(fabric, large_scale_rate, kSampleCells);
   std::vector<char> held(settings.mesh.rest_coordinates.size(), 0);
   for (mesh::Side side :
        {mesh::Side::kTop, mesh::Side::kBottom, mesh::Side::kLeft, mesh::Side::kRight}) {
@@ -132,6 +130,16 @@ Vector3d RefinedCloth::force(Finger finger) const {
     sum -= touched.force();
   }
   return sum;
+}
+
+Eigen::Vector2d RefinedCloth::fabricPosition(Finger finger) const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double weights = 0.0;
+  for (const contact::TouchedParticle& touched : patch_->contact(finger).touched()) {
+    sum += touched.normal_force * patch_->restCoordinates(touched.particle);
+    weights += touched.normal_force;
+  }
+  return weights > 0.0 ? Eigen::Vector2d(sum / weights) : sum;
 }
 
 }  // namespace haptex::oracles

@@ -14,10 +14,12 @@ using contact::Fingertips;
 
 constexpr double kSampleSide = 0.2;  ///< m
 
-/// The 200 mm sample in the plane x = 0, 32 x 32 cells, hanging from the bar at the world's origin
-/// with the given direction of the fabric along +z. Patches of refinement 2.
+constexpr int kSampleCells = 32;  ///< along each side
+
+/// The 200 mm sample in the plane x = 0, hanging from the bar at the world's origin with the given
+/// direction of the fabric along +z. Patches of refinement 2.
 HapticLoopSettings hangingSample(const material::Fabric& fabric, kes::Direction up,
-                                 double large_scale_rate);
+                                 double large_scale_rate, int cells = kSampleCells);
 /// The same sample held at all four sides, 1 + `strain` times as wide and as high, without gravity;
 /// its middle is at (0, 0, -0.1 m).
 HapticLoopSettings tautSample(const material::Fabric& fabric, double strain,
@@ -57,6 +59,8 @@ class RefinedCloth {
   void step(const Fingertips& fingertips, double h);
   /// The cloth's force on a fingertip (N).
   Eigen::Vector3d force(base::Finger finger) const;
+  /// Centre of a fingertip's pressure in (weft, warp) (m); zero without contact.
+  Eigen::Vector2d fabricPosition(base::Finger finger) const;
 
  private:
   contact::ContactLaw law_;
