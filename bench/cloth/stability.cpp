@@ -1,10 +1,13 @@
-// How does cloth behave at the extremes? bench_stability [--cases N] [--seed S] [--maps CSV]
+// How does cloth behave at the extremes?
+//   bench_stability [--cases N] [--self_colliding N] [--seed S] [--maps CSV]
 // Runs N generated cases (studies/extreme_case.h) on two threads, by default 50000 from seed 1,
-// and prints how many failed and by how much the worst missed its rest state, all together and by
+// and then 10000 with cloth that collides with itself, those from seed 1 on that allow it.
+// Prints how many failed and by how much the worst missed its rest state, all together and by
 // kind. A failed case is shrunk, and printed on standard error as text that a test can take.
 // Then the limits of the explicit integrators, as longest step times highest angular frequency,
 // beside those of theory; and into the CSV what becomes of a vibrating sheet for each integrator,
 // time step and stiffness, which scripts/plot_stability draws.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -14,6 +17,8 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "haptex/base/quantity.h"
 #include "haptex/studies/extreme_run.h"
@@ -32,6 +37,7 @@ constexpr double kMapStiffness = 100.0;  // N/m, of the limits; they do not depe
 
 struct Arguments {
   long cases = 50000;
+  long self_colliding = 10000;
   std::uint64_t seed = 1;
   std::string maps;
 };
@@ -43,12 +49,15 @@ Arguments parse(int argc, char** argv) {
     if (i + 1 == argc) throw std::invalid_argument(key + " lacks a value");
     if (key == "--cases") {
       arguments.cases = std::stol(argv[i + 1]);
+    } else if (key == "--self_colliding") {
+      arguments.self_colliding = std::stol(argv[i + 1]);
     } else if (key == "--seed") {
       arguments.seed = std::stoull(argv[i + 1]);
     } else if (key == "--maps") {
       arguments.maps = argv[i + 1];
     } else {
-      throw std::invalid_argument("unknown argument " + key + "; --cases, --seed, --maps");
+      throw std::invalid_argument("unknown argument " + key +
+                                  "; --cases, --self_colliding, --seed, --maps");
     }
   }
   return arguments;
@@ -59,6 +68,7 @@ struct Tally {
   long failures = 0;
   long other_rests = 0;
   long slow = 0;
+  long unsettled = 0;
   long rejected = 0;
   double growth = 0.0;
   double return_error = 0.0;
@@ -68,9 +78,10 @@ struct Tally {
     failures += outcome.failure != ExtremeFailure::kNone;
     other_rests += outcome.other_rest;
     slow += outcome.slow;
+    unsettled += outcome.unsettled;
     rejected += outcome.rejected;
     growth = base::largerOrNaN(growth, outcome.growth);
-    if (outcome.other_rest) return;
+    if (outcome.other_rest || outcome.unsettled) return;
     return_error = base::largerOrNaN(return_error, outcome.return_error);
   }
 };
@@ -81,6 +92,9 @@ void print(const std::string& name, const Tally& tally) {
   printLine(name + "failures", static_cast<double>(tally.failures), "cases");
   printLine(name + "other_rests", static_cast<double>(tally.other_rests), "cases");
   printLine(name + "slow_returns", static_cast<double>(tally.slow), "cases");
+  if (tally.unsettled > 0) {
+    printLine(name + "unsettled", static_cast<double>(tally.unsettled), "cases");
+  }
   printLine(name + "rejected_steps", static_cast<double>(tally.rejected), "steps");
   printLine(name + "worst_growth", tally.growth, "of_energy");
   printLine(name + "worst_return_error", tally.return_error, "of_extent");
@@ -100,24 +114,25 @@ void printFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome) {
 
 class Cases {
  public:
-  explicit Cases(const Arguments& arguments) : arguments_(arguments) {}
+  /// @param name of the lines that are printed
+  Cases(std::string name, std::vector<ExtremeCase> cases)
+      : name_(std::move(name)), cases_(std::move(cases)) {}
 
   void run() {
     std::thread other([this] { work(); });
     work();
     other.join();
-    print("stability/", all_);
-    for (const auto& [kind, tally] : by_kind_) print("stability/" + kind + "/", tally);
-    print("stability/explicit_integrators/", explicit_);
+    print(name_, all_);
+    for (const auto& [kind, tally] : by_kind_) print(name_ + kind + "/", tally);
+    if (explicit_.cases > 0) print(name_ + "explicit_integrators/", explicit_);
   }
 
  private:
   void work() {
-    for (long i; (i = next_++) < arguments_.cases;) {
-      const ExtremeCase extreme = studies::drawExtremeCase(arguments_.seed + i);
-      const ExtremeOutcome outcome = studies::runExtremeCase(extreme);
-      add(extreme, outcome);
-      if (outcome.failure != ExtremeFailure::kNone) printFailure(extreme, outcome);
+    for (std::size_t i; (i = next_++) < cases_.size();) {
+      const ExtremeOutcome outcome = studies::runExtremeCase(cases_[i]);
+      add(cases_[i], outcome);
+      if (outcome.failure != ExtremeFailure::kNone) printFailure(cases_[i], outcome);
     }
   }
 
@@ -130,18 +145,27 @@ class Cases {
       explicit_.add(outcome);
     }
     const long done = all_.cases + explicit_.cases;
-    if (done % 1000 != 0) return;
-    std::fprintf(stderr, "%ld of %ld cases, %ld failures\n", done, arguments_.cases,
+    if (done % std::max<long>(1, static_cast<long>(cases_.size()) / 50) != 0) return;
+    std::fprintf(stderr, "%s %ld of %zu cases, %ld failures\n", name_.c_str(), done, cases_.size(),
                  all_.failures + explicit_.failures);
   }
 
-  const Arguments& arguments_;
-  std::atomic<long> next_{0};
+  std::string name_;
+  std::vector<ExtremeCase> cases_;
+  std::atomic<std::size_t> next_{0};
   std::mutex mutex_;
   Tally all_;  // with implicit integrators
   Tally explicit_;
   std::map<std::string, Tally> by_kind_;
 };
+
+std::vector<ExtremeCase> drawCases(const Arguments& arguments) {
+  std::vector<ExtremeCase> cases;
+  for (long i = 0; i < arguments.cases; ++i) {
+    cases.push_back(studies::drawExtremeCase(arguments.seed + i));
+  }
+  return cases;
+}
 
 void printLimits() {
   for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
@@ -179,7 +203,12 @@ void writeMaps(const std::string& path) {
 int main(int argc, char** argv) {
   try {
     const Arguments arguments = parse(argc, argv);
-    Cases(arguments).run();
+    if (arguments.cases > 0) Cases("stability/", drawCases(arguments)).run();
+    if (arguments.self_colliding > 0) {
+      Cases("stability/self_colliding/",
+            studies::drawSelfCollidingCases(arguments.seed, arguments.self_colliding))
+          .run();
+    }
     printLimits();
     if (!arguments.maps.empty()) writeMaps(arguments.maps);
   } catch (const std::exception& error) {

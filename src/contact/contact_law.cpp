@@ -1,5 +1,6 @@
 #include "haptex/contact/contact_law.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
@@ -139,11 +140,17 @@ StrainStressCurve tabulate(const material::Compression& fabric, double pulp_stif
 
 }  // namespace
 
-ContactLaw::ContactLaw(const material::Fabric& fabric, const PulpSettings& pulp) {
+ContactLaw::ContactLaw(const material::Fabric& fabric, const PulpSettings& pulp, int most_layers) {
   requireContactProperties(fabric);
   requirePositive("stiffness", pulp.stiffness);
   requirePositive("damping", pulp.damping);
-  pressure_ = tabulate(*fabric.compression, pulp.stiffness);
+  // Layers in series are compressed by the same strain: a fabric as thick as all of them, of which
+  // the half on the fingertip's side is what lies between it and the middle surface.
+  for (int layers = 0; layers < most_layers; ++layers) {
+    const material::Compression& one = *fabric.compression;
+    pressures_.push_back(
+        tabulate({(2.0 * layers + 1.0) * one.thickness, one.pressure}, pulp.stiffness));
+  }
   half_thickness_ = 0.5 * fabric.compression->thickness;
   friction_ = *fabric.friction;
   damping_ = pulp.damping;
@@ -152,7 +159,22 @@ ContactLaw::ContactLaw(const material::Fabric& fabric, const PulpSettings& pulp)
 
 material::CurveValue ContactLaw::pressure(double depth) const {
   if (depth <= 0.0) return {0.0, 0.0};
-  return pressure_.evaluate(depth);
+  return pressures_.front().evaluate(depth);
+}
+
+material::CurveValue ContactLaw::pressureThrough(double layers_before, double distance) const {
+  const int last = static_cast<int>(pressures_.size()) - 1;
+  const int below = std::clamp(static_cast<int>(layers_before), 0, last);
+  CurveValue sum{0.0, 0.0};
+  for (int layers = below; layers <= std::min(below + 1, last); ++layers) {
+    const double share = std::max(0.0, 1.0 - std::abs(layers_before - layers));
+    const double depth = reachThrough(layers) - distance;
+    if (depth <= 0.0 || share == 0.0) continue;
+    const CurveValue value = pressures_[layers].evaluate(depth);
+    sum.stress += share * value.stress;
+    sum.slope += share * value.slope;
+  }
+  return sum;
 }
 
 }  // namespace haptex::contact

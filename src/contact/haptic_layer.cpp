@@ -77,7 +77,8 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric,
       mesh_(requireSoundAndReturn(std::move(mesh))),
       fabric_(std::move(fabric)),
       effects_(effects),
-      law_(requireBending(fabric_, settings)),
+      law_(requireBending(fabric_, settings), {},
+           effects.self_collision ? LayersBetween::kMost : 1),
       topology_(mesh_),
       motion_(mesh_.rest_coordinates.size()) {
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
@@ -180,10 +181,8 @@ void HapticLayer::stepPatch() {
     return;
   }
   stiffness_.update(*patch_, settings_.time_step);
-  const Particles particles{patch_->positions(), patch_->velocities(), patch_->areas(),
-                            patch_->freeCount()};
   for (const Finger finger : kFingers) {
-    fillContact(finger, patch_->contact(finger).touched(), particles);
+    fillContact(finger, patch_->contact(finger).touched(), patch_->particles(finger));
   }
   for (const Finger finger : kFingers) {
     const std::vector<TouchedParticle>& touched = patch_->contact(finger).touched();

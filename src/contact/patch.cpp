@@ -70,6 +70,7 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabr
       rhs_(3, cut_.supports.size()),
       solution_(3, cut_.free_count) {
   forces_.bind(matrix_);
+  if (effects.self_collision) layers_.emplace(coarse, cut_, 2.0 * law.halfThickness(), areas_);
   const std::size_t count = cut_.supports.size();
   for (int owner : cut_.owners) corners_.push_back(coarse.triangles[owner]);
   state_.positions.assign(count, Vector3d::Zero());
@@ -91,6 +92,12 @@ Vector3d Patch::placeOnCloth(int particle, const LargeScaleMotion& motion) const
          weights[2] * motion.position(corners[2]);
 }
 
+Particles Patch::particlesAt(const std::vector<Vector3d>& positions, Finger finger) const {
+  const bool single = !layers_ || layers_->isSingle();
+  return {positions, state_.velocities, areas(), cut_.free_count,
+          single ? nullptr : &layers_->before(finger)};
+}
+
 void Patch::start(const LargeScaleMotion& motion) {
   for (std::size_t i = 0; i < particleCount(); ++i) {
     state_.positions[i] = placeOnCloth(static_cast<int>(i), motion);
@@ -99,6 +106,7 @@ void Patch::start(const LargeScaleMotion& motion) {
     tethers_[i] = 0.0;
     contact_forces_[i] = 0.0;
   }
+  if (layers_) layers_->clear();
   for (const Finger finger : kFingers) {
     contacts_[finger].clear();
     linearised_[finger].clear();
@@ -128,6 +136,7 @@ void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
     if (!is_free) {
       detours_[i] = state_.positions[i] - placeOnCloth(i, motion);
     } else if (was_free) {
+      if (layers_) layers_->adopt(i, *other.layers_, k);
       tethers_[i] = other.tethers_[k];
       for (const Finger finger : kFingers)
         contacts_[finger].adoptAnchor(i, other.contacts_[finger], k);
@@ -164,12 +173,11 @@ void Patch::addContact(const base::PerFinger<const Fingertip*>& fingertips, doub
   for (int i = 0; i < cut_.free_count; ++i) {
     predicted_[i] = state_.positions[i] + h * state_.velocities[i];
   }
-  const Particles particles{predicted_, state_.velocities, areas_, cut_.free_count};
   for (const Finger finger : kFingers) {
     linearised_[finger].clear();
     if (!fingertips[finger]) continue;
     for (const TouchedParticle& touched :
-         contacts_[finger].evaluate(particles, *fingertips[finger])) {
+         contacts_[finger].evaluate(particlesAt(predicted_, finger), *fingertips[finger])) {
       linearised_[finger].push_back(touched);
       rhs_.col(touched.particle) += h * touched.force();
       matrix_.diagonal(touched.particle) += h * h * touched.stiffness + h * touched.damping;
@@ -186,6 +194,7 @@ bool Patch::solve(double h) {
 
 bool Patch::advance(const LargeScaleMotion& motion,
                     const base::PerFinger<const Fingertip*>& fingertips, double h) {
+  if (layers_) layers_->update(motion, fingertips, h);
   assemble(motion, h);
   addContact(fingertips, h);
   if (!solve(h)) return false;
@@ -195,14 +204,13 @@ bool Patch::advance(const LargeScaleMotion& motion,
     contact_forces_[i] = 0.0;
   }
   state_.time += h;
-  const Particles particles{state_.positions, state_.velocities, areas_, cut_.free_count};
   for (const Finger finger : kFingers) {
     if (!fingertips[finger]) {
       contacts_[finger].clear();
       continue;
     }
     for (const TouchedParticle& touched :
-         contacts_[finger].commit(particles, *fingertips[finger])) {
+         contacts_[finger].commit(particles(finger), *fingertips[finger])) {
       contact_forces_[touched.particle] += touched.force().norm();
     }
   }

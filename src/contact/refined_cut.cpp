@@ -132,6 +132,7 @@ RefinedCut cutAndRefine(const mesh::ClothMesh& mesh, const MeshTopology& topolog
   for (int triangle : triangles) builder.split(triangle);
   RefinedCut& cut = builder.cut;
   cut.refinement = refinement;
+  cut.elements = triangles;
 
   const Rim rim(mesh, topology, triangles, attached);
   const int count = static_cast<int>(cut.supports.size());

@@ -29,7 +29,8 @@ void SphereContact::adoptAnchor(int particle, const SphereContact& other, int ot
 
 bool SphereContact::touch(int i, const Particles& particles, const Fingertip& fingertip,
                           TouchedParticle& result) const {
-  const double reach = fingertip.radius + law_.halfThickness();
+  const double layers = particles.layers_before ? (*particles.layers_before)[i] : 0.0;
+  const double reach = fingertip.radius + law_.reachThrough(std::ceil(layers));
   const Vector3d offset = particles.positions[i] - fingertip.position;
   const double squared_distance = offset.squaredNorm();
   if (!(squared_distance < reach * reach)) return false;
@@ -37,7 +38,9 @@ bool SphereContact::touch(int i, const Particles& particles, const Fingertip& fi
   if (distance < kNoDirection) return false;
   const Vector3d normal = offset / distance;
   const double area = particles.areas[i];
-  const material::CurveValue pressure = law_.pressure(reach - distance);
+  const material::CurveValue pressure =
+      layers > 0.0 ? law_.pressureThrough(layers, distance - fingertip.radius)
+                   : law_.pressure(reach - distance);
   const Vector3d sliding =
       particles.velocities[i] - fingertip.velocity - fingertip.angular_velocity.cross(offset);
   // Hunt and Crossley 1975: damping in proportion to the elastic force, so it starts from zero.

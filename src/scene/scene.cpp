@@ -273,9 +273,15 @@ Scene readScene(const std::string& path, double cell_size) {
   }
   scene.time_step = readTimeStep(file.at("time_step"));
   scene.step = readStepSettings(file);
+  const bool among_obstacles = scene.effects.contacts;
   if (scene.effects.self_collision &&
-      scene.step.method != cloth::IntegrationMethod::kBackwardEuler) {
-    file.at("integrator").refuse("is not allowed if model lists self_collision: backward_euler is");
+      !cloth::collidesWithItself(scene.step.method, among_obstacles)) {
+    file.at("integrator")
+        .refuse(
+            among_obstacles
+                ? "is not allowed if model lists self_collision and obstacles: backward_euler is"
+                : "is not allowed if model lists self_collision: backward_euler, bdf2 and "
+                  "tr_bdf2 are");
   }
   if (file.has("obstacles")) scene.obstacles = readObstacles(file.at("obstacles"));
   if (scene.effects.contacts && scene.obstacles.empty()) {

@@ -38,6 +38,7 @@ void forEachField(Case& extreme, Visit&& visit) {
   visit("disturbed_steps", extreme.disturbed_steps);
   visit("free_steps", extreme.free_steps);
   visit("magnitude", extreme.magnitude);
+  visit("self_collision", extreme.self_collision);
 }
 
 template <typename T>
@@ -190,6 +191,21 @@ ExtremeCase drawExtremeCase(std::uint64_t seed, ExtremeKind kind) {
   extreme.magnitude = drawMagnitude(random, kind);
   if (kind == ExtremeKind::kFingertips) drawTouched(random, extreme);
   return extreme;
+}
+
+bool allowsSelfCollision(const ExtremeCase& extreme) {
+  return cloth::collidesWithItself(extreme.method, false);
+}
+
+std::vector<ExtremeCase> drawSelfCollidingCases(std::uint64_t first, std::size_t count) {
+  std::vector<ExtremeCase> cases;
+  for (std::uint64_t seed = first; cases.size() < count; ++seed) {
+    ExtremeCase extreme = drawExtremeCase(seed);
+    if (!allowsSelfCollision(extreme)) continue;
+    extreme.self_collision = true;
+    cases.push_back(extreme);
+  }
+  return cases;
 }
 
 std::string toText(const ExtremeCase& extreme) {

@@ -89,20 +89,24 @@ cloth::StepSettings settingsOf(const ExtremeCase& extreme) {
 /// Steps until the cloth is at rest; false if it is not after most_steps, or does not move any
 /// more.
 bool settleBy(const cloth::StepSettings& settings, int most_steps, double period,
-              const cloth::Cloth& cloth, const cloth::ClothState& rest, cloth::ClothState& state,
-              Settling& settling) {
+              const cloth::Cloth& cloth, const cloth::ClothState& rest,
+              IntersectionWatch& intersections, cloth::ClothState& state, Settling& settling) {
   constexpr double kStepsPerPeriod = 6.0;
   constexpr int kStillSteps = 300;
   cloth::Integrator integrator(cloth, settings);
   const double slow = kReturnTolerance * extentOf(rest) / period;  // m/s
   double time_step = std::min(kFirstStep, period / kStepsPerPeriod);
   int still = 0;
-  EnergyWatch watch(0);
+  EnergyWatch watch(intersections.isTangled() ? kUnwatchedTangled : 0);
   for (int i = 0; i < most_steps; ++i) {
     const cloth::ClothState before = state;
-    if (!integrator.step(cloth, state, time_step).accepted) ++settling.rejected;
+    watch.begin(cloth, before);
+    const cloth::StepReport report = integrator.step(cloth, state, time_step);
+    if (!report.accepted) ++settling.rejected;
     ++settling.steps;
-    settling.growth = base::largerOrNaN(settling.growth, watch.growth(cloth, before, state));
+    settling.growth = base::largerOrNaN(settling.growth,
+                                        watch.growth(cloth, before, state, report.tangle.energy));
+    settling.intersects = settling.intersects || intersections.failsAt(state);
     settling.error = distanceBetween(state, rest);
     const double speed = largestSpeed(state);
     if (settling.error <= kReturnTolerance && speed <= slow) return true;
@@ -113,15 +117,6 @@ bool settleBy(const cloth::StepSettings& settings, int most_steps, double period
     time_step = std::min(kStepGrowth * time_step, period / kStepsPerPeriod);
   }
   return false;
-}
-
-/// What kRoundingGrowth refers to (J), but for the energies themselves.
-double weightScale(const cloth::Cloth& cloth, const cloth::ClothState& state) {
-  double scale = 0.0;
-  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    scale += cloth.masses()[i] * cloth.effects().gravity.norm() * state.positions[i].norm();
-  }
-  return scale;
 }
 
 /// Out of an equilibrium that is not stable.
@@ -152,6 +147,7 @@ cloth::Cloth clothOf(const ExtremeCase& extreme, const mesh::ClothMesh& mesh,
   effects.viscosity = extreme.viscosity > 0.0;
   effects.bending = extreme.bending > 0.0;
   effects.air = air;
+  effects.self_collision = extreme.self_collision;
   if (!extreme.taut) effects.gravity = {0.0, 0.0, -base::kStandardGravity};
   cloth::Cloth cloth(mesh, fabricOf(extreme), effects);
   for (int particle : attachedParticles(extreme, mesh)) {
@@ -160,36 +156,6 @@ cloth::Cloth clothOf(const ExtremeCase& extreme, const mesh::ClothMesh& mesh,
     cloth.attach(particle, place);
   }
   return cloth;
-}
-
-double energyOf(const cloth::Cloth& cloth, const cloth::ClothState& state) {
-  double energy = cloth.potentialEnergy(state);
-  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (cloth.attachments()[i]) continue;
-    energy += 0.5 * cloth.masses()[i] * state.velocities[i].squaredNorm();
-  }
-  return energy;
-}
-
-bool isFinite(const cloth::ClothState& state) {
-  const auto finite = [](const Eigen::Vector3d& vector) { return vector.allFinite(); };
-  return std::isfinite(state.time) &&
-         std::all_of(state.positions.begin(), state.positions.end(), finite) &&
-         std::all_of(state.velocities.begin(), state.velocities.end(), finite);
-}
-
-double EnergyWatch::growth(const cloth::Cloth& cloth, const cloth::ClothState& before,
-                           const cloth::ClothState& after) {
-  energies_.push_back(energyOf(cloth, before));
-  if (energies_.size() > cloth::EnergyBalance::kRemembered + 1) energies_.pop_front();
-  if (unwatched_ > 0) {
-    --unwatched_;
-    return 0.0;
-  }
-  const double most = *std::max_element(energies_.begin(), energies_.end());
-  const double energy = energyOf(cloth, after);
-  const double scale = std::abs(most) + std::abs(energy) + weightScale(cloth, after);
-  return base::largerOrNaN(0.0, scale > 0.0 ? (energy - most) / scale : 0.0);
 }
 
 cloth::ClothState restOf(const cloth::Cloth& cloth) {
@@ -210,6 +176,13 @@ cloth::ClothState restOf(const cloth::Cloth& cloth) {
   throw std::runtime_error("the undisturbed cloth has not come to rest");
 }
 
+cloth::Cloth apart(const ExtremeCase& extreme, const mesh::ClothMesh& mesh,
+                   const std::optional<cloth::Air>& air) {
+  ExtremeCase other = extreme;
+  other.self_collision = false;
+  return clothOf(other, mesh, air);
+}
+
 double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& other) {
   double largest = 0.0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
@@ -219,24 +192,26 @@ double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& 
 }
 
 Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
-                const cloth::ClothState& rest, cloth::ClothState& state) {
+                const cloth::ClothState& rest, IntersectionWatch& intersections,
+                cloth::ClothState& state) {
   constexpr int kMaxSteps = 200, kMaxSolvedSteps = 20000;
   Settling settling;
   const double period = slowestPeriod(extreme, extentOf(rest));
-  settling.slow = !settleBy(settingsOf(extreme), kMaxSteps, period, cloth, rest, state, settling);
-  if (settling.slow) {
-    settleBy(kes::solvedSettings(kNewtonTolerance), kMaxSolvedSteps, period, cloth, rest, state,
-             settling);
+  settling.slow = !settleBy(settingsOf(extreme), kMaxSteps, period, cloth, rest, intersections,
+                            state, settling);
+  if (settling.slow && !extreme.self_collision) {
+    settleBy(kes::solvedSettings(kNewtonTolerance), kMaxSolvedSteps, period, cloth, rest,
+             intersections, state, settling);
   }
   return settling;
 }
 
 void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
-                    const cloth::ClothState& rest, cloth::ClothState& state,
-                    ExtremeOutcome& outcome) {
+                    const cloth::ClothState& rest, IntersectionWatch& intersections,
+                    cloth::ClothState& state, ExtremeOutcome& outcome) {
   Settling settling;
   const auto comes_to_rest_elsewhere = [&] {
-    settling = settle(extreme, cloth, rest, state);
+    settling = settle(extreme, cloth, rest, intersections, state);
     outcome.growth = base::largerOrNaN(outcome.growth, settling.growth);
     outcome.rejected += settling.rejected;
     outcome.settling_steps += settling.steps;
@@ -244,7 +219,7 @@ void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
     return settling.error > kReturnTolerance && settling.unbalanced <= kBalanced;
   };
   bool elsewhere = comes_to_rest_elsewhere();
-  if (elsewhere && extreme.taut) {
+  if (elsewhere && extreme.taut && !extreme.self_collision) {
     const cloth::ClothState before = state;
     push(extreme, cloth, state);
     elsewhere = comes_to_rest_elsewhere() && distanceBetween(state, before) <= kReturnTolerance;
@@ -254,6 +229,11 @@ void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
     outcome.failure = ExtremeFailure::kNotFinite;
   } else if (!(outcome.growth <= kRoundingGrowth)) {
     outcome.failure = ExtremeFailure::kEnergyGrew;
+  } else if (settling.intersects) {
+    outcome.failure = ExtremeFailure::kIntersects;
+  } else if (extreme.self_collision) {
+    outcome.other_rest = elsewhere;
+    outcome.unsettled = !(settling.error <= kReturnTolerance) && !elsewhere;
   } else if (!(settling.error <= kReturnTolerance)) {
     outcome.other_rest = elsewhere;
     if (!elsewhere) outcome.failure = ExtremeFailure::kNoReturn;

@@ -33,10 +33,12 @@ class TouchedRun {
         random_(extreme.seed + 2),
         mesh_(meshOf(extreme)),
         untouched_(clothOf(extreme, mesh_, std::nullopt)),
-        rest_(restOf(untouched_)),
-        loop_(loopSettings(extreme, restingMesh(), untouched_)) {}
+        rest_(restOf(apart(extreme, mesh_, std::nullopt))),
+        loop_(loopSettings(extreme, restingMesh(), untouched_)),
+        intersections_(untouched_) {}
 
   ExtremeOutcome run() {
+    intersections_.failsAt(rest_);
     for (int i = 0; i < extreme_.disturbed_steps && !failed(); ++i) hold(drawFingertips(), kHold);
     // What the fingertips have done last acts in the step after the next state.
     hold({}, kHold + 2.0 * extreme_.longest_step);
@@ -44,7 +46,7 @@ class TouchedRun {
     for (int i = 0; i < extreme_.free_steps && !failed(); ++i) watch();
     if (failed()) return outcome_;
     cloth::ClothState state = loop_.state();
-    settleAndJudge(extreme_, untouched_, rest_, state, outcome_);
+    settleAndJudge(extreme_, untouched_, rest_, intersections_, state, outcome_);
     return outcome_;
   }
 
@@ -77,8 +79,17 @@ class TouchedRun {
       loop_.step(fingertips);
       ++outcome_.steps;
       requireSoundContacts();
-      if (!isFinite(loop_.state())) outcome_.failure = ExtremeFailure::kNotFinite;
+      requireSoundState();
     }
+  }
+
+  void requireSoundState() {
+    if (!isFinite(loop_.state())) {
+      outcome_.failure = ExtremeFailure::kNotFinite;
+    } else if (loop_.state().time != judged_ && intersections_.failsAt(loop_.state())) {
+      outcome_.failure = ExtremeFailure::kIntersects;
+    }
+    judged_ = loop_.state().time;
   }
 
   /// The pressure of the largest depth, that of the centre, on the whole sheet, with friction and
@@ -105,6 +116,7 @@ class TouchedRun {
   /// A step of the large-scale cloth without fingertips: nothing does work.
   void watch() {
     const cloth::ClothState before = loop_.state();
+    watch_.begin(untouched_, before);
     while (loop_.state().time == before.time) {
       loop_.step({});
       ++outcome_.steps;
@@ -113,6 +125,8 @@ class TouchedRun {
         return;
       }
     }
+    requireSoundState();
+    if (failed()) return;
     outcome_.growth =
         base::largerOrNaN(outcome_.growth, watch_.growth(untouched_, before, loop_.state()));
     if (!(outcome_.growth <= kRoundingGrowth)) outcome_.failure = ExtremeFailure::kEnergyGrew;
@@ -124,6 +138,8 @@ class TouchedRun {
   cloth::Cloth untouched_;
   cloth::ClothState rest_;
   oracles::HapticLoop loop_;
+  IntersectionWatch intersections_;
+  double judged_ = 0.0;  // s, simulated
   EnergyWatch watch_{cloth::EnergyBalance::kRemembered};
   ExtremeOutcome outcome_;
 };

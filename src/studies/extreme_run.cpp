@@ -37,19 +37,22 @@ class Run {
         random_(extreme.seed + 2),
         mesh_(meshOf(extreme)),
         cloth_(clothOf(extreme, mesh_, airOf(extreme, false))),
-        rest_(restOf(cloth_)),
+        rest_(restOf(apart(extreme, mesh_, airOf(extreme, false)))),
         state_(rest_),
-        integrator_(cloth_, settingsOf(extreme)) {}
+        integrator_(cloth_, settingsOf(extreme)),
+        intersections_(cloth_) {}
 
   ExtremeOutcome run() {
     disturb();
+    intersections_.failsAt(state_);
+    if (intersections_.isTangled()) watch_ = EnergyWatch(kUnwatchedTangled);
     for (int i = 0; i < extreme_.free_steps && !failed(); ++i) freeStep();
     if (failed() || !cloth::isImplicit(extreme_.method)) return outcome_;
     if (rejected_in_a_row_ >= kStuckSteps) {
       outcome_.failure = ExtremeFailure::kStuck;
       return outcome_;
     }
-    settleAndJudge(extreme_, cloth_, rest_, state_, outcome_);
+    settleAndJudge(extreme_, cloth_, rest_, intersections_, state_, outcome_);
     return outcome_;
   }
 
@@ -122,20 +125,29 @@ class Run {
     watch_ = EnergyWatch(kUnwatched);
   }
 
-  void step(const cloth::Cloth& cloth, double h) {
-    const bool accepted = integrator_.step(cloth, state_, h).accepted;
+  /// @return J, what pulling tangles apart has added
+  double step(const cloth::Cloth& cloth, double h) {
+    const cloth::StepReport report = integrator_.step(cloth, state_, h);
+    const bool accepted = report.accepted;
     ++outcome_.steps;
     outcome_.rejected += !accepted;
     rejected_in_a_row_ = accepted ? 0 : rejected_in_a_row_ + 1;
-    if (!isFinite(state_)) outcome_.failure = ExtremeFailure::kNotFinite;
+    if (!isFinite(state_)) {
+      outcome_.failure = ExtremeFailure::kNotFinite;
+    } else if (intersections_.failsAt(state_)) {
+      outcome_.failure = ExtremeFailure::kIntersects;
+    }
+    return report.tangle.energy;
   }
 
   /// In which nothing does work on the cloth.
   void freeStep() {
     const cloth::ClothState before = state_;
-    step(cloth_, drawStep());
+    watch_.begin(cloth_, before);
+    const double pulling = step(cloth_, drawStep());
     if (!failed() && cloth::isImplicit(extreme_.method)) {
-      outcome_.growth = base::largerOrNaN(outcome_.growth, watch_.growth(cloth_, before, state_));
+      outcome_.growth =
+          base::largerOrNaN(outcome_.growth, watch_.growth(cloth_, before, state_, pulling));
       if (!(outcome_.growth <= kRoundingGrowth)) outcome_.failure = ExtremeFailure::kEnergyGrew;
     }
   }
@@ -147,6 +159,7 @@ class Run {
   cloth::ClothState rest_;
   cloth::ClothState state_;
   cloth::Integrator integrator_;
+  IntersectionWatch intersections_;
   ExtremeOutcome outcome_;
   EnergyWatch watch_{0};
   int rejected_in_a_row_ = 0;
@@ -164,6 +177,8 @@ const char* nameOf(ExtremeFailure failure) {
       return "stuck";
     case ExtremeFailure::kEnergyGrew:
       return "energy_grew";
+    case ExtremeFailure::kIntersects:
+      return "intersects";
     case ExtremeFailure::kNoReturn:
       return "no_return";
     case ExtremeFailure::kNone:

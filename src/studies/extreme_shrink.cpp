@@ -39,6 +39,7 @@ Change approachDecade(double ExtremeCase::*field, double value) {
 /// The strong ones first.
 std::vector<Change> changes() {
   std::vector<Change> result = {
+      [](ExtremeCase& e) { e.self_collision = false; },
       setTo(&ExtremeCase::bending, 0.0),
       setTo(&ExtremeCase::viscosity, 0.0),
       setTo(&ExtremeCase::stiffening, 1.0),

@@ -16,11 +16,13 @@ TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
   for (const auto kind : {HapticSettings::Layer::kPatch, HapticSettings::Layer::kWholeCloth}) {
     HapticSettings settings;
     settings.layer = kind;
-    HapticLayer layer(mesh, wool(), {true, {0.0, 0.0, -9.81}}, settings);
+    const bool patches = kind == HapticSettings::Layer::kPatch;
+    cloth::ModelledEffects effects{true, {0.0, 0.0, -9.81}};
+    effects.self_collision = patches;
+    HapticLayer layer(mesh, wool(), effects, settings);
     const auto prepare = [&](double u) {
       return layer.preparePatch(trianglesAround(mesh, {u, 0.02}, 0.01), nothingAttached(mesh));
     };
-    const bool patches = kind == HapticSettings::Layer::kPatch;
     std::unique_ptr<Patch> first = patches ? prepare(0.02) : nullptr;
     std::unique_ptr<Patch> second = patches ? prepare(0.025) : nullptr;
     Fingertip index = pressing(layer.law(), kSmallSampleMiddle, 1e-3);

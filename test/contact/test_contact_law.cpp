@@ -163,5 +163,32 @@ TEST(ContactLaw, RefusesPulpsThatAreNone) {
   EXPECT_EQ(refusalOf(fabric, {1e7, nan}), "pulp: damping nan must be finite and > 0");
 }
 
+// k layers and a half are the half of one fabric that is 2 k + 1 times as thick.
+TEST(ContactLaw, PutsLayersInSeries) {
+  const Compression one = softCompression();
+  const ContactLaw layered(fabricWith(one), {}, 4);
+  for (int before = 0; before < 4; ++before) {
+    const ContactLaw thick(fabricWith({(2 * before + 1) * one.thickness, one.pressure}));
+    const double reach = layered.reachThrough(before);
+    EXPECT_DOUBLE_EQ(reach, thick.halfThickness());
+    for (const double depth : {-1e-5, 1e-6, 5e-5, 2e-4, 6e-4}) {
+      const CurveValue value = layered.pressureThrough(before, reach - depth);
+      const CurveValue exact = thick.pressure(depth);
+      EXPECT_NEAR(value.stress, exact.stress, 1e-9 * (1.0 + exact.stress)) << before;
+      EXPECT_NEAR(value.slope, exact.slope, 1e-9 * (1.0 + exact.slope)) << before;
+    }
+  }
+}
+
+TEST(ContactLaw, GoesOnEvenlyFromOneNumberOfLayersToTheNext) {
+  const ContactLaw law(fabricWith(softCompression()), {}, 3);
+  const double distance = 3e-4;
+  const double none = law.pressureThrough(0.0, distance).stress;
+  const double one = law.pressureThrough(1.0, distance).stress;
+  ASSERT_GT(one, none);
+  EXPECT_NEAR(law.pressureThrough(0.25, distance).stress, 0.75 * none + 0.25 * one, 1e-9 * one);
+  EXPECT_NEAR(law.pressureThrough(1.0 - 1e-9, distance).stress, one, 1e-6 * one);
+}
+
 }  // namespace
 }  // namespace haptex::contact::test_contact_law

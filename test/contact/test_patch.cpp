@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "fixtures.h"
 
@@ -111,6 +112,31 @@ TEST_F(PatchTest, WhatTheFingertipPressesTheRimHolds) {
   double speed = 0.0;
   for (const Vector3d& velocity : patch.velocities()) speed = std::max(speed, velocity.norm());
   EXPECT_LT(speed, 1e-6);
+}
+
+TEST_F(PatchTest, OfClothThatCollidesWithItselfIsTheSameToTheBitWhereItIsOneLayer) {
+  effects_.viscosity = true;
+  const auto pinched = [&](bool self_collision) {
+    effects_.self_collision = self_collision;
+    const ContactLaw law(fabric_, {}, self_collision ? LayersBetween::kMost : 1);
+    Patch patch(mesh_,
+                cutAndRefine(mesh_, topology_, trianglesAround(mesh_, {0.02, 0.02}, 0.01),
+                             nothingAttached(mesh_), 2),
+                fabric_, effects_, law);
+    LargeScaleMotion motion(mesh_.rest_coordinates.size());
+    motion.receive(mesh_.initial_positions, 0.02);
+    patch.start(motion);
+    const Fingertip index = pressing(law, kSmallSampleMiddle, 4e-4);
+    Fingertip thumb = index;
+    thumb.position.x() *= -1.0;
+    for (int i = 0; i < 100; ++i) {
+      motion.advance(kStep);
+      EXPECT_TRUE(patch.advance(motion, {&index, &thumb}, kStep));
+    }
+    EXPECT_LT(forceOn(patch).x(), -0.01);
+    return std::make_pair(patch.positions(), forceOn(patch));
+  };
+  EXPECT_EQ(pinched(true), pinched(false));
 }
 
 TEST_F(PatchTest, ForgetsContactWhenTheFingertipIsGoneAndReturnsToRest) {

@@ -68,9 +68,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "bending, bending_hysteresis, contraction, self_collision, air, wind, obstacles, "
                 "fingers, tactile, recording"},
         Refusal{"SelfCollisionOfOtherIntegrators", "[gravity, viscosity]",
-                "[self_collision]\nintegrator: bdf2",
-                "integrator: 'bdf2' is not allowed if model lists self_collision: backward_euler "
-                "is"},
+                "[self_collision]\nintegrator: backward_midpoint",
+                "integrator: 'backward_midpoint' is not allowed if model lists self_collision: "
+                "backward_euler, bdf2 and tr_bdf2 are"},
+        Refusal{"SelfCollisionAmongObstaclesOfOtherIntegrators", "[gravity, viscosity]",
+                "[self_collision, obstacles]\nintegrator: bdf2",
+                "integrator: 'bdf2' is not allowed if model lists self_collision and obstacles: "
+                "backward_euler is"},
         Refusal{"UnknownElasticity", "attach:", "elasticity: rubber\nattach:",
                 "elasticity: 'rubber' must be one of green_lagrange, mass_spring, corotational"},
         Refusal{"ContractionOfSprings", "[gravity, viscosity]",

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "haptex/base/workload.h"
+#include "haptex/studies/extreme_cloth.h"
 #include "haptex/studies/extreme_run.h"
 #include "haptex/studies/extreme_shrink.h"
 #include "haptex/studies/stability_map.h"
@@ -27,6 +28,52 @@ TEST_P(EveryExtremeKind, StaysFiniteGainsNoEnergyAndComesBackToRest) {
         << " return error " << outcome.return_error << '\n'
         << toText(extreme);
   }
+}
+
+TEST_P(EveryExtremeKind, CollidesWithItselfWithoutIntersectingOrGainingEnergy) {
+  constexpr std::uint64_t kFirst = 2000000, kCases = base::unlessSanitized(12, 3);
+  for (std::uint64_t seed = kFirst; seed < kFirst + kCases; ++seed) {
+    ExtremeCase extreme = drawExtremeCase(seed, GetParam().kind);
+    if (!allowsSelfCollision(extreme)) continue;
+    extreme.self_collision = true;
+    const ExtremeOutcome outcome = runExtremeCase(extreme);
+    EXPECT_EQ(outcome.failure, ExtremeFailure::kNone)
+        << nameOf(outcome.failure) << ' ' << outcome.message << " growth " << outcome.growth << '\n'
+        << toText(extreme);
+  }
+}
+
+TEST(ExtremeCase, CollidesWithItselfOnlyWhereAskedTo) {
+  const std::vector<ExtremeCase> cases = drawSelfCollidingCases(100, 30);
+  ASSERT_EQ(cases.size(), 30u);
+  for (ExtremeCase extreme : cases) {
+    EXPECT_TRUE(extreme.self_collision);
+    EXPECT_TRUE(allowsSelfCollision(extreme));
+    extreme.self_collision = false;
+    EXPECT_EQ(toText(extreme), toText(drawExtremeCase(extreme.seed)));
+  }
+  ExtremeCase explicit_method = cases.front();
+  explicit_method.method = IntegrationMethod::kRungeKutta4;
+  EXPECT_FALSE(allowsSelfCollision(explicit_method));
+}
+
+TEST(IntersectionWatch, SaysWhenWhatWasFreeIntersects) {
+  ExtremeCase extreme;
+  extreme.self_collision = true;
+  const mesh::ClothMesh mesh = meshOf(extreme);
+  const cloth::Cloth cloth = clothOf(extreme, mesh, std::nullopt);
+  cloth::ClothState tangled = cloth.initialState();
+  // A corner of the sheet goes through its middle.
+  tangled.positions[0] = tangled.positions.back() -
+                         0.3 * (tangled.positions.back() - tangled.positions[0]) +
+                         Eigen::Vector3d(0.01, 0.0, 0.0);
+  tangled.positions[1].x() -= 0.02;
+  IntersectionWatch watch(cloth);
+  EXPECT_FALSE(watch.failsAt(tangled));
+  ASSERT_TRUE(watch.isTangled());
+  EXPECT_FALSE(watch.failsAt(cloth.initialState()));
+  EXPECT_FALSE(watch.isTangled());
+  EXPECT_TRUE(watch.failsAt(tangled));
 }
 
 TEST(ExtremeCase, IsTheSameForTheSameSeedInEveryBuild) {

@@ -1,6 +1,8 @@
 // Pressure and friction between a fingertip and a fabric.
 #pragma once
 
+#include <vector>
+
 #include "haptex/material/fabric.h"
 #include "haptex/material/strain_stress_curve.h"
 
@@ -27,12 +29,24 @@ struct PulpSettings {
 /// for the pressure.
 class ContactLaw {
  public:
+  /// @param most_layers of folded cloth that a fingertip may push through, >= 1
   /// @throws std::invalid_argument if the fabric has no compression or no friction, or a setting is
   ///   not finite and > 0
-  ContactLaw(const material::Fabric& fabric, const PulpSettings& pulp = {});
+  ContactLaw(const material::Fabric& fabric, const PulpSettings& pulp = {}, int most_layers = 1);
 
   /// Pressure (Pa) and its slope (Pa/m) at a depth (m); zero where depth <= 0.
   material::CurveValue pressure(double depth) const;
+  /// The same of a place whose middle surface is `distance` (m) from the fingertip's surface, with
+  /// other layers of the fabric in between, all in series:
+  ///   (layers + 1/2) thickness - distance
+  ///     = pressure / pulp stiffness + (layers + 1/2) (thickness - compressed thickness(pressure)),
+  /// interpolated in straight lines between whole numbers of them.
+  /// @param layers_before from 0 to most_layers - 1
+  material::CurveValue pressureThrough(double layers_before, double distance) const;
+  /// m: the distance of pressureThrough() from which on there is no pressure.
+  double reachThrough(double layers_before) const {
+    return (2.0 * layers_before + 1.0) * half_thickness_;
+  }
   double halfThickness() const { return half_thickness_; }  ///< m, uncompressed
   double friction() const { return friction_; }             ///< coefficient, MIU
   double damping() const { return damping_; }               ///< s/m, of Hunt and Crossley
@@ -40,7 +54,7 @@ class ContactLaw {
   double tangentialStiffness() const { return tangential_stiffness_; }
 
  private:
-  material::StrainStressCurve pressure_;
+  std::vector<material::StrainStressCurve> pressures_;  // by layers before, 0 at least
   double half_thickness_;
   double friction_;
   double damping_;

@@ -3,12 +3,14 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/forces/force_sum.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
+#include "haptex/contact/layers_between.h"
 #include "haptex/contact/patch_solver.h"
 #include "haptex/contact/refined_cut.h"
 #include "haptex/contact/sphere_contact.h"
@@ -26,6 +28,7 @@ class Patch {
  public:
   /// @param coarse  the mesh that was cut
   /// @param fabric  with bending
+  /// @param law     for LayersBetween::kMost layers if effects are with self_collision
   Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
         const cloth::ModelledEffects& effects, const ContactLaw& law);
 
@@ -64,7 +67,11 @@ class Patch {
     return cut_.mesh.rest_coordinates[particle];
   }
   const std::vector<Eigen::Vector3d>& velocities() const { return state_.velocities; }
-  const std::vector<double>& areas() const { return areas_; }
+  /// Per particle, at rest (m^2); where layers of cloth that collides with itself lie on each other
+  /// in a pinch, over their number (LayersBetween).
+  const std::vector<double>& areas() const { return layers_ ? layers_->areas() : areas_; }
+  /// What a fingertip may touch.
+  Particles particles(base::Finger finger) const { return particlesAt(state_.positions, finger); }
 
   /// A^-1 k e with the matrix A = M - h D - h^2 K of the last step: k are the contact stiffnesses
   /// of the particles at a fingertip, e the unit vector of a direction (0 to 2).
@@ -76,6 +83,7 @@ class Patch {
   bool stepWasShort() const { return solver_.wasShort(); }
 
  private:
+  Particles particlesAt(const std::vector<Eigen::Vector3d>& positions, base::Finger finger) const;
   void assemble(const LargeScaleMotion& motion, double h);
   bool solve(double h);
   void addContact(const base::PerFinger<const Fingertip*>& fingertips, double h);
@@ -84,8 +92,9 @@ class Patch {
   std::vector<std::array<int, 3>> corners_;  // per particle: those of its owner
   cloth::ModelledEffects effects_;
   cloth::ForceSum forces_;
-  std::vector<double> areas_;   // m^2, per particle
-  std::vector<double> masses_;  // kg
+  std::vector<double> areas_;            // m^2, per particle
+  std::vector<double> masses_;           // kg
+  std::optional<LayersBetween> layers_;  // of cloth that collides with itself
   linear::SymmetricBlockMatrix matrix_;
   PatchSolver solver_;
 

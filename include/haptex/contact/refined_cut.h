@@ -46,6 +46,7 @@ struct RefinedCut {
   mesh::ClothMesh mesh;  ///< initial positions are zero
   int free_count = 0;    ///< particles before the rim
   int refinement = 0;
+  std::vector<int> elements;             ///< of the original mesh, that were cut
   std::vector<Support> supports;         ///< per particle
   std::vector<int> owners;               ///< per particle, a triangle of the original mesh
   std::vector<Eigen::Vector3d> weights;  ///< per particle, of its owner's corners, sum 1

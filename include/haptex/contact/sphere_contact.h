@@ -16,6 +16,8 @@ struct Particles {
   const std::vector<Eigen::Vector3d>& velocities;  ///< m/s
   const std::vector<double>& areas;                ///< m^2
   int count;                                       ///< only the first so many
+  /// Layers of cloth between the fingertip and each particle; null: none anywhere.
+  const std::vector<double>* layers_before = nullptr;
 };
 
 /// A particle in contact.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "haptex/base/repeatable_random.h"
 #include "haptex/cloth/dynamics/step.h"
@@ -81,11 +82,17 @@ struct ExtremeCase {
   /// Of the disturbance: cells of displacement, m of a jump, revolutions per second, m/s, factor of
   /// another fabric, m of a fingertip's leap.
   double magnitude = 1.0;
+  bool self_collision = false;  ///< only with backward Euler; drawn cases are without
 };
 
 /// @param seed that the whole case is drawn from, the same on every machine
 ExtremeCase drawExtremeCase(std::uint64_t seed);
 ExtremeCase drawExtremeCase(std::uint64_t seed, ExtremeKind kind);
+/// Whether its cloth may collide with itself: the integrator knows how.
+bool allowsSelfCollision(const ExtremeCase& extreme);
+/// From successive seeds on, every drawn case that allows it, with self_collision.
+/// @param first seed @param count of cases
+std::vector<ExtremeCase> drawSelfCollidingCases(std::uint64_t first, std::size_t count);
 
 /// One line of "name=value" for every field, which parseExtremeCase() reads back to the bit.
 std::string toText(const ExtremeCase& extreme);

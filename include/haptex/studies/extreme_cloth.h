@@ -1,13 +1,13 @@
 // The cloth of an extreme case, at rest, disturbed and at rest again.
 #pragma once
 
-#include <deque>
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/studies/extreme_case.h"
 #include "haptex/studies/extreme_outcome.h"
+#include "haptex/studies/extreme_watch.h"
 
 namespace haptex::studies {
 
@@ -18,25 +18,10 @@ std::vector<int> attachedParticles(const ExtremeCase& extreme, const mesh::Cloth
 cloth::Cloth clothOf(const ExtremeCase& extreme, const mesh::ClothMesh& mesh,
                      const std::optional<cloth::Air>& air);
 
-/// Kinetic energy of the free particles and potential energy (J).
-double energyOf(const cloth::Cloth& cloth, const cloth::ClothState& state);
-bool isFinite(const cloth::ClothState& state);
-
-/// Watches that steps in which nothing does work gain no energy beyond what EnergyBalance allows.
-class EnergyWatch {
- public:
-  /// @param unwatched steps at first that may gain what was lost while work was done
-  explicit EnergyWatch(int unwatched) : unwatched_(unwatched) {}
-
-  /// By how much the energy after a step is above what it may be, over the scale of the energies;
-  /// 0 if it is not, or the step is not watched.
-  double growth(const cloth::Cloth& cloth, const cloth::ClothState& before,
-                const cloth::ClothState& after);
-
- private:
-  int unwatched_;
-  std::deque<double> energies_;  // J, before the last steps
-};
+/// The same without collision with itself. Flat cloth has the same rest, but soft cloth, which
+/// gravity stretches by metres, gets there in fewer steps.
+cloth::Cloth apart(const ExtremeCase& extreme, const mesh::ClothMesh& mesh,
+                   const std::optional<cloth::Air>& air);
 
 /// The cloth's rest state, from its initial positions.
 /// @throws std::runtime_error if it does not come to rest
@@ -49,10 +34,12 @@ double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& 
 /// Lets the state come to rest by backward Euler, in steps that grow up to a sixth of the cloth's
 /// slowest period: with the solves per step of the case, and if that is too slow with as many as a
 /// step needs. What a linearised step stretches while it turns resists the turning, so stiff light
-/// cloth creeps.
+/// cloth creeps. Cloth that collides with itself is let go for as long as its own solves may need:
+/// friction and layers on layers let it rest in many ways, and how is not judged.
 struct Settling {
-  double error = 0.0;   ///< distanceBetween() state and rest at the end
-  double growth = 0.0;  ///< largest of EnergyWatch
+  double error = 0.0;       ///< distanceBetween() state and rest at the end
+  double growth = 0.0;      ///< largest of EnergyWatch
+  bool intersects = false;  ///< IntersectionWatch has failed
   int steps = 0;
   int rejected = 0;
   bool slow = false;  ///< the case's own solves did not suffice
@@ -60,10 +47,11 @@ struct Settling {
   double unbalanced = 0.0;
 };
 Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
-                const cloth::ClothState& rest, cloth::ClothState& state);
+                const cloth::ClothState& rest, IntersectionWatch& intersections,
+                cloth::ClothState& state);
 /// Lets it settle and tells what came out.
 void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
-                    const cloth::ClothState& rest, cloth::ClothState& state,
-                    ExtremeOutcome& outcome);
+                    const cloth::ClothState& rest, IntersectionWatch& intersections,
+                    cloth::ClothState& state, ExtremeOutcome& outcome);
 
 }  // namespace haptex::studies

@@ -11,6 +11,7 @@ enum class ExtremeFailure {
   kNotFinite,   ///< a number of the state, an energy or a fingertip's force is not finite
   kStuck,       ///< the last steps were rejected: the simulation did not go on
   kEnergyGrew,  ///< in steps in which nothing did work on the cloth
+  kIntersects,  ///< cloth that collides with itself, after a state without intersections
   kNoReturn,    ///< neither at the rest state at the end nor at another one
   kNone,
 };
@@ -21,6 +22,7 @@ const char* nameOf(ExtremeFailure failure);
 /// energies: kinetic and potential before and after, and what the sheet weighs times how far it
 /// hangs from the origin, to which gravity's energy refers.
 constexpr double kRoundingGrowth = 1e-10;
+/// With pulling tangles apart this is without what that adds (cloth::TangleReport).
 /// Largest distance of a particle from its place at rest, over the sheet's largest extent at rest,
 /// that counts as returned.
 constexpr double kReturnTolerance = 1e-3;
@@ -40,6 +42,7 @@ struct ExtremeOutcome {
   int settling_steps = 0;     ///< until the cloth was back
   bool slow = false;          ///< it came back with more solves per step only
   bool other_rest = false;    ///< it has come to rest elsewhere: folded, needles turned over
+  bool unsettled = false;     ///< cloth that collides with itself was still moving at the end
 };
 
 }  // namespace haptex::studies

@@ -41,10 +41,11 @@ const StepSettings& requireSound(const StepSettings& settings) {
 }
 
 void requireSelfCollision(const Cloth& cloth, IntegrationMethod method) {
-  if (!cloth.effects().self_collision || method == IntegrationMethod::kBackwardEuler) return;
-  throw std::invalid_argument(
-      std::string("self_collision is modelled, which only the integrator ") +
-      nameOf(IntegrationMethod::kBackwardEuler) + " knows, not " + nameOf(method));
+  const ModelledEffects& effects = cloth.effects();
+  if (!effects.self_collision || collidesWithItself(method, effects.contacts)) return;
+  throw std::invalid_argument(std::string("self_collision is modelled") +
+                              (effects.contacts ? " with obstacles" : "") +
+                              ", which the integrator " + nameOf(method) + " does not know");
 }
 
 bool allFinite(const std::vector<Vector3d>& vectors) {

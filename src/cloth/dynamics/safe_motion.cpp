@@ -14,6 +14,9 @@ constexpr int kMostWays = 16, kMostWaysAmongObstacles = 64;
 // What comes near stops half way into the thickness, where the pressure is still small, what is
 // nearer keeps most of its distance: it is for forces to bring it nearer.
 constexpr double kKept = 0.8;
+// Needles that are neighbours at rest have no pressure: a fifth less on every way, their distance
+// would be below the rounding of their places after a hundred. Below this one (m) it stays.
+constexpr double kLeast = 1e-12, kKeptBelow = 1.0 - 1e-9;
 
 }  // namespace
 
@@ -203,7 +206,7 @@ std::optional<SafeMotion::Touch> SafeMotion::touch(const Pair& pair) const {
   if (proximity::isSurelyApart(pair.kind, begin, reach)) return {};
   const proximity::PairDistance nearest = proximity::distanceOf(pair.kind, begin);
   const double distance = nearest.distance - pair.radius;
-  const double kept = std::min(margin, kKept * distance);
+  const double kept = std::min(margin, (distance > kLeast ? kKept : kKeptBelow) * distance);
   if (relative < distance - kept) return {};
   const auto time =
       proximity::earliestContact(pair.kind, begin, end, pair.radius + kept, nearest.weights);

@@ -116,7 +116,7 @@ bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
 void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                                   ClothState& result, StepReport& report) {
   const Clock::time_point start = Clock::now();
-  moveObstacles(cloth, stage, report);
+  moveObstacles(cloth, guess, report);
   linearise(cloth, stage, guess);
   report.assembly_seconds += seconds(Clock::now() - start);
   report.linear_converged = solveFirst(cloth, stage, guess, report) && report.linear_converged;
@@ -129,15 +129,16 @@ void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const 
   report.self_cut = keepApart(cloth, stage, start_, result);
 }
 
-/// Finds start_.
-void StageSolver::moveObstacles(const Cloth& cloth, const Stage& stage, StepReport& report) {
+/// Finds start_. The guess has been reached; the base of a method of several instants is a sum of
+/// states, which may intersect itself.
+void StageSolver::moveObstacles(const Cloth& cloth, const StageGuess& guess, StepReport& report) {
   if (!motion_) return;
   const SelfContact& contact = *cloth.selfContact();
   if (contact.obstacles() == nullptr) {
-    start_ = stage.base.positions;
+    start_ = guess.positions;
   } else {
     report.obstacle_cut =
-        motion_->push(contact.nearPairs(), *contact.obstacles(), stage.base.positions, start_);
+        motion_->push(contact.nearPairs(), *contact.obstacles(), guess.positions, start_);
   }
 }
 

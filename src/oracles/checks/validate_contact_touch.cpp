@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 constexpr double kRimTolerance = 0.005;
 constexpr double kLevelTolerance = 0.02;
 constexpr double kPinchTolerance = 0.02;
+constexpr double kLayersTolerance = 0.01;
 constexpr double kThicknessTolerance = 1e-3;
 constexpr double kAloneTolerance = 0.02;
 
@@ -162,6 +163,35 @@ void validatePinch(const material::Fabric& fabric, const Sink& sink) {
   sink(thickness);
 }
 
+/// Force of a pinch on layers that lie on each other against the integral of the law of one fabric
+/// as thick as all of them: the compression curves in series. Nothing else than for one layer.
+void validateLayers(const material::Fabric& fabric, int layers, const Sink& sink) {
+  HapticLoopSettings sample = tautLayers(fabric, layers, kRate);
+  sample.fabric.friction = 1e-6;
+  sample.haptics.refinement = 3;
+  sample.radii = {{kIndexRadius, kIndexRadius}};
+  HapticLoop loop(sample);
+  material::Fabric thick = fabric;
+  thick.compression->thickness *= layers;
+  const contact::ContactLaw law(thick);
+  Hand hand;
+  const double half_cell = 0.5 * kSampleSide / 32.0;
+  hand.middle = kMiddle + Vector3d(0.0, half_cell, half_cell);
+  hand.thumb_radius = kIndexRadius;
+  hand.gap = 2.0 * law.halfThickness() - 4e-4;
+  const auto step = [&](const Fingertips& fingertips) { loop.step(fingertips); };
+  for (int i = 1; i <= 5; ++i) {
+    move(hand, Vector3d::Zero(), -4e-4, 0.02, 1e-3, step);
+    move(hand, Vector3d::Zero(), 0.0, 0.3, 1e-3, step);
+    const double exact = pinchForce(law, kIndexRadius, hand.gap + 2.0 * kIndexRadius).force;
+    sink(base::relativeTo(exact,
+                          "contact/pinched_layers/" + std::to_string(layers) + "/" +
+                              std::to_string(4 * i + 4) + "e-4m",
+                          exact, loop.layer().contacts()[Finger::kIndex].force.x(),
+                          kLayersTolerance));
+  }
+}
+
 /// Forces (N) at five depths, 1 to 5 mm.
 std::vector<double> pressForces(const material::Fabric& fabric, int refinement) {
   HapticLoopSettings sample = tautSample(fabric, kStrain, kRate);
@@ -196,6 +226,8 @@ void validateContactTouch(const material::Fabric& fabric, const Sink& sink) {
   validateFree(fabric, sink);
   validateTwoPlaces(fabric, sink);
   validatePinch(fabric, sink);
+  validateLayers(fabric, 2, sink);
+  validateLayers(fabric, 3, sink);
   validateRefinement(fabric, sink);
 }
 

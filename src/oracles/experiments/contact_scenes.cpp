@@ -1,5 +1,6 @@
 #include "haptex/oracles/experiments/contact_scenes.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -63,6 +64,33 @@ HapticLoopSettings tautSample(const material::Fabric& fabric, double strain,
   return settings;
 }
 
+HapticLoopSettings tautLayers(const material::Fabric& fabric, int layers, double large_scale_rate) {
+  const HapticLoopSettings one = tautSample(fabric, 0.0, large_scale_rate);
+  HapticLoopSettings all = one;
+  all.effects.self_collision = true;
+  all.mesh = {};
+  all.attached_particles.clear();
+  const Vector3d middle(0.0, 0.0, -0.5 * kSampleSide);
+  const double thickness = fabric.compression->thickness;
+  for (int layer = 0; layer < layers; ++layer) {
+    const int first = static_cast<int>(all.mesh.rest_coordinates.size());
+    const Eigen::AngleAxisd turn(0.3 * layer, Vector3d::UnitX());
+    const Vector3d shift(thickness * (0.5 * (layers - 1) - layer), 0.0, 0.0);
+    for (std::size_t i = 0; i < one.mesh.rest_coordinates.size(); ++i) {
+      all.mesh.rest_coordinates.push_back(one.mesh.rest_coordinates[i] +
+                                          Eigen::Vector2d(2.0 * kSampleSide * layer, 0.0));
+      all.mesh.initial_positions.push_back(middle +
+                                           turn * (one.mesh.initial_positions[i] - middle) + shift);
+    }
+    for (const auto& [a, b, c] : one.mesh.triangles) {
+      all.mesh.triangles.push_back({a + first, b + first, c + first});
+    }
+    for (const int held : one.attached_particles) all.attached_particles.push_back(held + first);
+  }
+  all.haptics.most_elements *= layers;
+  return all;
+}
+
 double weight(const HapticLoopSettings& sample) {
   const cloth::Cloth cloth(sample.mesh, sample.fabric, sample.effects);
   return base::kStandardGravity *
@@ -101,7 +129,8 @@ Vector3d forceOnFingertips(const contact::HapticLayer& layer) {
 }
 
 RefinedCloth::RefinedCloth(const HapticLoopSettings& sample)
-    : law_(sample.fabric), motion_(sample.mesh.rest_coordinates.size()) {
+    : law_(sample.fabric, {}, sample.effects.self_collision ? contact::LayersBetween::kMost : 1),
+      motion_(sample.mesh.rest_coordinates.size()) {
   std::vector<int> all(sample.mesh.triangles.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<char> attached(sample.mesh.rest_coordinates.size(), 0);

@@ -91,7 +91,7 @@ class StageSolver {
                  ClothState& result);
 
   void hold(const Cloth& cloth, const Stage& stage, const ClothState& at, bool passive);
-  void moveObstacles(const Cloth& cloth, const Stage& stage, StepReport& report);
+  void moveObstacles(const Cloth& cloth, const StageGuess& guess, StepReport& report);
   MotionCut keepApart(const Cloth& cloth, const Stage& stage, const Positions& from,
                       ClothState& at);
   double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result,

@@ -52,6 +52,15 @@ constexpr bool isImplicit(IntegrationMethod method) {
          method == IntegrationMethod::kTrBdf2;
 }
 
+/// Whether a method knows cloth that collides with itself: the ends of its stages are where
+/// straight ways from states lead, which can be kept free of intersections. With obstacles it has
+/// one stage.
+constexpr bool collidesWithItself(IntegrationMethod method, bool among_obstacles) {
+  if (method == IntegrationMethod::kBackwardEuler) return true;
+  return !among_obstacles &&
+         (method == IntegrationMethod::kBdf2 || method == IntegrationMethod::kTrBdf2);
+}
+
 /// Threads that a step may have.
 constexpr int kMaxThreads = 64;
 

@@ -24,6 +24,10 @@ HapticLoopSettings hangingSample(const material::Fabric& fabric, kes::Direction 
 /// its middle is at (0, 0, -0.1 m).
 HapticLoopSettings tautSample(const material::Fabric& fabric, double strain,
                               double large_scale_rate);
+/// Layers of tautSample() without strain, which collide with each other and touch, each turned by
+/// 0.3 rad against the one before; their stack has its middle at (0, 0, -0.1 m), its first layer at
+/// the +x side. Patches have as many elements per layer.
+HapticLoopSettings tautLayers(const material::Fabric& fabric, int layers, double large_scale_rate);
 /// kg times gravity (N).
 double weight(const HapticLoopSettings& sample);
 
