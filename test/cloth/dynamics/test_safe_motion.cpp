@@ -130,8 +130,9 @@ TEST_P(Crumpling, NeverIntersectsNorGainsEnergy) {
     }
     touched += touching > 0;
   }
-  // In one of them sheets bounce off each other within a step.
-  EXPECT_GE(touched, kSeeds - 1);
+  // By methods of the second order sheets bounce off each other within a step in one of them.
+  const bool first_order = std::get<0>(GetParam()) == IntegrationMethod::kBackwardEuler;
+  EXPECT_GE(touched, first_order ? kSeeds : kSeeds - 1);
 }
 
 TEST(Crumpled, IsTheSameForAnyNumberOfThreads) {
