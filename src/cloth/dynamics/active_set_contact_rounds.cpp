@@ -18,9 +18,8 @@ constexpr int kRatioRounds = 6;
 
 }  // namespace
 
-/// From which on friction of what slips is mu N, to begin with (m/s).
-double ActiveSetContactSolver::smoothingOfSlips() const {
-  constexpr double kOfMean = 0.1;
+/// Of what slips (m/s); 0 if nothing does.
+double ActiveSetContactSolver::meanSlip() const {
   double sum = 0.0;
   int count = 0;
   for (const Entry& entry : entries_) {
@@ -28,7 +27,13 @@ double ActiveSetContactSolver::smoothingOfSlips() const {
     sum += entry.slip.norm();
     ++count;
   }
-  return count > 0 ? std::max(kLeastSmoothing, kOfMean * sum / count) : kLeastSmoothing;
+  return count > 0 ? sum / count : 0.0;
+}
+
+/// From which on friction of what slips is mu N, to begin with (m/s).
+double ActiveSetContactSolver::smoothingOfSlips() const {
+  constexpr double kOfMean = 0.1;
+  return std::max(kLeastSmoothing, kOfMean * meanSlip());
 }
 
 bool ActiveSetContactSolver::update(const linear::BlockVector& solution) {
@@ -131,13 +136,19 @@ bool ActiveSetContactSolver::search(const linear::BlockVector& solution) {
     const double sticking = (kept_smoothing_ > 0.0 ? 1.0 : kSticking) * smoothing_;
     kept_ = entries_;
     kept_smoothing_ = smoothing_;
+    const double mean = meanSlip();
+    if (left_smoothing_ > 0.0 && smoothing_ > mean) {
+      // What creeps does not all stick, as the last system has shown. Linear, so a round or two.
+      smoothing_ = std::max(kLeastSmoothing, std::min(kSharper * smoothing_, mean));
+      return true;
+    }
     for (Entry& entry : entries_) {
       if (entry.state != State::kSlips || entry.slip.norm() > sticking) continue;
       entry.state = State::kSticks;
       entry.fresh = true;
     }
     smoothing_ = std::max(kLeastSmoothing, kSharper * smoothing_);
-  } else if (rounds_ <= 2) {
+  } else if (rounds_ <= 2 && left_smoothing_ == 0.0) {
     smoothing_ = std::max(smoothing_, smoothingOfSlips());
   }
   return true;

@@ -58,7 +58,10 @@ void ActiveSetContactSolver::begin(const Cloth& cloth, const Stage& stage, const
     }
   }
   ++stages_;
-  if (entries_.empty()) return;
+  if (entries_.empty()) {
+    left_smoothing_ = 0.0;
+    return;
+  }
   attached_ = attached;
   loads_.setZero();
   results_.setZero();
@@ -105,7 +108,7 @@ void ActiveSetContactSolver::beginSystem(const Velocities& velocities,
   accepted_.setZero();
   last_ = false;
   kept_smoothing_ = 0.0;
-  smoothing_ = smoothingOfSlips();
+  smoothing_ = std::max(smoothingOfSlips(), left_smoothing_);
 }
 
 bool ActiveSetContactSolver::prepareRound(linear::SymmetricBlockMatrix& matrix,
@@ -213,6 +216,7 @@ void ActiveSetContactSolver::addLoads(linear::BlockVector& change, linear::Block
 
 /// For the next stage, and for who asks what the contact did.
 void ActiveSetContactSolver::finish() {
+  left_smoothing_ = last_ ? smoothing_ : 0.0;
   phase_ = Phase::kFinished;
   for (Entry& entry : entries_) {
     bringIntoCone(entry);

@@ -105,6 +105,7 @@ class ActiveSetContactSolver {
 
   Entry entryOf(const Cloth& cloth, const Stage& stage, int contact) const;
   double potentialOf(const Entry& entry, const Eigen::Vector3d& velocity) const;
+  double meanSlip() const;
   double smoothingOfSlips() const;
   double searchLine(const linear::BlockVector& solution);
   bool search(const linear::BlockVector& solution);
@@ -122,7 +123,9 @@ class ActiveSetContactSolver {
   double smoothing_ = 0.0;       // m/s, of slips up to which friction grows with them
   bool last_ = false;            // round of the search
   double kept_smoothing_ = 0.0;  // m/s, of kept_; 0: nothing has been kept
-  linear::BlockVector guess_;    // m/s
+  // m/s, that friction of the last system has kept; 0: it was Coulomb's.
+  double left_smoothing_ = 0.0;
+  linear::BlockVector guess_;  // m/s
   linear::SymmetricBlockMatrix free_matrix_;
   linear::BlockVector free_rhs_;
   linear::BlockVector residual_;
