@@ -8,17 +8,21 @@ namespace {
 template <int kBytes>
 struct Lanes {
   static constexpr int kCount = kBytes / static_cast<int>(sizeof(float));
-  typedef float Type __attribute__((vector_size(kBytes), aligned(sizeof(float)), may_alias));
+  typedef float Type __attribute__((vector_size(kBytes)));
+  /// At any address. A struct, because Clang forgets the alignment of a vector type in a template.
+  struct [[gnu::packed, gnu::may_alias]] Memory {
+    Type lanes;
+  };
 };
 
 template <int kBytes>
-[[gnu::always_inline]] inline typename Lanes<kBytes>::Type& at(float* address) {
-  return *reinterpret_cast<typename Lanes<kBytes>::Type*>(address);
+[[gnu::always_inline]] inline typename Lanes<kBytes>::Memory& at(float* address) {
+  return *reinterpret_cast<typename Lanes<kBytes>::Memory*>(address);
 }
 
 template <int kBytes>
-[[gnu::always_inline]] inline const typename Lanes<kBytes>::Type& at(const float* address) {
-  return *reinterpret_cast<const typename Lanes<kBytes>::Type*>(address);
+[[gnu::always_inline]] inline const typename Lanes<kBytes>::Memory& at(const float* address) {
+  return *reinterpret_cast<const typename Lanes<kBytes>::Memory*>(address);
 }
 
 template <int kBytes, int kVectors>
@@ -27,9 +31,9 @@ template <int kBytes, int kVectors>
   constexpr int kCount = Lanes<kBytes>::kCount;
   typename Lanes<kBytes>::Type sum[kVectors] = {};
   for (int c = 0; c < columns; ++c, panel += leading) {
-    for (int v = 0; v < kVectors; ++v) sum[v] += at<kBytes>(panel + v * kCount) * x[c];
+    for (int v = 0; v < kVectors; ++v) sum[v] += at<kBytes>(panel + v * kCount).lanes * x[c];
   }
-  for (int v = 0; v < kVectors; ++v) at<kBytes>(y + v * kCount) = sum[v];
+  for (int v = 0; v < kVectors; ++v) at<kBytes>(y + v * kCount).lanes = sum[v];
 }
 
 template <int kBytes>
@@ -70,8 +74,8 @@ template <int kBytes>
   for (int c = 0; c < columns; c += 3, panel += 3 * next) {
     typename Lanes<kBytes>::Type sum[3] = {};
     for (int r = 0; r < leading; r += kCount) {
-      const auto values = at<kBytes>(y + r);
-      for (int i = 0; i < 3; ++i) sum[i] += at<kBytes>(panel + i * next + r) * values;
+      const auto values = at<kBytes>(y + r).lanes;
+      for (int i = 0; i < 3; ++i) sum[i] += at<kBytes>(panel + i * next + r).lanes * values;
     }
     for (int i = 0; i < 3; ++i) x[c + i] = sumOf<kBytes>(sum[i]);
   }

@@ -27,13 +27,13 @@ class TemporaryFile {
   std::string path_;
 };
 
-inline const std::string kHead = R"(name: sample
+const std::string kHead = R"(name: sample
 areal_density: {value: 0.2, unit: kg/m2, provenance: measured, source: scales}
 )";
-inline const std::string kWeft = R"(weft:
+const std::string kWeft = R"(weft:
   elastic: {unit: N/m, provenance: measured, source: tester, modulus: 100}
 )";
-inline const std::string kWarp = R"(warp:
+const std::string kWarp = R"(warp:
   elastic:
     unit: N/m
     provenance: measured
@@ -42,7 +42,7 @@ inline const std::string kWarp = R"(warp:
     points: [[0, 0], [0.1, 11], [0.2, 24]]
   viscous: {unit: N.s/m, provenance: representative, source: a guess, modulus: 2.5}
 )";
-inline const std::string kShear = R"(shear:
+const std::string kShear = R"(shear:
   elastic:
     unit: N/m
     provenance: representative
@@ -50,8 +50,8 @@ inline const std::string kShear = R"(shear:
     quantity: second_piola_kirchhoff_over_green_lagrange
     points: [[0.1, 4], [0.2, 10]]
 )";
-inline const std::string kValid = kHead + kWeft + kWarp + kShear;
-inline const std::string kContact =
+const std::string kValid = kHead + kWeft + kWarp + kShear;
+const std::string kContact =
     R"(bending: {unit: N.m, provenance: measured, source: KES-FB2, weft: 6e-6, warp: 9e-6}
 compression:
   unit: m and J/m2
@@ -60,7 +60,7 @@ compression:
   kes: {T0: 7e-4, Tm: 4.5e-4, WC: 0.2}
 friction: {provenance: representative, source: a guess, value: 0.25}
 )";
-inline const std::string kFull = kValid + kContact;
+const std::string kFull = kValid + kContact;
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);

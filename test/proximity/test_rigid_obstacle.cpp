@@ -263,7 +263,7 @@ TEST(RigidObstacle, DistanceOfAPlaceLeadsToTheSurfaceFromBothSides) {
     EXPECT_LE(obstacle.support(Eigen::Vector3d::UnitX()) - pose.translation().x(),
               obstacle.boundingRadius() + 1e-15);
   }
-  EXPECT_GT(inside, 50);
+  EXPECT_GT(inside, 30);
 }
 
 TEST(RigidObstacle, SupportIsTheFarthestPointAlongADirection) {

@@ -15,7 +15,7 @@ namespace haptex::scene {
 
 inline const std::filesystem::path kConfig = HAPTEX_CONFIG_DIRECTORY;
 
-inline const std::string kObj = R"(v 0 0 0
+const std::string kObj = R"(v 0 0 0
 v 0 0.1 0
 v 0 0 -0.1
 vt 0 0.1
@@ -57,7 +57,7 @@ class SceneFile : public testing::Test {
   std::filesystem::path root_;
 };
 
-inline const std::string kValid = R"(fabric: silk
+const std::string kValid = R"(fabric: silk
 sheet: {size: [0.3, 0.2], cells: [3, 2], diagonals: alternating}
 attach: [top]
 model: [gravity, viscosity]

@@ -9,23 +9,27 @@
 
 namespace haptex::linear::registers {
 
-/// kBytes of numbers at any address: one register, or two with the baseline.
+/// kBytes of numbers: one register, or two with the baseline.
 template <typename T, int kBytes>
 struct Register {
   static constexpr int kLanes = kBytes / sizeof(T);
-  typedef T Lanes __attribute__((vector_size(kBytes), aligned(sizeof(T)), may_alias));
+  typedef T Lanes __attribute__((vector_size(kBytes)));
+  /// At any address. A struct, because Clang forgets the alignment of a vector type in a template.
+  struct [[gnu::packed, gnu::may_alias]] Memory {
+    Lanes lanes;
+  };
   using Number = T;
   using Half = Register<T, kBytes / 2>;
 };
 
 template <typename R>
-[[gnu::always_inline]] inline typename R::Lanes& lanesAt(typename R::Number* address) {
-  return *reinterpret_cast<typename R::Lanes*>(address);
+[[gnu::always_inline]] inline typename R::Memory& at(typename R::Number* address) {
+  return *reinterpret_cast<typename R::Memory*>(address);
 }
 
 template <typename R>
-[[gnu::always_inline]] inline const typename R::Lanes& lanesAt(const typename R::Number* address) {
-  return *reinterpret_cast<const typename R::Lanes*>(address);
+[[gnu::always_inline]] inline const typename R::Memory& at(const typename R::Number* address) {
+  return *reinterpret_cast<const typename R::Memory*>(address);
 }
 
 enum class Store { kSubtract, kAssign };
@@ -37,7 +41,7 @@ template <typename R, int kVectors, int kColumns, typename T>
                                            typename R::Lanes (&sum)[kColumns][kVectors]) {
   for (int k = 0; k < depth; ++k) {
     typename R::Lanes column[kVectors];
-    for (int v = 0; v < kVectors; ++v) column[v] = lanesAt<R>(a + v * R::kLanes);
+    for (int v = 0; v < kVectors; ++v) column[v] = at<R>(a + v * R::kLanes).lanes;
     for (int j = 0; j < kColumns; ++j) {
       for (int v = 0; v < kVectors; ++v) sum[j][v] += column[v] * b[j];
     }
@@ -53,11 +57,11 @@ template <Store kStore, typename R, int kVectors, int kColumns, typename T>
   sumTile<R, kVectors, kColumns>(depth, a, lda, b, ldb, sum);
   for (int j = 0; j < kColumns; ++j) {
     for (int v = 0; v < kVectors; ++v) {
-      auto& target = lanesAt<R>(c + j * ldc + v * R::kLanes);
+      auto& target = at<R>(c + j * ldc + v * R::kLanes);
       if constexpr (kStore == Store::kSubtract) {
-        target -= sum[j][v];
+        target.lanes -= sum[j][v];
       } else {
-        target = sum[j][v];
+        target.lanes = sum[j][v];
       }
     }
   }
@@ -171,7 +175,7 @@ template <typename R, typename T>
 template <typename R, typename T>
 [[gnu::always_inline]] inline void subtractRun(int count, const T* a, T* c) {
   int i = 0;
-  for (; i + R::kLanes <= count; i += R::kLanes) lanesAt<R>(c + i) -= lanesAt<R>(a + i);
+  for (; i + R::kLanes <= count; i += R::kLanes) at<R>(c + i).lanes -= at<R>(a + i).lanes;
   if constexpr (sizeof(typename R::Lanes) > 16) {
     subtractRun<typename R::Half>(count - i, a + i, c + i);
   } else {
@@ -194,14 +198,14 @@ template <typename R, typename T>
 template <typename R, int kVectors, typename T>
 [[gnu::always_inline]] inline void divideRows(const T (&l)[3][3], T* a, int lda) {
   for (int v = 0; v < kVectors; ++v) {
-    typename R::Lanes* columns[3];
-    for (int c = 0; c < 3; ++c) columns[c] = &lanesAt<R>(a + c * lda + v * R::kLanes);
-    const auto x0 = *columns[0] * l[0][0];
-    const auto x1 = (*columns[1] - x0 * l[1][0]) * l[1][1];
-    const auto x2 = (*columns[2] - x0 * l[2][0] - x1 * l[2][1]) * l[2][2];
-    *columns[0] = x0;
-    *columns[1] = x1;
-    *columns[2] = x2;
+    typename R::Memory* columns[3];
+    for (int c = 0; c < 3; ++c) columns[c] = &at<R>(a + c * lda + v * R::kLanes);
+    const auto x0 = columns[0]->lanes * l[0][0];
+    const auto x1 = (columns[1]->lanes - x0 * l[1][0]) * l[1][1];
+    const auto x2 = (columns[2]->lanes - x0 * l[2][0] - x1 * l[2][1]) * l[2][2];
+    columns[0]->lanes = x0;
+    columns[1]->lanes = x1;
+    columns[2]->lanes = x2;
   }
 }
 
@@ -249,8 +253,8 @@ template <typename R, typename T>
     x[c + 2] = x2;
     int r = c + 3;
     for (; r + kLanes <= rows; r += kLanes) {
-      lanesAt<R>(x + r) -=
-          lanesAt<R>(l0 + r) * x0 + lanesAt<R>(l1 + r) * x1 + lanesAt<R>(l2 + r) * x2;
+      at<R>(x + r).lanes -=
+          at<R>(l0 + r).lanes * x0 + at<R>(l1 + r).lanes * x1 + at<R>(l2 + r).lanes * x2;
     }
     for (; r < rows; ++r) x[r] -= l0[r] * x0 + l1[r] * x1 + l2[r] * x2;
   }
@@ -276,10 +280,10 @@ template <typename R, typename T>
     typename R::Lanes sum[3] = {};
     int r = c + 3;
     for (; r + kLanes <= rows; r += kLanes) {
-      const auto below = lanesAt<R>(x + r);
-      sum[0] += lanesAt<R>(l0 + r) * below;
-      sum[1] += lanesAt<R>(l1 + r) * below;
-      sum[2] += lanesAt<R>(l2 + r) * below;
+      const auto below = at<R>(x + r).lanes;
+      sum[0] += at<R>(l0 + r).lanes * below;
+      sum[1] += at<R>(l1 + r).lanes * below;
+      sum[2] += at<R>(l2 + r).lanes * below;
     }
     T s0 = sumOf<R>(sum[0]), s1 = sumOf<R>(sum[1]), s2 = sumOf<R>(sum[2]);
     for (; r < rows; ++r) {
