@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "haptex/contact/obstacles.h"
+#include "haptex/contact/start_outside.h"
 
 namespace haptex::contact {
 namespace {
@@ -27,14 +28,11 @@ double frictionOf(const mesh::Obstacle& obstacle, const material::Fabric& fabric
 /// Of a cloth that collides with itself.
 void requireApart(const mesh::ClothMesh& mesh, const std::string& name,
                   const RigidObstacle& shape) {
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    const auto& at = mesh.initial_positions;
-    if (shape.closestPoint({at[a], at[b], at[c]}).distance > 0.0) continue;
-    throw std::invalid_argument("self_collision is modelled and triangle " + std::to_string(t) +
-                                " of the cloth touches obstacle '" + name +
-                                "' at the start: it has to be outside");
-  }
+  const int triangle = firstTouching(mesh, shape);
+  if (triangle < 0) return;
+  throw std::invalid_argument("self_collision is modelled and triangle " +
+                              std::to_string(triangle) + " of the cloth touches obstacle '" + name +
+                              "' at the start: it has to be outside");
 }
 
 /// A straight path in the frame of an obstacle.

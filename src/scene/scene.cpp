@@ -287,6 +287,9 @@ Scene readScene(const std::string& path, double cell_size) {
   if (scene.effects.contacts && scene.obstacles.empty()) {
     file.at("model").refuseBecause("lists obstacles, so the key obstacles must have at least one");
   }
+  if (scene.effects.contacts && scene.effects.self_collision) {
+    scene.start_move = contact::moveOutside(scene.mesh, scene.obstacles, scene.attached_particles);
+  }
   return scene;
 }
 

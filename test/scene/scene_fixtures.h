@@ -70,7 +70,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-inline std::string meshScene(const std::string& mesh) {
+static inline std::string meshScene(const std::string& mesh) {
   return replaced(kValid, "sheet: {size: [0.3, 0.2], cells: [3, 2], diagonals: alternating}",
                   "mesh: " + mesh);
 }

@@ -264,6 +264,23 @@ TEST_F(SceneFile, MeshesASheetWithAsFewCellsAsTheCellSizeAllows) {
   EXPECT_EQ(loadScene(path(), 0.0125).mesh.triangles.size(), 1u);
 }
 
+TEST_F(SceneFile, StartsOutsideOfObstaclesWhereItCollidesWithItself) {
+  const std::string obstacles = R"(obstacles:
+  - {name: ball, sphere: {radius: 0.03}, position: [0.01, 0, -0.1]}
+)";
+  const std::string among = replaced(kValid, "viscosity]", "viscosity, obstacles]") + obstacles;
+  const Scene as_described = load(replaced(among, "[3, 2]", "[30, 20]"));
+  EXPECT_EQ(as_described.start_move.triangle, -1);
+  const Scene moved = load(
+      replaced(replaced(among, "[3, 2]", "[30, 20]"), "obstacles]", "obstacles, self_collision]"));
+  EXPECT_EQ(moved.start_move.obstacle, "ball");
+  EXPECT_GT(moved.start_move.particles, 0);
+  for (const int particle : moved.attached_particles) {
+    EXPECT_EQ(moved.mesh.initial_positions[particle],
+              as_described.mesh.initial_positions[particle]);
+  }
+}
+
 TEST(ShippedScenes, LoadWithTheirFabrics) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(kConfig / "scenes")) {

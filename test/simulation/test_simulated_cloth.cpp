@@ -4,6 +4,11 @@
 #include <limits>
 #include <string>
 
+#include "haptex/contact/obstacles.h"
+#include "haptex/contact/start_outside.h"
+#include "haptex/proximity/mesh_intersections.h"
+#include "haptex/scene/scene.h"
+#include "haptex/scene/scene_fabric.h"
 #include "haptex/simulation/simulated_cloth.h"
 #include "small_scene.h"
 
@@ -131,6 +136,30 @@ TEST(SimulatedCloth, AnotherFabricAndAResetForgetHowTheClothWasBent) {
   simulation.setFabric(smallSimulation(true).cloth().fabric());
   simulation.reset();
   EXPECT_EQ(simulation.state().memory, flat);
+}
+
+/// The rail of this scene reaches through the sheet at the start.
+TEST(SimulatedCloth, ThatStartsInAnObstacleGoesOnOutsideOfIt) {
+  const std::string path = HAPTEX_CONFIG_DIRECTORY "/scenes/dropped_sheet.yaml";
+  scene::Scene scene = scene::loadScene(path);
+  EXPECT_EQ(scene.start_move.triangle, -1);
+  mesh::Obstacle& rail = scene.obstacles[1];
+  ASSERT_EQ(rail.name, "rail");
+  rail.pose.translation().x() = 0.003;
+  const contact::StartMove move =
+      contact::moveOutside(scene.mesh, scene.obstacles, scene.attached_particles);
+  EXPECT_GT(move.particles, 0);
+  const proximity::RigidObstacle shape = contact::makeObstacle(rail);
+  const std::vector<std::array<int, 3>> triangles = scene.mesh.triangles;
+  SimulatedCloth simulation(scene, scene::loadSceneFabric(path, scene));
+  for (int i = 0; i < 24; ++i) {
+    ASSERT_TRUE(simulation.step()) << i;
+    const std::vector<Eigen::Vector3d>& at = simulation.state().positions;
+    EXPECT_TRUE(proximity::intersectingTriangles(at, triangles).empty()) << i;
+    for (const auto& [a, b, c] : triangles) {
+      EXPECT_GT(shape.closestPoint({at[a], at[b], at[c]}).distance, 0.0) << i;
+    }
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/step.h"
+#include "haptex/contact/start_outside.h"
 #include "haptex/mesh/mesh.h"
 #include "haptex/mesh/obstacle.h"
 
@@ -21,6 +22,8 @@ struct Scene {
   cloth::StepSettings step;
   std::vector<mesh::Obstacle> obstacles;  ///< names unique; the cloth collides with them if
                                           ///< effects has contacts
+  /// What was done to a start that reached into obstacles, where the cloth collides with itself.
+  contact::StartMove start_move;
   /// A sheet that is attached by nothing but its sides: it may have any cells.
   bool any_cells = false;
   // What is modelled beside the cloth.

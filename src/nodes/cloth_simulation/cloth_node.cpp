@@ -46,6 +46,12 @@ simulation::SimulatedCloth simulate(const ClothNodeParameters& parameters,
 /// What a cloth that collides with itself is going to do about a start that intersects.
 void warnOfTangles(const scene::Scene& scene) {
   if (!scene.effects.self_collision) return;
+  if (const contact::StartMove& move = scene.start_move; move.particles > 0) {
+    ROS_WARN(
+        "The cloth touches an obstacle at the start, the first is '%s' (triangle %d). %d particles "
+        "start up to %.3g m away from there, outside.",
+        move.obstacle.c_str(), move.triangle, move.particles, move.longest);
+  }
   const std::vector<proximity::TrianglePair> pairs =
       proximity::intersectingTriangles(scene.mesh.initial_positions, scene.mesh.triangles);
   if (pairs.empty()) return;
