@@ -21,7 +21,7 @@ using Positions = std::vector<Vector3d>;
 
 constexpr double kClearance = ObstacleCollision::kOffset;
 constexpr double kEnough = 0.5 * kClearance;  // m, from an obstacle
-constexpr int kMostPasses = 1000;
+constexpr int kLeastPasses = 200, kMostPasses = 1000;
 
 /// Of a closed surface around a place: 1 or -1 inside, 0 outside (sum of the triangles' solid
 /// angles: van Oosterom and Strackee, IEEE Trans. Biomedical Engineering 30, 1983).
@@ -206,7 +206,7 @@ StartMove moveOutside(mesh::ClothMesh& mesh, const std::vector<mesh::Obstacle>& 
 
   Mover mover(mesh, held);
   bool free = false;
-  for (int pass = 0; pass < kMostPasses && !free; ++pass) {
+  for (int pass = 0; pass < kMostPasses && (!free || pass < kLeastPasses); ++pass) {
     mover.keepLengths();
     free = true;
     for (const Body& body : touched) free = mover.passOut(body) && free;

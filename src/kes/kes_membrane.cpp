@@ -11,6 +11,7 @@
 namespace haptex::kes {
 namespace {
 
+using Eigen::Vector3d;
 using material::Fabric;
 using material::MembraneCurves;
 using Function = std::function<double(double)>;
@@ -174,13 +175,15 @@ class TensionedShear {
     tangent_ = std::tan(angle * kDegree);
     const auto lacking = [&](double elongation) {  // of the pulled threads
       height_ = std::cos(angle * kDegree) * (1.0 + elongation);
-      rig_.shear(height_ * tangent_, height_);
+      rig_.shear(height_ * tangent_, height_, Vector3d::Zero());
       return rig_.force().across / kSampleWidth - kKesShearTension;
     };
     // At rest they do not pull. From one angle to the next the elongation hardly changes.
     Sample above{elongation_ > 0.0 ? 1.01 * elongation_ : 1e-3, 0.0};
     while ((above.value = lacking(above.x)) < 0.0) above.x = longerThan(above.x);
     elongation_ = rootOf(lacking, {0.0, -kKesShearTension}, above, 1e-8 * kKesShearTension);
+    height_ = std::cos(angle * kDegree) * (1.0 + elongation_);
+    rig_.shear(height_ * tangent_, height_);
   }
 
   /// Force per width (N/m) along the shear at a rate of shear, without the tension's part along it.

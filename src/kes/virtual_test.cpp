@@ -117,11 +117,12 @@ ShearRig::ShearRig(const material::Fabric& fabric, Direction direction,
   }
 }
 
-void ShearRig::shear(double shear, double height) {
-  sample_.equilibrate(held_, [&](const Vector2d& rest) {
+void ShearRig::shear(double shear, double height, const Vector3d& disturbance) {
+  const auto place = [&](const Vector2d& rest) {
     return weft_ ? Vector3d(0.0, rest.x() + shear * rest.y(), height * rest.y())
                  : Vector3d(0.0, height * rest.x(), rest.y() + shear * rest.x());
-  });
+  };
+  sample_.equilibrate(held_, place, disturbance);
 }
 
 void ShearRig::move(double shear_rate, double height_rate) {

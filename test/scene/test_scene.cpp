@@ -266,7 +266,7 @@ TEST_F(SceneFile, MeshesASheetWithAsFewCellsAsTheCellSizeAllows) {
 
 TEST_F(SceneFile, StartsOutsideOfObstaclesWhereItCollidesWithItself) {
   const std::string obstacles = R"(obstacles:
-  - {name: ball, sphere: {radius: 0.03}, position: [0.01, 0, -0.1]}
+  - {name: ball, sphere: 0.03, position: [0.01, 0, -0.1]}
 )";
   const std::string among = replaced(kValid, "viscosity]", "viscosity, obstacles]") + obstacles;
   const Scene as_described = load(replaced(among, "[3, 2]", "[30, 20]"));

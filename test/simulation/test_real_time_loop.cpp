@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "haptex/base/workload.h"
 #include "haptex/simulation/real_time_loop.h"
 #include "small_scene.h"
 
@@ -131,7 +132,7 @@ TEST(RealTimeLoop, TellsWhenTheNextStepBegins) {
   EXPECT_GE(*std::min_element(told.begin(), told.end()), 0.0);
   const double longest = *std::max_element(told.begin(), told.end());
   EXPECT_LE(longest, step);
-  EXPECT_GT(longest, 0.0) << "the loop never has time left";
+  if (!base::kSanitized) EXPECT_GT(longest, 0.0) << "the loop never has time left";
 }
 
 TEST(RealTimeLoop, TellsThatRequestedStepsFollowAtOnceUntilTheLast) {

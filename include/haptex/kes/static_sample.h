@@ -16,6 +16,8 @@ using Field = std::function<Eigen::Vector3d(const Eigen::Vector2d&)>;
 
 class StaticSample {
  public:
+  inline static const Eigen::Vector3d kDisturbance{0.0, 2e-5, 2e-5};  ///< m, within the sheet
+
   /// @param effects as for Cloth; viscosity acts in moveAs() alone
   /// @throws what Cloth throws
   StaticSample(mesh::ClothMesh mesh, const material::Fabric& fabric,
@@ -28,7 +30,7 @@ class StaticSample {
   /// @param disturbance m, standard deviation along each axis
   /// @throws std::runtime_error if it is not reached
   void equilibrate(const std::vector<int>& held, const Field& place,
-                   const Eigen::Vector3d& disturbance = {0.0, 2e-5, 2e-5});
+                   const Eigen::Vector3d& disturbance = kDisturbance);
   /// Makes it a new sample: at rest, without friction.
   void renew() { state_ = cloth_.initialState(); }
   /// From now on the particles move with these velocities where they are; until equilibrate().

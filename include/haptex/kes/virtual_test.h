@@ -64,8 +64,10 @@ class ShearRig {
 
   /// Moves the jaw by `shear` times the length of the sample, at `height` times that length from
   /// the other jaw, where the sample comes to rest.
+  /// @param disturbance m, of the particles before it does (StaticSample::equilibrate())
   /// @throws std::runtime_error if it does not
-  void shear(double shear, double height);
+  void shear(double shear, double height,
+             const Eigen::Vector3d& disturbance = StaticSample::kDisturbance);
   /// Passes through that place at these rates (1/s).
   void move(double shear_rate, double height_rate);
 

@@ -109,7 +109,8 @@ std::vector<ClothMesh> waves(RepeatableRandom& random) {
   return {lower, upper};
 }
 
-void hold(SelfCollidingCloth::Set& set, const ClothMesh& sheet, std::vector<mesh::Side> sides) {
+void hold(SelfCollidingCloth::Set& set, const ClothMesh& sheet,
+          const std::vector<mesh::Side>& sides) {
   std::vector<int> held;
   for (const mesh::Side side : sides) {
     for (const int particle : mesh::sideParticles(sheet, side)) held.push_back(particle);

@@ -57,11 +57,9 @@ void validatePull(const material::Fabric& fabric, const Sink& sink) {
   std::vector<int> pulled;
   for (int i = 0; i < static_cast<int>(stack.state.positions.size()); ++i) {
     const Vector3d place = stack.state.positions[i];
-    if (i < of_lower) {
-      attach(stack.cloth, i, place);
-    } else if (i < to_upper) {
+    if (i >= of_lower && i < to_upper) {
       if (place.x() > 0.062) pulled.push_back(i);
-    } else if (place.x() < -0.036) {
+    } else if (i < of_lower || place.x() < -0.036) {
       attach(stack.cloth, i, place);
     } else if (place.x() > -0.003 && place.x() < 0.01 && std::abs(place.y()) < 0.01) {
       const double force = kPressure * 1e-4;  // of a cell of 10 mm

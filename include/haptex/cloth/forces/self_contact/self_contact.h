@@ -16,10 +16,10 @@ namespace haptex::cloth {
 
 /// An edge that goes through a triangle of the same cloth: both stick to each other where it does.
 struct TangleLink {
-  static constexpr int count = 5;
   std::array<int, 5> vertices;    ///< particles: of the edge, and of the triangle
   std::array<double, 5> weights;  ///< of the place on the edge less that of the triangle
   double damping;                 ///< N s/m, of their velocity against each other
+  int count = 5;                  ///< of vertices
 };
 
 /// The sum of PairEnergies, a function of the positions alone, and Coulomb friction with the
