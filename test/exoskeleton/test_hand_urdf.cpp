@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "haptex/base/workload.h"
 #include "haptex/exoskeleton/finger.h"
 #include "shipped_urdf.h"
 #include "urdf_poses.h"
@@ -223,8 +224,9 @@ JointAngles between(const Posture& from, const Posture& to, double share) {
 
 TEST(HandUrdf, NoPartOfTheDeviceEntersTheHandWhileItCloses) {
   for (const Posture& to : {kPinch, kClosed}) {
-    for (int i = 0; i <= 20; ++i) {
-      const double share = i / 20.0;
+    constexpr int kSteps = base::unlessSanitized(20, 4);
+    for (int i = 0; i <= kSteps; ++i) {
+      const double share = static_cast<double>(i) / kSteps;
       const Clearance found = clearance(between(kOpen, to, share));
       EXPECT_GT(found.smallest, 0.0) << found.where << " at " << share;
       EXPECT_LT(found.smallest, 0.002) << "the thimbles fit closely: the check does not see them";
@@ -238,10 +240,11 @@ TEST(HandUrdf, AFingerKeepsClearOfItsOwnLinksUpToItsLimits) {
     for (const auto& [name, joint] : model().joints_) {
       if (name.rfind(prefix, 0) != 0 || joint->type != urdf::Joint::REVOLUTE || joint->mimic)
         continue;
-      for (int i = 0; i <= 6; ++i) {
+      constexpr int kSteps = base::unlessSanitized(6, 2);
+      for (int i = 0; i <= kSteps; ++i) {
         JointAngles angles = between(kOpen, kOpen, 0.0);
         const double lower = joint->limits->lower, upper = joint->limits->upper;
-        angles[name] = lower + i / 6.0 * (upper - lower);
+        angles[name] = lower + static_cast<double>(i) / kSteps * (upper - lower);
         const Clearance found = clearance(angles);
         EXPECT_GT(found.smallest, 0.0) << found.where << ", " << name << " " << angles[name];
       }
