@@ -132,7 +132,9 @@ TEST(RealTimeLoop, TellsWhenTheNextStepBegins) {
   EXPECT_GE(*std::min_element(told.begin(), told.end()), 0.0);
   const double longest = *std::max_element(told.begin(), told.end());
   EXPECT_LE(longest, step);
-  if (!base::kSanitized) EXPECT_GT(longest, 0.0) << "the loop never has time left";
+  if (!base::kSanitized) {
+    EXPECT_GT(longest, 0.0) << "the loop never has time left";
+  }
 }
 
 TEST(RealTimeLoop, TellsThatRequestedStepsFollowAtOnceUntilTheLast) {
