@@ -7,7 +7,6 @@
 #include <utility>
 #include <variant>
 
-#include "haptex/contact/obstacle_collision.h"
 #include "haptex/contact/obstacles.h"
 #include "haptex/proximity/element_pair.h"
 
@@ -19,7 +18,7 @@ using proximity::RigidObstacle;
 using proximity::SurfaceDistance;
 using Positions = std::vector<Vector3d>;
 
-constexpr double kClearance = ObstacleCollision::kOffset;
+constexpr double kClearance = 5e-4;  // m, about half of a fabric's thickness
 constexpr double kEnough = 0.5 * kClearance;  // m, from an obstacle
 constexpr int kLeastPasses = 200, kMostPasses = 1000;
 

@@ -23,7 +23,7 @@ struct StartMove {
 };
 
 /// Moves the initial positions of a cloth that touches obstacles at time 0 out of them, to a
-/// clearance of ObstacleCollision::kOffset. What is inside of a solid goes along the normal of its
+/// clearance of 0.5 mm. What is inside of a solid goes along the normal of its
 /// nearest surface; of a closed mesh that the cloth goes through, what is on the side where fewer
 /// particles are. Edges keep the length that they have at the start as far as that is possible, so
 /// what is beside it follows (position based dynamics: Mueller, Heidelberger, Hennix and Ratcliff,
