@@ -18,7 +18,7 @@ using proximity::RigidObstacle;
 using proximity::SurfaceDistance;
 using Positions = std::vector<Vector3d>;
 
-constexpr double kClearance = 5e-4;  // m, about half of a fabric's thickness
+constexpr double kClearance = 5e-4;           // m, about half of a fabric's thickness
 constexpr double kEnough = 0.5 * kClearance;  // m, from an obstacle
 constexpr int kLeastPasses = 200, kMostPasses = 1000;
 
