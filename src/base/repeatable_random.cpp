@@ -16,6 +16,11 @@ int RepeatableRandom::below(int count) {
   return static_cast<int>(engine_() % static_cast<std::uint64_t>(count));
 }
 
+Eigen::Vector2d RepeatableRandom::inSquare(double low, double high) {
+  const double y = uniform(low, high), x = uniform(low, high);
+  return {x, y};
+}
+
 Eigen::Vector3d RepeatableRandom::direction() {
   const double z = uniform(-1.0, 1.0);
   const double angle = uniform(0.0, 2.0 * M_PI);

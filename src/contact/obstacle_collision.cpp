@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "haptex/contact/obstacles.h"
-#include "haptex/contact/start_outside.h"
 
 namespace haptex::contact {
 namespace {
@@ -28,7 +27,7 @@ double frictionOf(const mesh::Obstacle& obstacle, const material::Fabric& fabric
 /// Of a cloth that collides with itself.
 void requireApart(const mesh::ClothMesh& mesh, const std::string& name,
                   const RigidObstacle& shape) {
-  const int triangle = firstTouching(mesh, shape);
+  const int triangle = firstTouching(mesh.triangles, mesh.initial_positions, shape);
   if (triangle < 0) return;
   throw std::invalid_argument("self_collision is modelled and triangle " +
                               std::to_string(triangle) + " of the cloth touches obstacle '" + name +

@@ -1,5 +1,6 @@
 #include "haptex/contact/obstacles.h"
 
+#include <cstddef>
 #include <variant>
 
 namespace haptex::contact {
@@ -28,6 +29,16 @@ RigidObstacle makeObstacle(const mesh::Obstacle& obstacle) {
   RigidObstacle made = std::visit(MakeShape{}, obstacle.shape);
   made.setPose(obstacle.pose);
   return made;
+}
+
+int firstTouching(const std::vector<std::array<int, 3>>& triangles,
+                  const std::vector<Eigen::Vector3d>& places, const RigidObstacle& obstacle) {
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    const bool is_apart = obstacle.closestPoint({places[a], places[b], places[c]}).distance > 0.0;
+    if (!is_apart) return static_cast<int>(t);
+  }
+  return -1;
 }
 
 }  // namespace haptex::contact

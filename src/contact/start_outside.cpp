@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "haptex/contact/obstacle_collision.h"
 #include "haptex/contact/obstacles.h"
 #include "haptex/proximity/element_pair.h"
 
@@ -18,8 +19,9 @@ using proximity::RigidObstacle;
 using proximity::SurfaceDistance;
 using Positions = std::vector<Vector3d>;
 
-constexpr double kClearance = 5e-4;           // m, about half of a fabric's thickness
+constexpr double kClearance = ObstacleCollision::kOffset;
 constexpr double kEnough = 0.5 * kClearance;  // m, from an obstacle
+// At least as many as let what was moved pull at what is farther away.
 constexpr int kLeastPasses = 200, kMostPasses = 1000;
 
 /// Of a closed surface around a place: 1 or -1 inside, 0 outside (sum of the triangles' solid
@@ -50,11 +52,12 @@ class Body {
   void start(const Positions& places) {
     starts_ = &places;
     if (surface_ == nullptr) return;
-    for (const Vector3d& place : places) encloses_start_.push_back(encloses(place));
+    for (const Vector3d& place : places) {
+      encloses_start_.push_back(encloses(place));
+      start_distances_.push_back(shape_.distance(place).distance);
+    }
     const auto inside = std::count(encloses_start_.begin(), encloses_start_.end(), 1);
     outside_is_wrong_ = 2 * inside > static_cast<std::ptrdiff_t>(places.size());
-    for (const Vector3d& place : places)
-      start_distances_.push_back(shape_.distance(place).distance);
   }
 
   /// Negative on the wrong side, with the normal away from it.
@@ -167,21 +170,14 @@ class Mover {
   std::vector<char> is_held_;
 };
 
-bool allApart(const mesh::ClothMesh& mesh, const std::vector<Body>& bodies) {
-  return std::all_of(bodies.begin(), bodies.end(),
-                     [&](const Body& body) { return firstTouching(mesh, body.shape()) < 0; });
+bool areApart(const std::vector<Body>& bodies, const mesh::ClothMesh& mesh,
+              const Positions& places) {
+  return std::all_of(bodies.begin(), bodies.end(), [&](const Body& body) {
+    return firstTouching(mesh.triangles, places, body.shape()) < 0;
+  });
 }
 
 }  // namespace
-
-int firstTouching(const mesh::ClothMesh& mesh, const RigidObstacle& shape) {
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    const auto& at = mesh.initial_positions;
-    if (shape.closestPoint({at[a], at[b], at[c]}).distance <= 0.0) return static_cast<int>(t);
-  }
-  return -1;
-}
 
 StartMove moveOutside(mesh::ClothMesh& mesh, const std::vector<mesh::Obstacle>& obstacles,
                       const std::vector<int>& held) {
@@ -189,7 +185,7 @@ StartMove moveOutside(mesh::ClothMesh& mesh, const std::vector<mesh::Obstacle>& 
   std::vector<Body> touched, others;
   for (const mesh::Obstacle& obstacle : obstacles) {
     Body body(obstacle);
-    const int triangle = firstTouching(mesh, body.shape());
+    const int triangle = firstTouching(mesh.triangles, mesh.initial_positions, body.shape());
     if (triangle < 0) {
       others.push_back(std::move(body));
       continue;
@@ -210,15 +206,14 @@ StartMove moveOutside(mesh::ClothMesh& mesh, const std::vector<mesh::Obstacle>& 
     free = true;
     for (const Body& body : touched) free = mover.passOut(body) && free;
   }
-  mesh::ClothMesh outside = mesh;
-  outside.initial_positions = mover.places();
-  if (!free || !allApart(outside, touched) || !allApart(outside, others)) return move;
-  for (std::size_t i = 0; i < mesh.initial_positions.size(); ++i) {
-    const double way = (outside.initial_positions[i] - mesh.initial_positions[i]).norm();
+  const Positions& outside = mover.places();
+  if (!free || !areApart(touched, mesh, outside) || !areApart(others, mesh, outside)) return move;
+  for (std::size_t i = 0; i < outside.size(); ++i) {
+    const double way = (outside[i] - mesh.initial_positions[i]).norm();
     move.particles += way > 0.0;
     move.longest = std::max(move.longest, way);
   }
-  mesh.initial_positions = std::move(outside.initial_positions);
+  mesh.initial_positions = outside;
   return move;
 }
 

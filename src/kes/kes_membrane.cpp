@@ -173,17 +173,19 @@ class TensionedShear {
   /// Shears by an angle (degrees) and lets the jaw find its height.
   void shear(double angle) {
     tangent_ = std::tan(angle * kDegree);
-    const auto lacking = [&](double elongation) {  // of the pulled threads
+    const auto settle = [&](double elongation, const Vector3d& disturbance) {
       height_ = std::cos(angle * kDegree) * (1.0 + elongation);
-      rig_.shear(height_ * tangent_, height_, Vector3d::Zero());
+      rig_.shear(height_ * tangent_, height_, disturbance);
+    };
+    const auto lacking = [&](double elongation) {  // of the pulled threads
+      settle(elongation, Vector3d::Zero());
       return rig_.force().across / kSampleWidth - kKesShearTension;
     };
     // At rest they do not pull. From one angle to the next the elongation hardly changes.
     Sample above{elongation_ > 0.0 ? 1.01 * elongation_ : 1e-3, 0.0};
     while ((above.value = lacking(above.x)) < 0.0) above.x = longerThan(above.x);
     elongation_ = rootOf(lacking, {0.0, -kKesShearTension}, above, 1e-8 * kKesShearTension);
-    height_ = std::cos(angle * kDegree) * (1.0 + elongation_);
-    rig_.shear(height_ * tangent_, height_);
+    settle(elongation_, StaticSample::kDisturbance);  // only what is read has to find its way back
   }
 
   /// Force per width (N/m) along the shear at a rate of shear, without the tension's part along it.

@@ -80,8 +80,7 @@ double share(const DrapeTest& test, const Vector3d& place) {
 mesh::ClothMesh layDisc(const DrapeTest& test, base::RepeatableRandom& random) {
   mesh::ClothMesh mesh = mesh::makeDisc(test.fabric_radius, test.rings);
   const Eigen::Rotation2Dd turn(random.uniform(0.0, 2.0 * M_PI));
-  Vector2d off;
-  for (const int axis : {1, 0}) off[axis] = random.uniform(-kOffCentre, kOffCentre);
+  const Vector2d off = random.inSquare(-kOffCentre, kOffCentre);
   for (std::size_t i = 0; i < mesh.initial_positions.size(); ++i) {
     Vector3d& place = mesh.initial_positions[i];
     // What is held stays where it is, and the mesh reaches farther out on one side.

@@ -250,9 +250,7 @@ mesh::ClothMesh meshOf(const ExtremeCase& extreme) {
     const int row = static_cast<int>(i) / (extreme.cells_u + 1);
     const bool inner = column > 0 && column < extreme.cells_u && row > 0 && row < extreme.cells_v;
     const double most = extreme.cell * extreme.irregularity;
-    if (inner) {
-      for (const int axis : {1, 0}) rest[axis] += random.uniform(-most, most);
-    }
+    if (inner) rest += random.inSquare(-most, most);
     // The first column becomes narrow, whatever irregularity has made of it.
     const double first = column == 0 ? 0.0 : rest.x() - (1.0 - extreme.needle) * extreme.cell;
     if (extreme.needle < 1.0) rest.x() = column == 1 ? extreme.needle * extreme.cell : first;

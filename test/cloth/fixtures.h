@@ -28,6 +28,11 @@ inline material::Fabric stiffeningFabric() {
   return fabric;
 }
 
+/// A pose that is not turned.
+inline Eigen::Isometry3d placedAt(const Eigen::Vector3d& place) {
+  return Eigen::Isometry3d(Eigen::Translation3d(place));
+}
+
 inline mesh::ClothMesh square(int cells, double size = 0.1) {
   return mesh::makeRectangle(size, size, cells, cells, mesh::Triangulation::kAlternating);
 }

@@ -12,11 +12,9 @@ namespace haptex::contact::test_obstacle_collision {
 namespace {
 
 using cloth::ClothState;
-using Eigen::Isometry3d;
+using cloth::placedAt;
 using Eigen::Vector3d;
 using mesh::Obstacle;
-
-Isometry3d at(const Vector3d& place) { return Isometry3d(Eigen::Translation3d(place)); }
 
 /// A sheet of 0.2 m that hangs from its top edge in the plane x = 0, with its top at z = 0.
 struct HangingSheet {
@@ -67,13 +65,13 @@ constexpr double kLeast = ObstacleCollision::kOffset - ObstacleCollision::kToler
 class Methods : public testing::TestWithParam<cloth::NamedIntegrationMethod> {};
 
 TEST_P(Methods, LetNoParticleIntoAnyShape) {
-  Obstacle sphere{"sphere", mesh::ObstacleSphere{0.04}, at({0.1, 0.0, -0.12})};
-  Obstacle box{"box", mesh::ObstacleBox{{0.002, 0.15, 0.15}}, at({0.1, 0.0, -0.15})};
+  Obstacle sphere{"sphere", mesh::ObstacleSphere{0.04}, placedAt({0.1, 0.0, -0.12})};
+  Obstacle box{"box", mesh::ObstacleBox{{0.002, 0.15, 0.15}}, placedAt({0.1, 0.0, -0.15})};
   Obstacle capsule{"capsule", mesh::ObstacleCapsule{0.02, 0.3},
-                   at({0.1, 0.0, -0.12}) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX())};
+                   placedAt({0.1, 0.0, -0.12}) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX())};
   Obstacle mesh{"mesh",
                 mesh::ObstacleMesh{{{0, -0.2, 0.05}, {0, 0.2, 0.05}, {0, 0, -0.25}}, {{0, 1, 2}}},
-                at({0.1, 0.0, -0.12})};
+                placedAt({0.1, 0.0, -0.12})};
   const bool implicit = isImplicit(GetParam().method);
   const double h = implicit ? 0.0125 : 5e-4;
   for (Obstacle obstacle : {sphere, box, capsule, mesh}) {
@@ -111,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(cloth::kIntegrationMeth
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(ObstacleCollision, BringsOutWhatAJumpOfTheObstacleHasCaught) {
-  Obstacle sphere{"sphere", mesh::ObstacleSphere{0.04}, at({0.01, 0.003, -0.12})};
+  Obstacle sphere{"sphere", mesh::ObstacleSphere{0.04}, placedAt({0.01, 0.003, -0.12})};
   HangingSheet sheet({sphere}, {});  // starts with the sphere in it
   EXPECT_LT(sheet.least(), -0.01);
   for (int i = 0; i < 20; ++i) {
@@ -121,7 +119,7 @@ TEST(ObstacleCollision, BringsOutWhatAJumpOfTheObstacleHasCaught) {
 }
 
 TEST(ObstacleCollision, DoesNothingToAClothOutOfReach) {
-  const Obstacle far{"far", mesh::ObstacleSphere{0.04}, at({1.0, 0.0, 0.0})};
+  const Obstacle far{"far", mesh::ObstacleSphere{0.04}, placedAt({1.0, 0.0, 0.0})};
   HangingSheet among({far}, {}), alone({far}, {});
   for (int i = 0; i < 20; ++i) {
     among.collision.step(among.cloth, among.integrator, among.state, 0.01);
@@ -136,7 +134,7 @@ TEST(ObstacleCollision, NeedsACoefficientOfFriction) {
   material::Fabric bare = HangingSheet::fabric();
   bare.friction.reset();
   cloth::Cloth cloth(cloth::square(2), bare, HangingSheet::effects());
-  Obstacle sphere{"ball", mesh::ObstacleSphere{0.04}, at({1.0, 0.0, 0.0})};
+  Obstacle sphere{"ball", mesh::ObstacleSphere{0.04}, placedAt({1.0, 0.0, 0.0})};
   try {
     const ObstacleCollision collision(cloth, {sphere});
     ADD_FAILURE();
@@ -160,7 +158,7 @@ TEST(ObstacleCollision, GivesTheObstaclesThemselvesToAClothThatCollidesWithItsel
     cloth::Cloth cloth(cloth::square(10, 0.2), fabric, effects);
     Obstacle obstacle{
         "needle", needle,
-        at({x + 0.0255, 0.005, -0.105}) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY())};
+        placedAt({x + 0.0255, 0.005, -0.105}) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY())};
     if (x == 0.0) obstacle.pose.translation().x() = 0.02;  // its tip is in the sheet
     obstacle.motion = mesh::ObstacleDrift{{-0.5, 0.0, 0.0}};
     if (x == 0.0) {

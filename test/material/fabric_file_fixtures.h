@@ -27,6 +27,7 @@ class TemporaryFile {
   std::string path_;
 };
 
+// Not inline: Clang 14 makes inline ones of each other in any order.
 const std::string kHead = R"(name: sample
 areal_density: {value: 0.2, unit: kg/m2, provenance: measured, source: scales}
 )";

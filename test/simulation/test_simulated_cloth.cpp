@@ -1,12 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "haptex/contact/obstacles.h"
 #include "haptex/contact/start_outside.h"
-#include "haptex/proximity/mesh_intersections.h"
+#include "haptex/proximity/intersections.h"
 #include "haptex/scene/scene.h"
 #include "haptex/scene/scene_fabric.h"
 #include "haptex/simulation/simulated_cloth.h"

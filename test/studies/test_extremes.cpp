@@ -43,10 +43,9 @@ TEST_P(EveryExtremeKind, CollidesWithItselfWithoutIntersectingOrGainingEnergy) {
   }
 }
 
-/// Triangles that share a vertex do not intersect beyond it, so nothing is in a tangle, and pairs
-/// at no distance have no finite energy: what still fails, docs/stability.md. How depends on the
-/// compiler's rounding.
-TEST(ExtremeCase, ThatHasCollapsedOntoOnePointStaysFinite) {
+/// Pairs at no distance that are in no tangle have no finite energy: what still fails,
+/// docs/stability.md. How depends on the compiler's rounding.
+TEST(ExtremeCase, ThatHasCollapsedOntoALineStaysFinite) {
   ExtremeCase extreme = drawExtremeCase(2000004, ExtremeKind::kCollapsed);
   extreme.self_collision = true;
   const ExtremeFailure failure = runExtremeCase(extreme).failure;

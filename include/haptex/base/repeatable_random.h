@@ -18,6 +18,9 @@ class RepeatableRandom {
   double logarithmic(double low, double high);
   int below(int count);  ///< 0 to count - 1, count > 0
   bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
+  /// Both uniform in [low, high), y drawn first. Not Vector2d(uniform(), uniform()): compilers
+  /// evaluate arguments in any order.
+  Eigen::Vector2d inSquare(double low, double high);
   Eigen::Vector3d direction();  ///< unit, uniform on the sphere
 
  private:

@@ -6,13 +6,8 @@
 
 #include "haptex/mesh/mesh.h"
 #include "haptex/mesh/obstacle.h"
-#include "haptex/proximity/rigid_obstacle.h"
 
 namespace haptex::contact {
-
-/// The first triangle of a cloth that touches an obstacle at its initial positions, or is inside of
-/// a solid one; -1: none.
-int firstTouching(const mesh::ClothMesh& mesh, const proximity::RigidObstacle& shape);
 
 /// What moveOutside() has done.
 struct StartMove {
@@ -22,13 +17,13 @@ struct StartMove {
   std::string obstacle;  ///< that it touched
 };
 
-/// Moves the initial positions of a cloth that touches obstacles at time 0 out of them, to a
-/// clearance of 0.5 mm. What is inside of a solid goes along the normal of its
-/// nearest surface; of a closed mesh that the cloth goes through, what is on the side where fewer
-/// particles are. Edges keep the length that they have at the start as far as that is possible, so
-/// what is beside it follows (position based dynamics: Mueller, Heidelberger, Hennix and Ratcliff,
-/// J. Visual Communication and Image Representation 18, 2007). What comes to intersect itself by
-/// it is for cloth::Untangling.
+/// Moves the initial positions (world frame, m) of a cloth that touches obstacles at time 0 out of
+/// them, to a clearance of ObstacleCollision::kOffset. What is inside of a solid goes along the
+/// normal of its nearest surface; of a closed mesh that the cloth goes through, what is on the side
+/// where fewer particles are. Edges keep the length that they have at the start as far as that is
+/// possible, so what is beside it follows (position based dynamics: Mueller, Heidelberger, Hennix
+/// and Ratcliff, J. Visual Communication and Image Representation 18, 2007). What comes to
+/// intersect itself by it is for cloth::Untangling.
 ///
 /// Nothing is moved where no triangle touches, or where this leads to no start outside, as for a
 /// needle that is stuck through the cloth or a surface that is not closed.

@@ -43,7 +43,7 @@ simulation::SimulatedCloth simulate(const ClothNodeParameters& parameters,
   return simulation::SimulatedCloth(scene, scene::loadSceneFabric(parameters.scene_path, scene));
 }
 
-/// What a cloth that collides with itself is going to do about a start that intersects.
+/// What a cloth that collides with itself does about a start that intersects it or obstacles.
 void warnOfTangles(const scene::Scene& scene) {
   if (!scene.effects.self_collision) return;
   if (const contact::StartMove& move = scene.start_move; move.particles > 0) {

@@ -17,15 +17,12 @@ namespace {
 using cloth::IntegrationMethod;
 using cloth::NamedIntegrationMethod;
 using contact::ObstacleCollision;
-using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using mesh::Obstacle;
 
 constexpr double kTimeStep = 0.0125;  // s
 constexpr double kCone = 1e-9;        // rounding of |T| / (mu N)
 const std::string kPrefix = "contact/obstacle/";
-
-Isometry3d at(const Vector3d& place) { return Isometry3d(Eigen::Translation3d(place)); }
 
 cloth::StepSettings settingsOf(IntegrationMethod method) {
   cloth::StepSettings settings;
@@ -34,8 +31,8 @@ cloth::StepSettings settingsOf(IntegrationMethod method) {
 }
 
 void validateTable(const NamedIntegrationMethod& method, const Sink& sink) {
-  const Obstacle table{"table", mesh::ObstacleBox{{0.3, 0.3, 0.02}}, at({0.0, 0.0, -0.01})};
-  CollidingCloth scene(flatSheet({0.1, 0.1}, 10, 10, at({0.0, 0.0, 0.02})),
+  const Obstacle table{"table", mesh::ObstacleBox{{0.3, 0.3, 0.02}}, placedAt({0.0, 0.0, -0.01})};
+  CollidingCloth scene(flatSheet({0.1, 0.1}, 10, 10, placedAt({0.0, 0.0, 0.02})),
                        material::linearFabric(100.0, 0.1), base::kStandardGravity,
                        settingsOf(method.method), {table});
   while (scene.state.time < 1.0) scene.step(kTimeStep);
@@ -111,16 +108,16 @@ void sinkLeast(const std::string& name, const Obstacle& obstacle, double duratio
 
 void validateInside(const Sink& sink) {
   for (const double rate : {0.2, 1.0, 2.0, 5.0}) {  // 1/s
-    Obstacle ball{"ball", mesh::ObstacleSphere{0.03}, at({0.08, 0.0, -0.12})};
+    Obstacle ball{"ball", mesh::ObstacleSphere{0.03}, placedAt({0.08, 0.0, -0.12})};
     ball.motion = mesh::ObstacleOrbit{{0.0, 0.0, -0.12}, Vector3d::UnitZ(), 1.0 / rate};
     std::string name = std::to_string(rate);
     name.resize(3);
     sinkLeast("orbit_" + name, ball, base::unlessSanitized(std::max(2.0, 1.5 / rate), 0.5), sink);
   }
-  Obstacle fast{"fast", mesh::ObstacleSphere{0.02}, at({-1.0, 0.0, -0.15})};
+  Obstacle fast{"fast", mesh::ObstacleSphere{0.02}, placedAt({-1.0, 0.0, -0.15})};
   fast.motion = mesh::ObstacleDrift{{10.0, 0.0, 0.0}};
   sinkLeast("sphere_10_m_per_s", fast, 0.4, sink);
-  Obstacle plate{"plate", mesh::ObstacleBox{{1e-3, 0.1, 0.1}}, at({-0.5, 0.0, -0.2})};
+  Obstacle plate{"plate", mesh::ObstacleBox{{1e-3, 0.1, 0.1}}, placedAt({-0.5, 0.0, -0.2})};
   plate.motion = mesh::ObstacleDrift{{5.0, 0.0, 0.0}};
   sinkLeast("thin_box_5_m_per_s", plate, 0.4, sink);
 }
@@ -130,9 +127,9 @@ void validateInside(const Sink& sink) {
 /// sphere.
 void validateEnergy(const NamedIntegrationMethod& method, const Sink& sink) {
   for (const double friction : {0.0, 0.3}) {
-    Obstacle ball{"ball", mesh::ObstacleSphere{0.04}, at({0.0, 0.0, -0.05})};
+    Obstacle ball{"ball", mesh::ObstacleSphere{0.04}, placedAt({0.0, 0.0, -0.05})};
     ball.friction = friction;
-    CollidingCloth scene(flatSheet({0.15, 0.15}, 14, 14, at({0.0, 0.0, 0.01})),
+    CollidingCloth scene(flatSheet({0.15, 0.15}, 14, 14, placedAt({0.0, 0.0, 0.01})),
                          material::linearFabric(200.0, 0.2), base::kStandardGravity,
                          settingsOf(method.method), {ball});
     double least = scene.energy(), growth = 0.0;

@@ -32,8 +32,7 @@ struct Sheet {
 
 Sheet anySheet(RepeatableRandom& random) {
   const double cell = random.uniform(0.005, 0.010);
-  const double length = random.uniform(0.06, 0.10), width = random.uniform(0.06, 0.10);
-  const Vector2d size(width, length);
+  const Vector2d size = random.inSquare(0.06, 0.10);
   return {size, static_cast<int>(std::lround(size.x() / cell)),
           static_cast<int>(std::lround(size.y() / cell))};
 }
@@ -45,8 +44,8 @@ ClothMesh lay(const Sheet& sheet, const Isometry3d& pose) {
 Isometry3d anyPose(RepeatableRandom& random, double tilt, double height) {
   const double direction = random.uniform(0.0, 2.0 * M_PI);
   Isometry3d pose = Isometry3d::Identity();
-  const double y = random.uniform(-0.03, 0.03), x = random.uniform(-0.03, 0.03);
-  pose.translate(Vector3d(x, y, height));
+  const Vector2d beside = random.inSquare(-0.03, 0.03);
+  pose.translate(Vector3d(beside.x(), beside.y(), height));
   pose.rotate(AngleAxisd(tilt, Vector3d(std::cos(direction), std::sin(direction), 0.0)));
   pose.rotate(AngleAxisd(random.uniform(0.0, 2.0 * M_PI), Vector3d::UnitZ()));
   return pose;
@@ -83,8 +82,8 @@ std::vector<ClothMesh> bump(RepeatableRandom& random) {
   const ClothMesh lower = lay(anySheet(random), placedAt({0.0, 0.0, 0.0}));
   const double gap = random.uniform(0.0015, 0.003);
   ClothMesh upper = lay(anySheet(random), anyPose(random, 0.0, gap));
-  const double y = random.uniform(-0.02, 0.02), x = random.uniform(-0.02, 0.02);
-  const Vector3d middle(x, y, gap);
+  const Vector2d beside = random.inSquare(-0.02, 0.02);
+  const Vector3d middle(beside.x(), beside.y(), gap);
   const double radius = random.uniform(0.015, 0.03);
   const double depth = gap + random.uniform(0.002, 0.006);
   for (Vector3d& place : upper.initial_positions) {

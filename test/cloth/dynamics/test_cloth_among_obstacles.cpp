@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "fixtures.h"
 #include "haptex/base/workload.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/proximity/intersections.h"
@@ -19,23 +20,21 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using mesh::Obstacle;
 
-Isometry3d at(const Vector3d& place) { return Isometry3d(Eigen::Translation3d(place)); }
-
 /// Around the origin of their frames, with tops at z = 0.
 std::vector<Obstacle> shapes() {
   const double diagonal = 0.04 / std::sqrt(2.0);
   const Isometry3d on_edge =
-      at({0.0, 0.0, -diagonal}) * Eigen::AngleAxisd(M_PI / 4.0, Vector3d::UnitY());
+      placedAt({0.0, 0.0, -diagonal}) * Eigen::AngleAxisd(M_PI / 4.0, Vector3d::UnitY());
   const Isometry3d along_y =
-      at({0.0, 0.0, -0.01}) * Eigen::AngleAxisd(M_PI / 2.0, Vector3d::UnitX());
+      placedAt({0.0, 0.0, -0.01}) * Eigen::AngleAxisd(M_PI / 2.0, Vector3d::UnitX());
   const mesh::ObstacleMesh tip{
       {{0.02, 0.0, -0.03}, {-0.01, 0.02, -0.03}, {-0.01, -0.02, -0.03}, {0.0, 0.0, 0.0}},
       {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
-  return {{"floor", mesh::ObstacleBox{{0.5, 0.5, 0.02}}, at({0.0, 0.0, -0.01})},
+  return {{"floor", mesh::ObstacleBox{{0.5, 0.5, 0.02}}, placedAt({0.0, 0.0, -0.01})},
           {"edge", mesh::ObstacleBox{{0.04, 0.5, 0.04}}, on_edge},
-          {"sphere", mesh::ObstacleSphere{0.03}, at({0.0, 0.0, -0.03})},
+          {"sphere", mesh::ObstacleSphere{0.03}, placedAt({0.0, 0.0, -0.03})},
           {"pole", mesh::ObstacleCapsule{0.01, 0.3}, along_y},
-          {"needle", mesh::ObstacleCapsule{5e-4, 0.05}, at({0.002, 0.001, -0.0255})},
+          {"needle", mesh::ObstacleCapsule{5e-4, 0.05}, placedAt({0.002, 0.001, -0.0255})},
           {"tip", tip, Isometry3d::Identity()}};
 }
 

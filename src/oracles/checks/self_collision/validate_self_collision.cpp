@@ -28,8 +28,6 @@ cloth::StepSettings newtonSteps(int iterations) {
   return settings;
 }
 
-Isometry3d at(const Vector3d& place) { return Isometry3d(Eigen::Translation3d(place)); }
-
 void attach(cloth::Cloth& cloth, int particle, const Vector3d& place) {
   cloth::AttachmentPath path;
   path.start = place;
@@ -47,9 +45,9 @@ void validatePull(const material::Fabric& fabric, const Sink& sink) {
   constexpr double kSpeed = 0.01, kPressure = 100.0;  // m/s, Pa
   const double distance = thicknessAt(*fabric.compression, kPressure);
   // The ends by which layers are held lie beyond the others.
-  const ClothMesh lower = flatSheet({0.06, 0.04}, 6, 4, at({0.0, 0.0, 0.0}));
-  const ClothMesh middle = flatSheet({0.083, 0.029}, 8, 3, at({0.0215, 0.0, distance}));
-  const ClothMesh upper = flatSheet({0.05, 0.03}, 5, 3, at({-0.012, 0.0, 2.0 * distance}));
+  const ClothMesh lower = flatSheet({0.06, 0.04}, 6, 4, placedAt({0.0, 0.0, 0.0}));
+  const ClothMesh middle = flatSheet({0.083, 0.029}, 8, 3, placedAt({0.0215, 0.0, distance}));
+  const ClothMesh upper = flatSheet({0.05, 0.03}, 5, 3, placedAt({-0.012, 0.0, 2.0 * distance}));
   SelfCollidingCloth stack({asOneMesh({lower, middle, upper}), 0.0}, fabric, newtonSteps(20));
   const int of_lower = static_cast<int>(lower.initial_positions.size());
   const int to_upper = of_lower + static_cast<int>(middle.initial_positions.size());
@@ -87,12 +85,12 @@ void validatePull(const material::Fabric& fabric, const Sink& sink) {
 
 /// Two sheets fly into each other, without anything else.
 void validateMomentum(const material::Fabric& fabric, const Sink& sink) {
-  const Isometry3d oblique =
-      at({0.01, 0.005, 0.006}) * Eigen::AngleAxisd(0.15, Vector3d(1.0, 0.6, 0.0).normalized());
+  const Isometry3d oblique = placedAt({0.01, 0.005, 0.006}) *
+                             Eigen::AngleAxisd(0.15, Vector3d(1.0, 0.6, 0.0).normalized());
   cloth::StepSettings settings = newtonSteps(60);
   settings.tolerance = 1e-10;
   settings.newton_tolerance = 1e-14;
-  SelfCollidingCloth sheets({asOneMesh({flatSheet({0.06, 0.06}, 6, 6, at({0.0, 0.0, 0.0})),
+  SelfCollidingCloth sheets({asOneMesh({flatSheet({0.06, 0.06}, 6, 6, placedAt({0.0, 0.0, 0.0})),
                                         flatSheet({0.04, 0.04}, 4, 4, oblique)}),
                              0.0},
                             fabric, settings);
