@@ -111,7 +111,7 @@ void SelfProximity::find(std::vector<NearPair>& found, std::vector<double>* boun
     const PairDistance nearest = distanceOf(pair.kind, places);
     ++cost_.distances;
     if (!(nearest.distance <= distance_)) continue;
-    if (isNeighbour(pair, vertices)) continue;  // follows below
+    if (!neighbours_.empty() && isNeighbour(pair, vertices)) continue;  // follows below
     answer.limit(vertices, nearest.distance);
     found.push_back({pair, nearest});
   }

@@ -163,7 +163,7 @@ TEST(ObstacleCollision, GivesTheObstaclesThemselvesToAClothThatCollidesWithItsel
     obstacle.motion = mesh::ObstacleDrift{{-0.5, 0.0, 0.0}};
     if (x == 0.0) {
       try {
-        ObstacleCollision(cloth, {obstacle});
+        const ObstacleCollision collision(cloth, {obstacle});
         ADD_FAILURE();
       } catch (const std::invalid_argument& error) {
         EXPECT_NE(std::string(error.what()).find("touches obstacle 'needle' at the start"),

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
 #include "haptex/nodes/proximity/proximity_markers.h"
