@@ -21,9 +21,9 @@ from ros_fixtures import WAIT, DeviceTest, Diagnostics, process_of
 
 FELT = 0.05  # N
 NO_FORCE = 0.01  # N, of motors
-GONE = 1.0  # s, from the signal to the end of the process
+GONE = 5.0  # s, from the signal to the end of the process: 0.2 to 0.5 s unless the machine is busy
 UNFELT = 0.02  # s, from the end of a node that commands no force itself to zero force
-MOST_WORK = 0.05 * GONE  # s, of a thread meanwhile: 5 % of a core
+MOST_WORK = 0.05  # s, of a thread meanwhile
 TICK = 1.0 / os.sysconf('SC_CLK_TCK')  # s, what the system counts a thread's work in
 DEVICE = 'exoskeleton emulator'  # name in the diagnostics
 # What a shutdown call may bring: who asks and why, or anything.
@@ -103,7 +103,7 @@ class Stopping(DeviceTest):
         else:
             os.kill(victim, getattr(signal, way))
         after = before
-        while is_alive(victim) and rospy.get_time() < asked + 5.0 * GONE:
+        while is_alive(victim) and rospy.get_time() < asked + 2.0 * GONE:
             after = thread_work(victim) or after
             time.sleep(0.01)
         gone = rospy.get_time()
@@ -180,7 +180,7 @@ class Stopping(DeviceTest):
         last, _ = watcher.communicate(timeout=WAIT)
         print(f'a launch is gone {took:.1f} s after SIGINT; {last.strip()}')
         self.assertNotIn('escalating', output)
-        self.assertLess(took, 5.0)  # roslaunch itself waits for one node after the other
+        self.assertLess(took, 2.0 * GONE)  # roslaunch itself waits for one node after the other
         self.assertIn('the last force: 0 N\n', last)
 
 

@@ -20,8 +20,9 @@ using Eigen::Vector3d;
 ///   -rho A/2 {(cn |m| m + cl m q^2/s) n + (ct q^2 - cl m^2 q/s) t}.
 void validatePlate(Random& random, const Sink& sink) {
   const double width = random.uniform(0.05, 0.5), height = random.uniform(0.05, 0.5);
-  const mesh::ClothMesh mesh = kes::irregularRectangle(width, height, 3 + random.below(8),
-                                                       3 + random.below(8), random.below(1000000));
+  const int across = 3 + random.below(8), along = 3 + random.below(8);
+  const mesh::ClothMesh mesh =
+      kes::irregularRectangle(width, height, across, along, random.below(1000000));
   cloth::ModelledEffects effects;
   effects.gravity.setZero();
   effects.air = cloth::Air();

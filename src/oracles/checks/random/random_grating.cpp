@@ -13,9 +13,9 @@ namespace haptex::oracles {
 /// add up in power.
 void randomGrating(const std::string&, Random& random, const Sink& sink) {
   for (int i = 0; i < 5; ++i) {
-    tactile::HeightField field =
-        flatField(30 + random.below(50), 30 + random.below(50), random.uniform(0.5e-4, 2e-4),
-                  random.uniform(0.5e-4, 2e-4));
+    const int columns = 30 + random.below(50), rows = 30 + random.below(50);
+    const double spacing_x = random.uniform(0.5e-4, 2e-4), spacing_y = random.uniform(0.5e-4, 2e-4);
+    tactile::HeightField field = flatField(columns, rows, spacing_x, spacing_y);
     tactile::Stroke stroke;
     const double speed = random.logarithmic(1e-3, 0.4), angle = random.uniform(0.0, 360.0);
     stroke.velocity = speed * direction(angle);
