@@ -1,6 +1,6 @@
-// What does accuracy cost? Four motions of three fabrics, computed in many ways (elasticity,
-// integrator, time step, resolution, solver, tolerance) beside converged references: errors in
-// position, force and energy, and computing time. docs/trade_off.md defines all of it.
+// What does accuracy cost? Five motions of three fabrics, computed in many ways (elasticity,
+// integrator, time step, resolution, solver, tolerance, thickness) beside converged references:
+// errors in position, force and energy, and computing time. docs/trade_off.md defines all of it.
 //
 // bench_trade_off [CSV [DIRECTORY]] prints a line per motion, fabric, point and measure, shows its
 // progress on standard error, and writes the table, to build/trade_off.csv if not told. Only with a
@@ -110,9 +110,20 @@ void addExplicit(std::vector<TradeOffPoint>& points) {
   }
 }
 
+/// At which layers meet: thicker ones go farther before they do, and so may be cheaper.
+void addThicknesses(std::vector<TradeOffPoint>& points) {
+  for (double thickness : {0.5, 2.0, 4.0}) {
+    points.push_back(pointTo(1e-2, IntegrationMethod::kBdf2, 16, 1));
+    points.back().thickness = thickness;
+    points.push_back(pointTo(1e-2, IntegrationMethod::kBdf2, 16, 4));
+    points.back().thickness = thickness;
+  }
+}
+
 std::vector<TradeOffPoint> allPoints() {
   std::vector<TradeOffPoint> points;
   addFine(points);  // those that take long first
+  addThicknesses(points);
   addSolvers(points);
   addModels(points);
   addGrid(points);
@@ -122,8 +133,9 @@ std::vector<TradeOffPoint> allPoints() {
 
 std::vector<studies::TradeOffCase> allCases() {
   std::vector<studies::TradeOffCase> cases;
-  for (studies::Motion motion : {studies::Motion::kSwing, studies::Motion::kStretch,
-                                 studies::Motion::kHang, studies::Motion::kDrape}) {
+  for (studies::Motion motion :
+       {studies::Motion::kSwing, studies::Motion::kStretch, studies::Motion::kHang,
+        studies::Motion::kDrape, studies::Motion::kFold}) {
     for (const char* fabric : {"linear", "wool", "acrylic_knit"}) {
       cases.push_back({motion, material::loadFabric(std::string(HAPTEX_CONFIG_DIRECTORY) +
                                                     "/fabrics/" + fabric + ".yaml")});

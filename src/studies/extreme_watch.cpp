@@ -67,7 +67,7 @@ double EnergyWatch::growth(const cloth::Cloth& cloth, const cloth::ClothState& b
   return base::largerOrNaN(0.0, scale > 0.0 ? (energy - most) / scale : 0.0);
 }
 
-IntersectionWatch::IntersectionWatch(const cloth::Cloth& cloth) {
+IntersectionWatch::IntersectionWatch(const cloth::Cloth& cloth) : cloth_(cloth) {
   if (cloth.selfContact() == nullptr) return;
   intersections_.emplace(cloth.mesh().triangles, mesh::flatPositions(cloth.mesh()));
 }
@@ -78,8 +78,15 @@ bool IntersectionWatch::failsAt(const cloth::ClothState& state) {
     return false;
   }
   is_tangled_ = !intersections_->find(state.positions).empty();
-  was_free_ = was_free_ || !is_tangled_;
+  was_free_ = was_free_ || !(is_tangled_ || touchesItself(state));
   return is_tangled_ && was_free_;
+}
+
+bool IntersectionWatch::touchesItself(const cloth::ClothState& state) const {
+  const auto& near = cloth_.selfContact()->touching(state.positions);
+  return std::any_of(near.begin(), near.end(), [](const cloth::PairEnergy& pair) {
+    return pair.distance < cloth::LayerLaw::kTouching;
+  });
 }
 
 }  // namespace haptex::studies

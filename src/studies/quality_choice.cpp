@@ -72,9 +72,14 @@ double worstPosition(const Quality& quality) {
 
 /// Of those in which nothing touches the cloth.
 double worstFreeCost(const Quality& quality) {
+  const auto is_touched = [](const std::string& motion) {
+    return std::any_of(kMotions.begin(), kMotions.end(), [&](const NamedMotion& named) {
+      return motion == named.name && isTouched(named.motion);
+    });
+  };
   double worst = 0.0;
   for (const scene::MeasuredQuality& measured : quality.measured) {
-    if (measured.fabric != quality.fabric || measured.motion == nameOf(Motion::kDrape)) continue;
+    if (measured.fabric != quality.fabric || is_touched(measured.motion)) continue;
     worst = std::max(worst, measured.cost);
   }
   return worst;
@@ -107,7 +112,7 @@ std::string presetOf(const TradeOffPoint& point, const std::string& fabric,
         quality.step.solver == point.step.solver &&
         quality.step.tolerance == point.step.tolerance &&
         quality.step.newton_iterations == point.step.newton_iterations &&
-        quality.step.newton_error == point.step.newton_error) {
+        quality.step.newton_error == point.step.newton_error && point.thickness == 1.0) {
       return quality.name;
     }
   }
@@ -150,7 +155,7 @@ void writeResult(std::ostream& out, const TradeOffTable& table, std::size_t of_c
       << (result.distance.force < result.error.force) << ','
       << (result.distance.energy < result.error.energy) << ',' << result.relative_error << ','
       << 1e3 * result.cost << ',' << result.stable << ',' << result.settling_seconds << ',' << front
-      << ',' << preset << '\n';
+      << ',' << preset << ',' << settings.thickness << '\n';
 }
 
 }  // namespace
@@ -194,7 +199,7 @@ void writeTable(std::ostream& out, const TradeOffTable& table,
   out << "motion,fabric,elasticity,integrator,time_step,cell_size,newton_iterations,"
          "error,solves_per_step,solver,tolerance,position_error,force_error,energy_error,"
          "position_limited,force_limited,energy_limited,relative_error,cpu_ms_per_s,stable,"
-         "settling_time,front,preset\n";
+         "settling_time,front,preset,thickness\n";
   out << std::setprecision(6);
   for (std::size_t i = 0; i < table.cases.size(); ++i) {
     const Reference& reference = table.references[i];
@@ -202,7 +207,7 @@ void writeTable(std::ostream& out, const TradeOffTable& table,
     out << nameOf(table.cases[i].motion) << ',' << table.cases[i].fabric.name
         << ",reference,,,,,,,,,";
     writeErrors(out, own);
-    out << ",1,1,1,,,1,,0,\n";
+    out << ",1,1,1,,,1,,0,,\n";
     const std::vector<bool> front = onFront(table, i);
     for (std::size_t k = 0; k < table.points.size(); ++k) {
       if (!table.results[k][i].followed) continue;

@@ -31,6 +31,7 @@ constexpr int kHangMeanCycles = 40;
 constexpr int kSwingCycles = 100;
 constexpr int kStretchCycles = 72;
 constexpr int kDrapeCycles = 32;
+constexpr int kFoldCycles = 96;
 
 int cyclesOf(Motion motion) {
   switch (motion) {
@@ -40,6 +41,8 @@ int cyclesOf(Motion motion) {
       return kSwingCycles;
     case Motion::kStretch:
       return kStretchCycles;
+    case Motion::kFold:
+      return kFoldCycles;
     default:
       return kDrapeCycles;
   }
@@ -54,7 +57,18 @@ const TradeOffPoint& requireSound(const TradeOffPoint& point) {
     throw std::invalid_argument("steps_per_cycle is " + std::to_string(point.steps_per_cycle) +
                                 "; it must be positive");
   }
+  if (!(point.thickness > 0.0) || !std::isfinite(point.thickness)) {
+    throw std::invalid_argument("thickness is " + std::to_string(point.thickness) +
+                                "; it must be positive");
+  }
   return point;
+}
+
+material::Fabric fabricOf(Motion motion, material::Fabric fabric, const TradeOffPoint& point) {
+  if (motion == Motion::kFold && fabric.compression) {
+    fabric.compression->thickness *= requireSound(point).thickness;
+  }
+  return fabric;
 }
 
 Cloth sampleOf(Motion motion, const material::Fabric& fabric, const TradeOffPoint& point) {
@@ -64,14 +78,17 @@ Cloth sampleOf(Motion motion, const material::Fabric& fabric, const TradeOffPoin
   effects.elasticity = point.elasticity;
   effects.bending = fabric.bending.has_value();
   effects.contacts = motion == Motion::kDrape;
+  effects.self_collision = motion == Motion::kFold;
+  const bool hangs = motion != Motion::kDrape && motion != Motion::kFold;
   Eigen::Isometry3d above = Eigen::Isometry3d::Identity();
-  above.translation().z() = kSphereRadius + ObstacleCollision::kOffset;
+  if (motion == Motion::kDrape)
+    above.translation().z() = kSphereRadius + ObstacleCollision::kOffset;
   const int cells = requireSound(point).cells;
-  mesh::ClothMesh mesh = effects.contacts
-                             ? oracles::flatSheet({kSampleSize, kSampleSize}, cells, cells, above)
-                             : mesh::makeRectangle(kSampleSize, kSampleSize, cells, cells,
-                                                   mesh::Triangulation::kAlternating);
-  return Cloth(std::move(mesh), fabric, effects);
+  mesh::ClothMesh mesh = hangs
+                             ? mesh::makeRectangle(kSampleSize, kSampleSize, cells, cells,
+                                                   mesh::Triangulation::kAlternating)
+                             : oracles::flatSheet({kSampleSize, kSampleSize}, cells, cells, above);
+  return Cloth(std::move(mesh), fabricOf(motion, fabric, point), effects);
 }
 
 class MotionRun {
@@ -88,6 +105,11 @@ class MotionRun {
       collision_.emplace(cloth_,
                          std::vector<mesh::Obstacle>{{"sphere", mesh::ObstacleSphere{kSphereRadius},
                                                       Eigen::Isometry3d::Identity()}});
+    } else if (motion == Motion::kFold) {
+      for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
+        const Vector3d& place = state_.positions[i];
+        if (place.y() > -1e-9 * kSampleSize) cloth_.attach(static_cast<int>(i), {place});
+      }
     } else {
       moveSide(upper_, Vector3d::Zero(), 0.0);
     }
@@ -152,6 +174,14 @@ class MotionRun {
         for (int particle : lower_) cloth_.release(particle);
         lower_held_ = false;
       }
+    } else if (motion_ == Motion::kFold) {
+      const auto move = [&](const Vector3d& way, int cycles) {
+        moveSide(lower_, kSampleSize * way, cycles * kCycle);
+      };
+      lower_held_ = true;
+      if (cycle == 0) move({0.0, 0.5, 0.5}, 32);
+      if (cycle == 32) move({0.0, 0.325, -0.49}, 32);
+      if (cycle == 64) move({0.0, 0.075, 0.0}, 16);
     }
   }
 
@@ -237,7 +267,7 @@ class MotionRun {
   Vector3d upperSum(const ClothState& state) {
     cloth_.computeForces(state, forces_);
     Vector3d sum = Vector3d::Zero();
-    for (int particle : upper_) sum += forces_[particle];
+    for (int particle : motion_ == Motion::kFold ? lower_ : upper_) sum += forces_[particle];
     return sum;
   }
 
@@ -282,6 +312,11 @@ class MotionRun {
 };
 
 }  // namespace
+
+bool canFollow(Motion motion, const TradeOffPoint& point) {
+  if (motion == Motion::kFold) return cloth::collidesWithItself(point.step.method, false);
+  return point.thickness == 1.0;
+}
 
 Trajectory follow(Motion motion, const material::Fabric& fabric, const TradeOffPoint& point) {
   return MotionRun(motion, fabric, point).follow();

@@ -193,9 +193,10 @@ std::vector<std::vector<TradeOffResult>> followPoints(const std::vector<TradeOff
                                                    std::vector<TradeOffResult>(cases.size()));
   share(static_cast<int>(points.size()), threads, [&](int task) {
     for (std::size_t i = 0; i < cases.size(); ++i) {
+      if (!canFollow(cases[i].motion, points[task])) continue;
       results[task][i] =
           compare(follow(cases[i].motion, cases[i].fabric, points[task]), references[i]);
-      if (results[task][i].cost > most_cost) break;
+      if (!isTouched(cases[i].motion) && results[task][i].cost > most_cost) break;
     }
     const std::lock_guard<std::mutex> lock(mutex);
     if (progress) progress(nameOf(points[task]));
@@ -213,6 +214,7 @@ std::string nameOf(const TradeOffPoint& point) {
       name += oracles::numbered(point.step.newton_error) + "error-";
     name += std::string(nameOf(point.step.solver)) + "-" + oracles::numbered(point.step.tolerance);
   }
+  if (point.thickness != 1.0) name += "-" + oracles::numbered(point.thickness) + "thickness";
   return name;
 }
 

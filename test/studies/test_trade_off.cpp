@@ -116,6 +116,41 @@ TEST(TradeOff, HoldsTheWeightOfWhatRests) {
   EXPECT_NEAR(drape.snapshots.back().force.z(), weight, 0.2 * weight);
 }
 
+TEST(TradeOff, FoldLaysTwoLayersOnEachOther) {
+  const material::Fabric wool = shipped("wool");
+  const double thickness = wool.compression->thickness;
+  for (double times : {1.0, 3.0}) {
+    TradeOffPoint point = pointOf(8, 2, 20);
+    point.step.newton_error = 1e-2;
+    point.thickness = times;
+    const Trajectory fold = follow(Motion::kFold, wool, point);
+    ASSERT_TRUE(fold.accepted);
+    // A third of the free half away from its edge, which is held at a height of 2 mm.
+    const double height = fold.snapshots.back().positions[4 * 25 + 12].z();
+    EXPECT_GT(height, 0.2 * times * thickness);
+    EXPECT_LT(height, 1.1 * times * thickness);
+  }
+}
+
+TEST(TradeOff, FollowsFoldOnlyInStepsThatKnowSelfCollision) {
+  TradeOffPoint point = pointOf(8, 1, 2);
+  EXPECT_TRUE(canFollow(Motion::kFold, point));
+  point.thickness = 2.0;
+  EXPECT_TRUE(canFollow(Motion::kFold, point));
+  EXPECT_FALSE(canFollow(Motion::kSwing, point));
+  EXPECT_EQ(nameOf(point),
+            "green_lagrange-backward_euler-12.5ms-8cells-2solves-automatic-0.000001-2thickness");
+  point.step.method = cloth::IntegrationMethod::kBackwardMidpoint;
+  EXPECT_FALSE(canFollow(Motion::kFold, point));
+  const material::Fabric linear = shipped("linear");
+  EXPECT_THROW(follow(Motion::kFold, linear, point), std::invalid_argument);
+  point = pointOf(8, 1, 2);
+  for (double thickness : {0.0, -1.0, std::nan("")}) {
+    point.thickness = thickness;
+    EXPECT_THROW(follow(Motion::kFold, linear, point), std::invalid_argument);
+  }
+}
+
 TEST(TradeOff, RepeatsToTheLastBit) {
   const material::Fabric wool = shipped("wool");
   for (const NamedMotion& named : kMotions) {

@@ -41,18 +41,22 @@ class EnergyWatch {
   std::deque<double> energies_;  // J, before the last steps
 };
 
-/// Watches that cloth which collides with itself does not intersect itself any more once it did
-/// not; nothing of other cloth.
+/// Watches that cloth which collides with itself does not intersect itself any more once it neither
+/// did nor touched itself (LayerLaw::kTouching); nothing of other cloth.
 class IntersectionWatch {
  public:
+  /// @param cloth must outlive this
   explicit IntersectionWatch(const cloth::Cloth& cloth);
 
-  /// Whether the state intersects itself and an earlier one did not.
+  /// Whether the state intersects itself and an earlier one was free.
   bool failsAt(const cloth::ClothState& state);
   /// Whether the last state was in a tangle.
   bool isTangled() const { return is_tangled_; }
 
  private:
+  bool touchesItself(const cloth::ClothState& state) const;
+
+  const cloth::Cloth& cloth_;
   std::optional<proximity::MeshIntersections> intersections_;
   bool was_free_ = false;
   bool is_tangled_ = false;

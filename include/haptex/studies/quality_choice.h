@@ -27,7 +27,8 @@ CostAndError overall(const std::vector<TradeOffResult>& results);
 /// by rising cost and falling error (overall() of its motions): with Green-Lagrange elements and an
 /// implicit method, cells of at most kMaxCell, stable in all of its motions, and each more accurate
 /// than the one before by kMinGain at least. Three of them have the names of presets, by rule:
-///   accurate: the least error of those whose cost is at most kMaxCost in every motion but drape
+///   accurate: the least error of those whose cost is at most kMaxCost where nothing touches the
+///             cloth
 ///   fast:     the least cost of those whose error in position is at most kMaxPositionError of the
 ///             sample's size in every motion
 ///   balanced: kneeOf() those from the one to the other, but neither of them; only if there is one

@@ -17,16 +17,23 @@ enum class Motion {
   kSwing,    ///< hangs at rest from a bar that is then moved to and fro across the sample
   kStretch,  ///< hangs at rest, is pulled taut and aside at its lower edge, and let go
   kDrape,    ///< falls flat on a fixed sphere
+  kFold,     ///< one half lies fixed, the other one is laid over it by its edge, and then pulled
 };
+
+/// Whether something touches the cloth, which may then cost many times as much.
+constexpr bool isTouched(Motion motion) {
+  return motion == Motion::kDrape || motion == Motion::kFold;
+}
 
 struct NamedMotion {
   const char* name;
   Motion motion;
 };
-inline constexpr std::array<NamedMotion, 4> kMotions = {{{"hang", Motion::kHang},
+inline constexpr std::array<NamedMotion, 5> kMotions = {{{"hang", Motion::kHang},
                                                          {"swing", Motion::kSwing},
                                                          {"stretch", Motion::kStretch},
-                                                         {"drape", Motion::kDrape}}};
+                                                         {"drape", Motion::kDrape},
+                                                         {"fold", Motion::kFold}}};
 
 constexpr double kSampleSize = 0.2;  ///< m
 constexpr double kCycle = 0.0125;    ///< s, between two instants that are compared
@@ -39,6 +46,7 @@ struct TradeOffPoint {
   cloth::StepSettings step;
   int cells = 16;           ///< along each side, > 0
   int steps_per_cycle = 1;  ///< > 0
+  double thickness = 1.0;   ///< at which layers meet, over the fabric's, > 0; of fold alone
 
   double cellSize() const { return kSampleSize / cells; }       ///< m
   double timeStep() const { return kCycle / steps_per_cycle; }  ///< s
@@ -51,6 +59,7 @@ struct Snapshot {
   std::vector<Eigen::Vector3d> positions;
   /// N, of what holds the cloth: the mean over the cycle before, from the cloth's change of
   /// momentum. Hang, and stretch while the lower edge is held: of the upper edge, at this instant.
+  /// Fold: of the edge that is moved.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   double energy = 0.0;  ///< J, kinetic and potential, above that at the beginning
 };
@@ -66,10 +75,14 @@ struct Trajectory {
                                    ///< a cycle; simulated_seconds if one was at the very end
 };
 
+/// Whether a motion can be followed so: cloth collides with itself in steps of some methods only,
+/// and in no other motion than fold has a thickness.
+bool canFollow(Motion motion, const TradeOffPoint& point);
+
 /// Computes a motion; a run repeats to the last bit.
-/// @param fabric its warp curve rises; for drape with friction
-/// @throws std::invalid_argument if cells or steps_per_cycle are not what TradeOffPoint says, or
-///   what Integrator and Cloth throw
+/// @param fabric its warp curve rises; for drape with friction, for fold with compression, too
+/// @throws std::invalid_argument if cells, steps_per_cycle or thickness are not what TradeOffPoint
+///   says, or what Integrator and Cloth throw
 Trajectory follow(Motion motion, const material::Fabric& fabric, const TradeOffPoint& point);
 
 /// The state of rest of hang as a trajectory of one snapshot.

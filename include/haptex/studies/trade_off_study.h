@@ -40,9 +40,10 @@ struct Reference {
   TradeOffErrors scale;
 };
 
-/// Of hang the static equilibrium; of swing and stretch by TR-BDF2. Of drape, whose impacts are of
-/// the first order by any method, by backward Euler, extrapolated to a step of zero from two runs,
-/// one with half of the step; its cells are three quarters as many. Newton iterations to the end.
+/// Of hang the static equilibrium; of swing, stretch and fold by TR-BDF2. Of drape, whose impacts
+/// are of the first order by any method, by backward Euler, extrapolated to a step of zero from two
+/// runs, one with half of the step; its cells are three quarters as many. Newton iterations to the
+/// end.
 /// @throws std::invalid_argument as follow(), std::runtime_error if a step is refused
 Reference computeReference(const TradeOffCase& of, const ReferenceSettings& settings);
 
@@ -69,7 +70,8 @@ TradeOffResult compare(const Trajectory& trajectory, const Reference& reference)
 using Progress = std::function<void(const std::string& done)>;
 
 /// Follows points in cases, shared among threads.
-/// @param most_cost a point that costs more in a case is not followed in those after it
+/// @param most_cost a point that costs more in a case in which nothing touches the cloth is not
+///   followed in those after it
 /// @return by point, then by case
 std::vector<std::vector<TradeOffResult>> followPoints(const std::vector<TradeOffPoint>& points,
                                                       const std::vector<TradeOffCase>& cases,

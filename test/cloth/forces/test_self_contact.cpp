@@ -43,6 +43,20 @@ TEST(LayerLaw, PressureIsTheDerivativeOfItsEnergyAndSlopeThatOfThePressure) {
   }
 }
 
+TEST(LayerLaw, WhatTouchesHasAFiniteEnergyAndNoPressure) {
+  const LayerLaw law(fabricNamed("wool"));
+  for (double distance : {0.0, 0.5 * LayerLaw::kTouching}) {
+    for (const LayerPressure& touching : {law.at(distance), law.guardAt(distance)}) {
+      EXPECT_EQ(touching.pressure, 0.0);
+      EXPECT_EQ(touching.slope, 0.0);
+    }
+    EXPECT_EQ(law.at(distance).energy, law.at(LayerLaw::kTouching).energy);
+    EXPECT_EQ(law.guardAt(distance).energy, law.guardAt(LayerLaw::kTouching).energy);
+  }
+  EXPECT_GT(law.at(LayerLaw::kTouching).pressure, 0.0);
+  EXPECT_TRUE(std::isfinite(law.at(LayerLaw::kTouching).energy));
+}
+
 TEST(SelfContact, FlatLayersHaveTheCurvesPressureOnTheirAreaHoweverTheyLie) {
   const material::Fabric fabric = fabricNamed("wool");
   const double side = 0.08;

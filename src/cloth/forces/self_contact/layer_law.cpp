@@ -34,6 +34,7 @@ LayerLaw::LayerLaw(const material::Fabric& fabric)
       least_(compression_.thickness * (1.0 - lastStrain(compression_.pressure))) {}
 
 LayerPressure LayerLaw::at(double distance) const {
+  if (distance < kTouching) return {at(kTouching).energy, 0.0, 0.0};
   const double thickness = compression_.thickness;
   if (!(distance < thickness)) return {0.0, 0.0, 0.0};
   const double strain = (thickness - std::max(distance, least_)) / thickness;
@@ -51,6 +52,7 @@ LayerPressure LayerLaw::at(double distance) const {
 }
 
 LayerPressure LayerLaw::guardAt(double distance) const {
+  if (distance < kTouching) return {guardAt(kTouching).energy, 0.0, 0.0};
   if (!(distance < least_)) return {0.0, 0.0, 0.0};
   return barrier(distance, material::kKesHighPressure / least_);
 }

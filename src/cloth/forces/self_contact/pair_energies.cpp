@@ -28,6 +28,11 @@ LayerPressure mirrored(const LayerPressure& layers) {
 /// have jumped for a comparison of energies, may lie inside.
 double gapOf(double distance, double radius) { return std::max(1e-9, distance - radius); }
 
+/// Zero where both places are the same.
+Vector3d directionOf(const Vector3d& away, double distance) {
+  return distance > 0.0 ? Vector3d(away / distance) : Vector3d(Vector3d::Zero());
+}
+
 /// @param area m^2, < 0 of what is subtracted
 void spread(const LayerPressure& law, double area, PairEnergy& energy) {
   energy.energy = area * law.energy;
@@ -119,7 +124,7 @@ void PairEnergies::addVertex(const Positions& positions, int vertex,
     }
     energy.distance = away.norm();
     if (energy.distance >= law_.thickness()) continue;
-    energy.normal = away / energy.distance;
+    energy.normal = directionOf(away, energy.distance);
     spread(law_.at(energy.distance), feature.times * vertex_areas_[vertex], energy);
     found.push_back(energy);
   }
@@ -142,7 +147,7 @@ void PairEnergies::addEdges(const Positions& positions, const Pair& pair,
     away += energy.weights[i] * places[i];
   }
   energy.distance = nearest.distance;
-  energy.normal = away / nearest.distance;
+  energy.normal = directionOf(away, nearest.distance);
   fadeWhereParallel(places[1] - places[0], places[3] - places[2],
                     kParallel * edge_squares_[pair.first] * edge_squares_[pair.second],
                     0.5 * (edge_areas_[pair.first] + edge_areas_[pair.second]),
@@ -199,7 +204,7 @@ void PairEnergies::addVertexAtObstacle(const Positions& positions, const Obstacl
     energy.vertices[0] = vertex;
     energy.weights[0] = 1.0;
     energy.distance = gapOf(distance, pair.radius);
-    energy.normal = away / distance;
+    energy.normal = directionOf(away, distance);
     spread(mirrored(law_.at(2.0 * energy.distance)), 2.0 * feature.times * vertex_areas_[vertex],
            energy);
     energy.way = obstacles.surfaces.wayOf(energy.obstacle, feature.size, feature.ids.data(),

@@ -24,12 +24,16 @@ class LayerLaw {
   /// @throws std::invalid_argument if the fabric has no compression
   explicit LayerLaw(const material::Fabric& fabric);
 
-  /// @param distance m, > 0
+  /// m: what is nearer than this touches. Rounding then decides on which side of each other two
+  /// layers are, so the energy stays what it is there, without pressure. Only starts are so near.
+  static constexpr double kTouching = 1e-9;
+
+  /// @param distance m, >= 0
   LayerPressure at(double distance) const;
   /// A guard for places that touch without layers lying on each other, two edges that cross: zero
   /// from the least distance on, and then the barrier with a c of kKesHighPressure / least
   /// distance.
-  /// @param distance m, > 0
+  /// @param distance m, >= 0
   LayerPressure guardAt(double distance) const;
 
   double thickness() const { return compression_.thickness; }  ///< m, without pressure
