@@ -180,8 +180,8 @@ class MotionRun {
       };
       lower_held_ = true;
       if (cycle == 0) move({0.0, 0.5, 0.5}, 32);
-      if (cycle == 32) move({0.0, 0.325, -0.49}, 32);
-      if (cycle == 64) move({0.0, 0.075, 0.0}, 16);
+      if (cycle == 32) move({0.0, 0.275, -0.49}, 32);
+      if (cycle == 64) move({0.0, 0.05, 0.0}, 16);
     }
   }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptex/cloth/forces/self_contact/layer_law.h"
 #include "haptex/proximity/continuous.h"
 
 namespace haptex::cloth {
@@ -17,7 +16,7 @@ constexpr int kMostWays = 16, kMostWaysAmongObstacles = 64;
 constexpr double kKept = 0.8;
 // Needles that are neighbours at rest have no pressure: a fifth less on every way, their distance
 // would be below the rounding of their places after a hundred. Below this one (m) it stays.
-constexpr double kLeast = 2.0 * LayerLaw::kTouching, kKeptBelow = 1.0 - 1e-9;
+constexpr double kLeast = 1e-12, kKeptBelow = 1.0 - 1e-9;
 
 }  // namespace
 
@@ -206,7 +205,7 @@ std::optional<SafeMotion::Touch> SafeMotion::touch(const Pair& pair) const {
   const double reach = margin + relative / (1.0 - kKept) + pair.radius;
   if (proximity::isSurelyApart(pair.kind, begin, reach)) return {};
   const proximity::PairDistance nearest = proximity::distanceOf(pair.kind, begin);
-  if (nearest.distance < LayerLaw::kTouching) return {};  // there is no side to keep to
+  if (nearest.distance == 0.0) return {};  // there is no side to keep to
   const double distance = nearest.distance - pair.radius;
   const double kept = std::min(margin, (distance > kLeast ? kKept : kKeptBelow) * distance);
   if (relative < distance - kept) return {};
