@@ -46,6 +46,16 @@ int substepsOf(double cycle, double time_step) {
   return std::max(1, static_cast<int>(std::ceil(cycle / time_step * (1.0 - kRounding))));
 }
 
+scene::Quality knownTo(const cloth::ModelledEffects& effects, scene::Quality quality) {
+  if (!effects.self_collision || cloth::collidesWithItself(quality.step.method, effects.contacts)) {
+    return quality;
+  }
+  quality.step.method = cloth::IntegrationMethod::kBackwardEuler;
+  quality.name += std::string(", ") + nameOf(quality.step.method);
+  quality.measured.clear();
+  return quality;
+}
+
 StepPlan planOf(const Candidate& candidate, int threads) {
   StepPlan plan{candidate.quality.step, candidate.substeps, candidate.cycles};
   plan.step.threads = threads;

@@ -71,6 +71,30 @@ TEST(QualityChoice, PlansKeepTheThreadsOfTheScene) {
   EXPECT_EQ(plan.step.threads, 2);
 }
 
+TEST(QualityChoice, AMethodThatDoesNotKnowSelfCollisionBecomesBackwardEuler) {
+  scene::Quality quality;
+  quality.name = "fast";
+  quality.step.newton_error = 1e-2;
+  quality.measured = {{"swing", "wool", 1e-3, 0.01, 2e-5, 0.25}};
+  cloth::ModelledEffects effects;
+  const auto method = [&](cloth::IntegrationMethod of_quality) {
+    quality.step.method = of_quality;
+    const scene::Quality known = knownTo(effects, quality);
+    EXPECT_EQ(known.measured.empty(), known.step.method != of_quality);
+    EXPECT_EQ(known.name == "fast", known.step.method == of_quality);
+    EXPECT_EQ(known.step.newton_error, 1e-2);
+    return known.step.method;
+  };
+  using cloth::IntegrationMethod;
+  EXPECT_EQ(method(IntegrationMethod::kBackwardMidpoint), IntegrationMethod::kBackwardMidpoint);
+  effects.self_collision = true;
+  EXPECT_EQ(method(IntegrationMethod::kBackwardMidpoint), IntegrationMethod::kBackwardEuler);
+  EXPECT_EQ(method(IntegrationMethod::kTrBdf2), IntegrationMethod::kTrBdf2);
+  effects.contacts = true;
+  EXPECT_EQ(method(IntegrationMethod::kTrBdf2), IntegrationMethod::kBackwardEuler);
+  EXPECT_EQ(method(IntegrationMethod::kBackwardEuler), IntegrationMethod::kBackwardEuler);
+}
+
 TEST(QualityChoice, OnAMeshThatStaysSettingsCountOnce) {
   std::vector<scene::Quality> qualities = front();
   EXPECT_EQ(settingsAlone(qualities, 0.012).size(), 2u);

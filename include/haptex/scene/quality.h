@@ -11,7 +11,7 @@ namespace haptex::scene {
 /// What a quality missed in one motion of the trade-off study against a converged reference, and
 /// took: root mean squares over the motion. docs/trade_off.md defines motions and measures.
 struct MeasuredQuality {
-  std::string motion;           ///< hang, swing, stretch or drape
+  std::string motion;           ///< hang, swing, stretch, drape or fold
   std::string fabric;           ///< name of a file in config/fabrics
   double position_error = 0.0;  ///< m
   double force_error = 0.0;     ///< N, of what holds the cloth

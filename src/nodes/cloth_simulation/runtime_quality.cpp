@@ -78,18 +78,24 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
   if (!preset.empty()) preset = {presetFor(fabric_, request.preset_path, preset, studied_)};
   if (!scene_.any_cells) front = simulation::settingsAlone(front, meanCellSize(scene_.mesh));
   const auto measure = [&](const scene::Quality& quality, int substeps) {
-    return simulation::measureCycle(scene_path, fabric_, quality, substeps);
+    return simulation::measureCycle(scene_path, fabric_,
+                                    simulation::knownTo(scene_.effects, quality), substeps);
   };
   candidates_ = simulation::calibrate(
       front, cycle, measure,
       {reducible_ ? 0.0 : kAllowance, kLongestInBudgets * std::min(budget_, cycle)});
+  for (simulation::Candidate& candidate : candidates_) {
+    candidate.quality = simulation::knownTo(scene_.effects, candidate.quality);
+  }
   if (!scene_.any_cells) simulation::sortByTime(candidates_);
   if (reducible_) {
-    reduce(scene_path, preset.empty() ? qualityOfScene() : preset.front());
+    reduce(scene_path,
+           preset.empty() ? qualityOfScene() : simulation::knownTo(scene_.effects, preset.front()));
   } else if (preset.empty()) {
     choose(scene_path);
   } else {
     rungs_ = simulation::calibrate(preset, cycle, measure, {});
+    rungs_.front().quality = simulation::knownTo(scene_.effects, rungs_.front().quality);
   }
   if (!std::isfinite(rungs_[first_].seconds)) {
     throw std::invalid_argument("quality '" + rungs_[first_].quality.name +
@@ -190,7 +196,8 @@ haptex::QualityPoint RuntimeQuality::pointMessage(const simulation::Candidate& c
   point.solver_tolerance = quality.step.tolerance;
   point.newton_iterations = static_cast<std::uint32_t>(quality.step.newton_iterations);
   point.cell_size = quality.cell_size;
-  point.cells_as_measured = scene_.any_cells;  // if need be after a restart
+  // If need be after a restart.
+  point.cells_as_measured = scene_.any_cells && !quality.measured.empty();
   point.fabric = simulation::nearestStudied(fabric, studied_).name;
   for (const scene::MeasuredQuality& measured : simulation::measurementsOf(quality, point.fabric)) {
     point.motion.push_back(measured.motion);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -58,6 +59,27 @@ TEST_F(RuntimeQualityOfAScene, APresetRunsOnItsCellsAndStays) {
   EXPECT_EQ(message.changes, 0u);
   EXPECT_EQ(message.within_budget, 1.0);
   EXPECT_GT(message.cycle_ms, 0.0);
+}
+
+/// Among obstacles cloth collides with itself in steps of backward Euler alone.
+TEST_F(RuntimeQualityOfAScene, APresetIsByAMethodThatKnowsWhatTheSceneModels) {
+  scene("top");
+  std::ofstream(path_, std::ios::app)
+      << "obstacles: [{name: ball, sphere: 0.01, position: [0, 0, -0.3]}]\n";
+  std::ifstream file(path_);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text.replace(text.find("[gravity]"), 9, "[gravity, self_collision, obstacles]");
+  std::ofstream(path_) << text;
+  for (const QualityRequest& request :
+       {QualityRequest{kFast, 0.0}, QualityRequest{kFast, 1e-2}, QualityRequest{"", 1e-2}}) {
+    const RuntimeQuality quality(path_.string(), request);
+    simulation::SimulatedCloth simulation = quality.simulate();
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(simulation.step());
+    const haptex::QualityPoint point = quality.message(simulation, ros::Time(1.0)).quality;
+    EXPECT_EQ(point.integrator, "backward_euler") << point.name;
+    EXPECT_FALSE(point.cells_as_measured) << point.name;
+    EXPECT_TRUE(point.motion.empty()) << point.name;
+  }
 }
 
 TEST_F(RuntimeQualityOfAScene, AMeshWithParticlesByIndexStaysAsItIs) {
