@@ -31,16 +31,28 @@ class SegmentSearch {
   PairDistance run() {
     if (const auto inside = nearestInside(p_[0], p_[1], p_[2], p_[3])) {
       consider((*inside)[0], (*inside)[1]);
+      if (!isNearlyParallel()) return result();
     }
     for (int end = 0; end < 2; ++end) {
       consider(end, nearestFraction(p_[end], p_[2], p_[3]));
       consider(nearestFraction(p_[2 + end], p_[0], p_[1]), end);
     }
+    return result();
+  }
+
+ private:
+  /// So that rounding may make an end the better place.
+  bool isNearlyParallel() const {
+    constexpr double kSine = 1e-3;
+    const Vector3d way = p_[1] - p_[0], other = p_[3] - p_[2];
+    return way.cross(other).squaredNorm() < kSine * kSine * way.squaredNorm() * other.squaredNorm();
+  }
+
+  PairDistance result() const {
     return {std::sqrt(square_),
             Vector4d(1.0 - fractions_[0], fractions_[0], 1.0 - fractions_[1], fractions_[1])};
   }
 
- private:
   void consider(double s, double t) {
     const double square =
         ((p_[0] + s * (p_[1] - p_[0])) - (p_[2] + t * (p_[3] - p_[2]))).squaredNorm();
@@ -124,8 +136,9 @@ bool isSurelyApart(ElementPairKind kind, const Places& places, double distance) 
     }
   }
   const double clear = std::max(least, -most);
+  if (!(clear > 0.0 && clear * clear > distance * distance * normal.squaredNorm())) return false;
   const double wanted = (1.0 + kSafety) * distance + kSafety * std::sqrt(size);
-  return clear > 0.0 && clear * clear > wanted * wanted * normal.squaredNorm();
+  return clear * clear > wanted * wanted * normal.squaredNorm();
 }
 
 std::vector<ElementPair> nearPairsByBruteForce(const MeshElements& elements,

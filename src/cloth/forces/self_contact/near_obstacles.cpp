@@ -19,6 +19,14 @@ Box grown(const Box& box, double by) {
   return {box.min() - Vector3d::Constant(by), box.max() + Vector3d::Constant(by)};
 }
 
+template <typename Corners>
+Box around(const std::vector<Box>& boxes, const Corners& corners, std::size_t begin,
+           std::size_t end) {
+  Box box = boxes[corners[begin]];
+  for (std::size_t i = begin + 1; i < end; ++i) box.extend(boxes[corners[i]]);
+  return box;
+}
+
 }  // namespace
 
 NearObstacles::OwnElements::OwnElements(const proximity::MeshElements& elements)
@@ -48,23 +56,36 @@ NearObstacles::NearObstacles(const std::vector<std::array<int, 3>>& triangles,
       searched_(searched),
       own_of_cloth_(cloth_),
       own_of_obstacles_(surfaces_->elements()),
+      corner_boxes_(emptyBoxes(particles + surfaces_->vertexCount())),
       boxes_(emptyBoxes(surfaces_->elements().triangles.size())),
       tree_(boxes_) {
-  fitBoxes(surfaces_->atEnd(), nullptr);
+  fitObstacleBoxes(surfaces_->atEnd(), nullptr);
   tree_ = proximity::BoxTree(boxes_);
 }
 
-void NearObstacles::fitBoxes(const Places& places, const Places* ways) {
+void NearObstacles::fitObstacleBoxes(const Places& places, const Places* ways) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Box& box = corner_boxes_[particles_ + i];
+    box = Box(places[i]);
+    if (ways != nullptr) box.extend(places[i] + (*ways)[i]);
+  }
   for (std::size_t t = 0; t < boxes_.size(); ++t) {
-    const auto& corners = surfaces_->elements().triangles[t];
-    Box box;
-    for (const int corner : corners) {
-      box.extend(places[corner]);
-      if (ways != nullptr) box.extend(places[corner] + (*ways)[corner]);
-    }
-    boxes_[t] = grown(box, surfaces_->radius(surfaces_->obstacleOf(corners[0])));
+    std::array<int, 3> corners = surfaces_->elements().triangles[t];
+    const double radius = surfaces_->radius(surfaces_->obstacleOf(corners[0]));
+    for (int& corner : corners) corner += particles_;
+    boxes_[t] = grown(around(corner_boxes_, corners, 0, 3), radius);
   }
   tree_.refit(boxes_);
+}
+
+/// All whose boxes are at most a distance apart.
+void NearObstacles::visit(double distance, std::vector<Pair>& found) {
+  found.clear();
+  for (std::size_t t = 0; t < cloth_.triangles.size(); ++t) {
+    const Box box = around(corner_boxes_, cloth_.triangles[t], 0, 3);
+    tree_.visit(grown(box, distance),
+                [&](int other) { addPairs(static_cast<int>(t), other, distance, found); });
+  }
 }
 
 void NearObstacles::find(const Places& positions, const Places& places, double distance) {
@@ -76,14 +97,9 @@ void NearObstacles::find(const Places& positions, const Places& places, double d
       return;
     }
   }
-  fitBoxes(places, nullptr);
-  pairs_.clear();
-  for (std::size_t t = 0; t < cloth_.triangles.size(); ++t) {
-    Box box;
-    for (const int corner : cloth_.triangles[t]) box.extend(positions[corner]);
-    tree_.visit(grown(box, searched_),
-                [&](int other) { addPairs(static_cast<int>(t), other, pairs_); });
-  }
+  for (std::size_t i = 0; i < positions.size(); ++i) corner_boxes_[i] = Box(positions[i]);
+  fitObstacleBoxes(places, nullptr);
+  visit(searched_, pairs_);
   const auto measure = [&](Pair& pair) {
     std::array<Vector3d, 4> at;
     for (int i = 0; i < 4; ++i) {
@@ -107,56 +123,48 @@ void NearObstacles::find(const Places& positions, const Places& places, double d
 const std::vector<NearObstacles::Pair>& NearObstacles::onWays(
     const Places& positions, const Vector3d& common, const Places& ways, const Places& places,
     const Places* place_ways, double distance) {
-  fitBoxes(places, place_ways);
-  on_ways_.clear();
-  for (std::size_t t = 0; t < cloth_.triangles.size(); ++t) {
-    Box box;
-    for (const int corner : cloth_.triangles[t]) {
-      box.extend(positions[corner]);
-      box.extend(positions[corner] + common);
-      box.extend(positions[corner] + common + ways[corner]);
-    }
-    tree_.visit(grown(box, distance),
-                [&](int other) { addPairs(static_cast<int>(t), other, on_ways_); });
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    corner_boxes_[i] = Box(positions[i]);
+    corner_boxes_[i].extend(positions[i] + common);
+    corner_boxes_[i].extend(positions[i] + common + ways[i]);
   }
+  fitObstacleBoxes(places, place_ways);
+  visit(distance, on_ways_);
   std::sort(on_ways_.begin(), on_ways_.end());
   return on_ways_;
 }
 
-void NearObstacles::addPairs(int of_cloth, int of_obstacle, std::vector<Pair>& found) const {
+void NearObstacles::addPairs(int of_cloth, int of_obstacle, double distance,
+                             std::vector<Pair>& found) const {
   const proximity::MeshElements& others = surfaces_->elements();
   const std::array<int, 3>& face = cloth_.triangles[of_cloth];
   std::array<int, 3> other = others.triangles[of_obstacle];
   const int obstacle = surfaces_->obstacleOf(other[0]);
   const double radius = surfaces_->radius(obstacle);
   for (int& corner : other) corner += particles_;
+  const auto add = [&](ElementPairKind kind, int first, int second,
+                       const std::array<int, 4>& vertices) {
+    const std::size_t first_end = kind == ElementPairKind::kVertexTriangle ? 1 : 2;
+    const Box box = around(corner_boxes_, vertices, 0, first_end);
+    if (!grown(box, distance + radius).intersects(around(corner_boxes_, vertices, first_end, 4))) {
+      return;
+    }
+    found.push_back({kind, first, second, vertices, obstacle, radius});
+  };
   for (const int vertex : own_of_cloth_.vertices[of_cloth]) {
-    found.push_back({ElementPairKind::kVertexTriangle,
-                     vertex,
-                     of_obstacle,
-                     {vertex, other[0], other[1], other[2]},
-                     obstacle,
-                     radius});
+    add(ElementPairKind::kVertexTriangle, vertex, of_obstacle,
+        {vertex, other[0], other[1], other[2]});
   }
   for (const int own : own_of_obstacles_.vertices[of_obstacle]) {
     const int vertex = own + particles_;
-    found.push_back({ElementPairKind::kVertexTriangle,
-                     vertex,
-                     of_cloth,
-                     {vertex, face[0], face[1], face[2]},
-                     obstacle,
-                     radius});
+    add(ElementPairKind::kVertexTriangle, vertex, of_cloth, {vertex, face[0], face[1], face[2]});
   }
   for (const int first : own_of_cloth_.edges[of_cloth]) {
     for (const int second : own_of_obstacles_.edges[of_obstacle]) {
       const proximity::Edge& a = cloth_.edges[first];
       const proximity::Edge& b = others.edges[second];
-      found.push_back({ElementPairKind::kEdgeEdge,
-                       first,
-                       second,
-                       {a[0], a[1], b[0] + particles_, b[1] + particles_},
-                       obstacle,
-                       radius});
+      add(ElementPairKind::kEdgeEdge, first, second,
+          {a[0], a[1], b[0] + particles_, b[1] + particles_});
     }
   }
 }

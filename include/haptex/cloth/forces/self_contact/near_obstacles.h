@@ -17,8 +17,8 @@ namespace haptex::cloth {
 /// of the cloth, `first` is so too; all other numbers count from 0 on either side. Of two edges the
 /// cloth's is the first.
 ///
-/// Finds them through boxes around all triangles: those of the obstacles in a tree, those of the
-/// cloth one after the other. Allocates nothing once its buffers have had the size that they need.
+/// Finds them through boxes around all triangles, those of the obstacles in a tree, those of the
+/// cloth one after the other, and then around their vertices and edges. Allocates nothing once its buffers have had the size that they need.
 class NearObstacles {
  public:
   using Pair = NearPairs::Pair;
@@ -60,15 +60,17 @@ class NearObstacles {
 
   static constexpr double kRounding = 1e-12;  // m, more than that of distances
 
-  void fitBoxes(const Places& places, const Places* ways);
-  void addPairs(int of_cloth, int of_obstacle, std::vector<Pair>& found) const;
+  void fitObstacleBoxes(const Places& places, const Places* ways);
+  void visit(double distance, std::vector<Pair>& found);
+  void addPairs(int of_cloth, int of_obstacle, double distance, std::vector<Pair>& found) const;
 
   std::shared_ptr<ObstacleSurfaces> surfaces_;
   proximity::MeshElements cloth_;
   int particles_;
   double searched_;  // m
   OwnElements own_of_cloth_, own_of_obstacles_;
-  std::vector<Box> boxes_;  // of the obstacles' triangles
+  std::vector<Box> corner_boxes_;  // of the ways of all vertices, without radius
+  std::vector<Box> boxes_;         // of the obstacles' triangles
   proximity::BoxTree tree_;
   std::vector<Pair> pairs_, on_ways_;
   Places searched_at_, places_searched_at_;  // m; empty before the first find()
