@@ -282,6 +282,59 @@ void KdopHierarchy::query(const Cursor& cursor, const Range& range, std::vector<
   query(CursorBody(cursor), range, found, cost);
 }
 
+/// How far a volume is at least from the nearest body, in lengths of the normals, below 0 unless it
+/// is apart; as the kernels compute it.
+/// @param least as computeLeast() has it
+float KdopHierarchy::gapOf(int volume, const std::vector<float>& least) const {
+  const std::size_t heights = 2 * static_cast<std::size_t>(groups_) * kernels::kGroup;
+  const float* of_volume = heights_.data() + static_cast<std::size_t>(volume) * heights;
+  float smallest = std::numeric_limits<float>::infinity();
+  for (std::size_t body = 0; body < least.size(); body += heights) {
+    float widest = -std::numeric_limits<float>::infinity();
+    for (std::size_t h = 0; h < heights; ++h) {
+      widest = std::max(widest, (least[body + h] - of_volume[h]) * inverse_lengths_[h]);
+    }
+    smallest = std::min(smallest, widest);
+  }
+  return smallest;
+}
+
+std::vector<VolumeIndex> KdopHierarchy::tested(const Body& body, const Range& range) const {
+  requireValid(range);
+  std::vector<VolumeIndex> result;
+  if (range.count == 0) return result;
+  std::vector<float> least;
+  std::vector<NearElement> found;
+  Search search(*this, body, range, found);
+  const bool all = range.count >= triangles_.size();
+  computeLeast(body, all ? range.distance : 0.0, least);
+  const auto test = [&](int volume) {
+    int level = 0;
+    while (volume + 1 >= 2 << level) ++level;
+    result.push_back({level, volume + 1 - (1 << level)});
+    return std::pair(gapOf(volume, least), volume);
+  };
+  std::vector<std::pair<float, int>> waiting = {test(0)};
+  while (!waiting.empty()) {
+    const auto [gap, volume] = waiting.back();
+    waiting.pop_back();
+    if (gap > (all ? 0.0F : *search.reach())) continue;
+    if (volume >= first_leaf_) {
+      if (!all) Search::visitNearest(&search, volume - first_leaf_);
+      continue;
+    }
+    auto nearer = test(2 * volume + 1), farther = test(2 * volume + 2);
+    if (farther.first < nearer.first) std::swap(nearer, farther);
+    waiting.push_back(farther);
+    waiting.push_back(nearer);
+  }
+  return result;
+}
+
+std::vector<VolumeIndex> KdopHierarchy::tested(const Cursor& cursor, const Range& range) const {
+  return tested(CursorBody(cursor), range);
+}
+
 Triangle KdopHierarchy::triangle(int index) const {
   const auto& corners = triangles_[index];
   return {positions_[corners[0]], positions_[corners[1]], positions_[corners[2]]};

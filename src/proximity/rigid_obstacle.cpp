@@ -285,4 +285,9 @@ void query(const KdopHierarchy& hierarchy, const RigidObstacle& obstacle, const 
   hierarchy.query(ObstacleBody(obstacle), range, found);
 }
 
+std::vector<VolumeIndex> tested(const KdopHierarchy& hierarchy, const RigidObstacle& obstacle,
+                                const Range& range) {
+  return hierarchy.tested(ObstacleBody(obstacle), range);
+}
+
 }  // namespace haptex::proximity

@@ -250,8 +250,12 @@ class Proximity(NodeTest):
         client.update_configuration({'volume_level': 3})
         self.eventually(lambda: shown(('volumes', 0)) and shown(('volumes', 1)), 'volumes')
         self.assertEqual(len({(c.r, c.g, c.b) for c in seen['volumes', 0].colors}), 2 ** 3)
-        client.update_configuration({'volume_level': -1})
-        self.eventually(lambda: not shown(('volumes', 0)), 'no volumes')
+        client.update_configuration({'volume_level': -2, 'tested_volumes': True})
+        self.eventually(lambda: shown(('volumes/0', 0)) and shown(('volumes/8', 0)) and
+                        shown(('tested_volumes', 0)), 'all levels and those that are tested')
+        client.update_configuration({'volume_level': -1, 'tested_volumes': False})
+        self.eventually(lambda: not any(shown((name, 0)) for name in (
+            'volumes', 'volumes/0', 'volumes/8', 'tested_volumes')), 'no volumes')
         subscriber.unregister()
 
 

@@ -3,7 +3,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "fixtures.h"
 #include "haptex/proximity/kdop_hierarchy.h"
@@ -121,7 +124,7 @@ TEST(KdopHierarchy, EveryInstructionSetMakesTheSameVolumes) {
   }
 }
 
-TEST(KdopHierarchy, EveryInstructionSetVisitsTheSameVolumes) {
+TEST(KdopHierarchy, EveryInstructionSetVisitsTheSameVolumesAndTheyAreTold) {
   const mesh::ClothMesh mesh = sheet(20);
   const auto state = oracles::deformedSheets(mesh)[12];
   for (const KdopKind kind : kKinds) {
@@ -139,6 +142,16 @@ TEST(KdopHierarchy, EveryInstructionSetVisitsTheSameVolumes) {
         best.query(cursor, range, found, &b);
         EXPECT_EQ(a.volumes, b.volumes);
         EXPECT_EQ(a.triangles, b.triangles);
+        const std::vector<VolumeIndex> tested = best.tested(cursor, range);
+        EXPECT_EQ(static_cast<std::int64_t>(tested.size()), b.volumes);
+        std::set<std::pair<int, int>> volumes;
+        for (const VolumeIndex& volume : tested) {
+          volumes.insert({volume.level, volume.index});
+          if (volume.level > 0) {
+            EXPECT_EQ(volumes.count({volume.level - 1, volume.index / 2}), 1u);
+          }
+        }
+        EXPECT_EQ(volumes.size(), tested.size());
       }
     }
   }

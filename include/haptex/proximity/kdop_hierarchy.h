@@ -28,6 +28,11 @@ struct HierarchySettings {
 /// off by at most 6 * 2^-24 = 3.6e-7 of the largest term.
 constexpr double kSinglePrecisionMargin = 1e-6;
 
+/// A volume as KdopHierarchy::volume() takes it.
+struct VolumeIndex {
+  int level, index;
+};
+
 /// Work done by queries.
 struct QueryCost {
   std::int64_t volumes = 0;    ///< tested
@@ -82,6 +87,11 @@ class KdopHierarchy {
   void query(const Body& body, const Range& range, std::vector<NearElement>& found,
              QueryCost* cost = nullptr) const;
 
+  /// The volumes that such a query tests, each once. For pictures: it takes several times as long as
+  /// the query.
+  std::vector<VolumeIndex> tested(const Cursor& cursor, const Range& range) const;
+  std::vector<VolumeIndex> tested(const Body& body, const Range& range) const;
+
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
   const std::vector<Eigen::Vector3d>& positions() const { return positions_; }
   /// Where a triangle of the mesh is (m), by its index from 0.
@@ -116,6 +126,7 @@ class KdopHierarchy {
   void build(const std::vector<Eigen::Vector3d>& positions);
   void listLeafParticles();
   void computeLeast(const Body& body, double distance, std::vector<float>& least) const;
+  float gapOf(int volume, const std::vector<float>& least) const;
 
   std::vector<std::array<int, 3>> triangles_;
   std::vector<Eigen::Vector3d> positions_;  // m

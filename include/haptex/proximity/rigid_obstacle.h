@@ -12,6 +12,7 @@
 namespace haptex::proximity {
 
 class KdopHierarchy;
+struct VolumeIndex;
 
 /// How far a place is from a surface, and where to.
 struct SurfaceDistance {
@@ -70,5 +71,8 @@ class RigidObstacle {
 /// The elements of a mesh near an obstacle, like KdopHierarchy::query() for a cursor.
 void query(const KdopHierarchy& hierarchy, const RigidObstacle& obstacle, const Range& range,
            std::vector<NearElement>& found);
+/// The volumes that it tests, like KdopHierarchy::tested() for a cursor.
+std::vector<VolumeIndex> tested(const KdopHierarchy& hierarchy, const RigidObstacle& obstacle,
+                                const Range& range);
 
 }  // namespace haptex::proximity

@@ -26,6 +26,16 @@ double secondsSince(ClothProximity::Clock::time_point begin) {
   return inSeconds(ClothProximity::Clock::now() - begin);
 }
 
+/// Volumes of a level in colours of their own.
+VolumeGroup volumesOf(const proximity::KdopHierarchy& hierarchy, int level, std::string name) {
+  VolumeGroup group{std::move(name), {}, {}};
+  for (int i = 0; i < 1 << level; ++i) {
+    group.volumes.push_back(hierarchy.volume(level, i));
+    group.colours.push_back(i);
+  }
+  return group;
+}
+
 proximity::Range rangeOf(const Request& request) {
   proximity::Range range;
   range.distance = request.distance;
@@ -196,7 +206,18 @@ haptex::QueryProximity::Response ClothProximity::compute(const Request& request,
   return response;
 }
 
-std::optional<ProximityScene> ClothProximity::scene(const std::vector<int>& triangles, int level) {
+std::vector<proximity::VolumeIndex> ClothProximity::tested(const AnsweredQuery& query,
+                                                           const FittedCloth::View& view) const {
+  const Request& request = query.request;
+  if (request.shape != Request::OBSTACLE) {
+    return view.hierarchy.tested(cursorInWorld(request, query.world_from_frame), rangeOf(request));
+  }
+  proximity::RigidObstacle obstacle = requireObstacle(request.obstacle);
+  moveObstacle(request.obstacle, view.state.simulated_time, obstacle);
+  return proximity::tested(view.hierarchy, obstacle, rangeOf(request));
+}
+
+std::optional<ProximityScene> ClothProximity::scene(const SceneRequest& request) {
   Cloth cloth;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -204,15 +225,27 @@ std::optional<ProximityScene> ClothProximity::scene(const std::vector<int>& tria
   }
   if (!cloth.fitted || !cloth.state.message) return std::nullopt;
   const FittedCloth::View view = look(cloth);
+  const proximity::KdopHierarchy& hierarchy = view.hierarchy;
   ProximityScene scene;
   scene.stamp = view.state.header.stamp;
-  const int count = static_cast<int>(view.hierarchy.triangles().size());
-  for (const int index : triangles) {
-    if (index < count) scene.triangles.push_back(view.hierarchy.triangle(index));
+  const int count = static_cast<int>(hierarchy.triangles().size());
+  for (const int index : request.triangles) {
+    if (index < count) scene.triangles.push_back(hierarchy.triangle(index));
   }
-  if (level >= 0) {
-    const int shown = std::min(level, view.hierarchy.levels() - 1);
-    for (int i = 0; i < 1 << shown; ++i) scene.volumes.push_back(view.hierarchy.volume(shown, i));
+  const int levels = hierarchy.levels();
+  if (request.level >= 0) {
+    scene.volumes.push_back(volumesOf(hierarchy, std::min(request.level, levels - 1), "volumes"));
+  }
+  for (int level = 0; level < levels && request.level == SceneRequest::kAllLevels; ++level) {
+    scene.volumes.push_back(volumesOf(hierarchy, level, "volumes/" + std::to_string(level)));
+  }
+  if (request.tested) {
+    VolumeGroup group{"tested_volumes", {}, {}};
+    for (const proximity::VolumeIndex& volume : tested(*request.tested, view)) {
+      group.volumes.push_back(hierarchy.volume(volume.level, volume.index));
+      group.colours.push_back(volume.level);
+    }
+    scene.volumes.push_back(std::move(group));
   }
   return scene;
 }

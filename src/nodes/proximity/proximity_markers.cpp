@@ -13,7 +13,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-enum MarkerIndex { kElements, kOutlines, kCursor, kFaces, kEdges, kFirstObstacle };
+enum MarkerIndex { kElements, kOutlines, kCursor };
 
 constexpr double kLift = 4e-4;           // m, between the cloth and the elements on either side
 constexpr double kOutlineWidth = 6e-4;   // m
@@ -45,11 +45,9 @@ ProximityMarkers::ProximityMarkers(const std::vector<mesh::Obstacle>& obstacles)
   markers.push_back(makeMarker("near_elements", 0, Marker::TRIANGLE_LIST));
   markers.push_back(makeMarker("near_elements", 1, Marker::LINE_LIST));
   markers.push_back(makeMarker("cursor", 0, Marker::TRIANGLE_LIST));
-  markers.push_back(makeMarker("volumes", 0, Marker::TRIANGLE_LIST));
-  markers.push_back(makeMarker("volumes", 1, Marker::LINE_LIST));
   markers[kOutlines].scale.x = kOutlineWidth;
   markers[kOutlines].color = colourMessage(kDarkRed);
-  markers[kEdges].scale.x = kEdgeWidth;
+  addGroup("volumes");
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     if (!obstacles[i].moves()) {
       markers.push_back(obstacleMarker(obstacles[i], static_cast<int>(i)));
@@ -61,9 +59,18 @@ const visualization_msgs::MarkerArray& ProximityMarkers::update(
     const ProximityScene& scene, const std::vector<proximity::TaperedCapsule>& cursor) {
   updateElements(scene.triangles);
   updateCursor(cursor);
-  updateVolumes(scene.volumes);
-  for (const MarkerIndex index : {kElements, kOutlines, kCursor, kFaces, kEdges}) {
+  for (const auto& [name, first] : groups_) {
+    for (const std::size_t index : {first, first + 1}) {
+      markers_.markers[index].points.clear();
+      markers_.markers[index].colors.clear();
+    }
+  }
+  for (const VolumeGroup& group : scene.volumes) updateVolumes(group);
+  for (const MarkerIndex index : {kElements, kOutlines, kCursor}) {
     deleteIfEmpty(markers_.markers[index]);
+  }
+  for (const auto& [name, first] : groups_) {
+    for (const std::size_t index : {first, first + 1}) deleteIfEmpty(markers_.markers[index]);
   }
   for (Marker& marker : markers_.markers) marker.header.stamp = scene.stamp;
   return markers_;
@@ -101,18 +108,23 @@ void ProximityMarkers::updateCursor(const std::vector<proximity::TaperedCapsule>
   shadeTriangles(marker, kCursorColour, kCursorOpacity);
 }
 
-void ProximityMarkers::updateVolumes(const std::vector<proximity::Kdop>& volumes) {
-  Marker& faces = markers_.markers[kFaces];
-  Marker& edges = markers_.markers[kEdges];
-  for (Marker* marker : {&faces, &edges}) {
-    marker->points.clear();
-    marker->colors.clear();
-  }
-  for (std::size_t i = 0; i < volumes.size(); ++i) {
-    for (const auto& polygon : proximity::polytopeFaces(volumes[i], kResolution)) {
+void ProximityMarkers::addGroup(const std::string& name) {
+  auto& markers = markers_.markers;
+  groups_[name] = markers.size();
+  markers.push_back(makeMarker(name, 0, Marker::TRIANGLE_LIST));
+  markers.push_back(makeMarker(name, 1, Marker::LINE_LIST));
+  markers.back().scale.x = kEdgeWidth;
+}
+
+void ProximityMarkers::updateVolumes(const VolumeGroup& group) {
+  if (groups_.count(group.name) == 0) addGroup(group.name);
+  Marker& faces = markers_.markers[groups_[group.name]];
+  Marker& edges = markers_.markers[groups_[group.name] + 1];
+  for (std::size_t i = 0; i < group.volumes.size(); ++i) {
+    for (const auto& polygon : proximity::polytopeFaces(group.volumes[i], kResolution)) {
       appendPolygon(polygon, faces, edges);
     }
-    const Eigen::Vector3f colour = distinctColour(static_cast<int>(i));
+    const Eigen::Vector3f colour = distinctColour(group.colours[i]);
     faces.colors.resize(faces.points.size(), colourMessage(colour, kFaceOpacity));
     edges.colors.resize(edges.points.size(), colourMessage(0.6F * colour));
   }

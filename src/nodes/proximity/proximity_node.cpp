@@ -79,6 +79,7 @@ ProximityNode::ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle&
       diagnostics_(node, private_node) {
   reconfigure_.setCallback([this](haptex::ProximityConfig& config, std::uint32_t /*level*/) {
     volume_level_ = config.volume_level;
+    tested_volumes_ = config.tested_volumes;
   });
   diagnostics_.setHardwareID("none");
   diagnostics_.add(
@@ -119,7 +120,9 @@ bool ProximityNode::query(haptex::QueryProximity::Request& request,
   if (!response.success) {
     ROS_WARN_THROTTLE(1.0, "proximity/query refused: %s", response.message.c_str());
   } else if (marker_publisher_.getNumSubscribers() > 0) {
-    ShownAnswer shown;
+    Shown shown;
+    shown.query.request = request;
+    if (world_from_frame) shown.query.world_from_frame = *world_from_frame;
     if (request.shape != haptex::QueryProximity::Request::OBSTACLE) {
       shown.cursor = cursorInWorld(request, *world_from_frame).parts();
     }
@@ -132,13 +135,21 @@ bool ProximityNode::query(haptex::QueryProximity::Request& request,
 
 void ProximityNode::publishMarkers() {
   if (marker_publisher_.getNumSubscribers() == 0) return;
-  ShownAnswer shown;
+  std::optional<Shown> shown;
   {
     const std::lock_guard<std::mutex> lock(shown_mutex_);
     shown = shown_;
   }
-  const auto scene = proximity_.scene(shown.triangles, volume_level_);
-  if (scene) marker_publisher_.publish(markers_.update(*scene, shown.cursor));
+  SceneRequest request;
+  request.level = volume_level_;
+  std::vector<proximity::TaperedCapsule> cursor;
+  if (shown) {
+    request.triangles = std::move(shown->triangles);
+    cursor = std::move(shown->cursor);
+    if (tested_volumes_) request.tested = std::move(shown->query);
+  }
+  const auto scene = proximity_.scene(request);
+  if (scene) marker_publisher_.publish(markers_.update(*scene, cursor));
 }
 
 void ProximityNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {

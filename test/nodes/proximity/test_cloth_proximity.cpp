@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -189,17 +190,48 @@ TEST_F(ClothProximityTest, RefusesWhatTheFrameLookupThrows) {
 }
 
 TEST_F(ClothProximityTest, SceneHasTheTrianglesAndTheVolumesAskedFor) {
-  EXPECT_FALSE(proximity_.scene({}, 0));
+  EXPECT_FALSE(proximity_.scene({{}, 0, {}}));
   setCloth();
-  const auto scene = proximity_.scene({0, 5, 100000}, 2);
+  const auto scene = proximity_.scene({{0, 5, 100000}, 2, {}});
   ASSERT_TRUE(scene);
   EXPECT_EQ(scene->stamp, ros::Time(1007));
   ASSERT_EQ(scene->triangles.size(), 2u);  // without the one that does not exist
   EXPECT_EQ(scene->triangles[1][0], positions_[mesh_.triangles[5][0]]);
-  EXPECT_EQ(scene->volumes.size(), 4u);
-  EXPECT_TRUE(proximity_.scene({}, -1)->volumes.empty());
+  ASSERT_EQ(scene->volumes.size(), 1u);
+  EXPECT_EQ(scene->volumes[0].name, "volumes");
+  EXPECT_EQ(scene->volumes[0].volumes.size(), 4u);
+  EXPECT_TRUE(proximity_.scene({{}, SceneRequest::kNoLevel, {}})->volumes.empty());
   // 128 triangles, 8 to a leaf.
-  EXPECT_EQ(proximity_.scene({}, 16)->volumes.size(), 16u);
+  EXPECT_EQ(proximity_.scene({{}, 16, {}})->volumes[0].volumes.size(), 16u);
+  const auto all = proximity_.scene({{}, SceneRequest::kAllLevels, {}})->volumes;
+  ASSERT_EQ(all.size(), 5u);
+  for (std::size_t level = 0; level < all.size(); ++level) {
+    EXPECT_EQ(all[level].name, "volumes/" + std::to_string(level));
+    EXPECT_EQ(all[level].volumes.size(), std::size_t{1} << level);
+    EXPECT_EQ(all[level].colours.size(), all[level].volumes.size());
+  }
+}
+
+TEST_F(ClothProximityTest, SceneHasTheVolumesThatAQueryTests) {
+  setCloth();
+  const auto tested = [&](const Request& request) {
+    const auto groups =
+        proximity_.scene({{}, SceneRequest::kNoLevel, AnsweredQuery{request}})->volumes;
+    EXPECT_EQ(groups.size(), 1u);
+    EXPECT_EQ(groups[0].name, "tested_volumes");
+    return groups[0];
+  };
+  const VolumeGroup near = tested(sphere());
+  EXPECT_GT(near.volumes.size(), 3u);
+  EXPECT_LT(near.volumes.size(), 31u);
+  EXPECT_EQ(near.colours.front(), 0) << "the level of the volume around all";
+  EXPECT_EQ(*std::max_element(near.colours.begin(), near.colours.end()), 4);
+  EXPECT_EQ(tested(testRequest(Request::POINT, {Eigen::Vector3d(9.0, 0.0, 0.0)}, {}, 0.01))
+                .volumes.size(),
+            1u);
+  Request obstacle = testRequest(Request::OBSTACLE, {}, {}, 10.0);
+  obstacle.obstacle = "ball";
+  EXPECT_EQ(tested(obstacle).volumes.size(), 31u);
 }
 
 }  // namespace

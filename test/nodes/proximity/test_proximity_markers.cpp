@@ -33,7 +33,8 @@ ProximityScene someScene() {
   ProximityScene scene;
   scene.stamp = ros::Time(7);
   scene.triangles = {kTriangle};
-  scene.volumes = {boxAround({0.0, 0.0, 0.0}, 0.1), boxAround({0.3, 0.0, 0.0}, 0.1)};
+  scene.volumes = {
+      {"volumes", {boxAround({0.0, 0.0, 0.0}, 0.1), boxAround({0.3, 0.0, 0.0}, 0.1)}, {0, 1}}};
   return scene;
 }
 
@@ -186,6 +187,23 @@ TEST(ProximityMarkers, ShowEachVolumeInAColourOfItsOwn) {
     EXPECT_LT(colour.a, 0.5F);
   }
   EXPECT_EQ(colours.size(), 2u);
+}
+
+TEST(ProximityMarkers, ShowGroupsOfVolumesInNamespacesOfTheirOwnAsLongAsTheyAreThere) {
+  ProximityMarkers markers({});
+  ProximityScene scene = someScene();
+  scene.volumes[0].name = "volumes/3";
+  scene.volumes[0].colours = {2, 2};
+  const auto& array = markers.update(scene, {});
+  EXPECT_EQ(find(array, "volumes", Marker::TRIANGLE_LIST).action, Marker::DELETE);
+  const Marker& faces = find(array, "volumes/3", Marker::TRIANGLE_LIST);
+  EXPECT_EQ(faces.action, Marker::ADD);
+  EXPECT_EQ(faces.points.size(), 2u * 6 * 2 * 3);
+  EXPECT_EQ(faces.colors.front(), faces.colors.back());
+  scene.volumes.clear();
+  EXPECT_EQ(find(markers.update(scene, {}), "volumes/3", Marker::LINE_LIST).action, Marker::DELETE);
+  EXPECT_EQ(find(markers.update(someScene(), {}), "volumes", Marker::LINE_LIST).action,
+            Marker::ADD);
 }
 
 TEST(ProximityMarkers, ShowTheCursorAndAPointAsASmallBall) {

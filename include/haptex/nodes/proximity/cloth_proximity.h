@@ -42,11 +42,33 @@ struct ProximityStatus {
   double answer_seconds = 0.0;  ///< of the last answer, with the refit if it needed one
 };
 
+/// A request that was answered.
+struct AnsweredQuery {
+  haptex::QueryProximity::Request request;
+  Eigen::Isometry3d world_from_frame = Eigen::Isometry3d::Identity();
+};
+
+/// What markers ask for.
+struct SceneRequest {
+  static constexpr int kNoLevel = -1, kAllLevels = -2;
+
+  std::vector<int> triangles;           ///< indices; those that the mesh does not have are left out
+  int level = kNoLevel;                 ///< of the volumes, the last one stands for those beyond it
+  std::optional<AnsweredQuery> tested;  ///< by whose query volumes are tested
+};
+
+/// Volumes of the hierarchy that belong together.
+struct VolumeGroup {
+  std::string name;  ///< "volumes"; of all levels "volumes/0", ...; "tested_volumes"
+  std::vector<proximity::Kdop> volumes;
+  std::vector<int> colours;  ///< of each volume, distinctColour()
+};
+
 /// What markers need to know of one state of the cloth.
 struct ProximityScene {
   ros::Time stamp;                             ///< of the state
   std::vector<proximity::Triangle> triangles;  ///< those asked for, m
-  std::vector<proximity::Kdop> volumes;        ///< of the level asked for
+  std::vector<VolumeGroup> volumes;            ///< likewise
 };
 
 /// Keeps the latest mesh and state, and the hierarchy over them. It is built for a new mesh and
@@ -82,11 +104,9 @@ class ClothProximity {
                                           const FrameLookup& world_from_frame,
                                           Clock::time_point now);
 
-  /// The latest state, however old.
-  /// @param triangles indices; those that the mesh does not have are left out
-  /// @param level of the volumes, the last one stands for those beyond it; negative: no volumes
+  /// The latest state, however old. Volumes are those that the query would test there.
   /// @returns nothing while there is no cloth
-  std::optional<ProximityScene> scene(const std::vector<int>& triangles, int level);
+  std::optional<ProximityScene> scene(const SceneRequest& request);
 
   ProximityStatus status(Clock::time_point now) const;
 
@@ -104,6 +124,8 @@ class ClothProximity {
   FittedCloth::View look(const Cloth& cloth);
   proximity::RigidObstacle requireObstacle(const std::string& name) const;
   void moveObstacle(const std::string& name, double time, proximity::RigidObstacle& obstacle) const;
+  std::vector<proximity::VolumeIndex> tested(const AnsweredQuery& query,
+                                             const FittedCloth::View& view) const;
   haptex::QueryProximity::Response compute(const haptex::QueryProximity::Request& request,
                                            const FrameLookup& world_from_frame,
                                            Clock::time_point now);

@@ -4,6 +4,9 @@
 #include <ros/time.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "haptex/mesh/obstacle.h"
@@ -12,18 +15,13 @@
 
 namespace haptex::nodes {
 
-/// What of a query is shown.
-struct ShownAnswer {
-  std::vector<proximity::TaperedCapsule> cursor;  ///< in the world frame; empty for an obstacle
-  std::vector<int> triangles;                     ///< indices of the elements found
-};
-
 /// Markers in the frame kFixedFrame, in namespaces that rviz can switch off singly:
 /// "near_elements": the elements of an answer in red, on both sides of the cloth and a little off
 ///   it, so that they are seen through neither of two coincident surfaces.
 /// "cursor": the volume that was asked about, translucent; a point as a small ball.
-/// "volumes": polytopes of the hierarchy with translucent faces and their edges, each volume in a
-///   colour of its own.
+/// "volumes", "volumes/0", ... and "tested_volumes" (VolumeGroup): polytopes of the hierarchy with
+///   translucent faces and their edges; volumes of one level have colours of their own, those that
+///   were tested that of their level.
 /// "obstacles": the rigid bodies of the scene that rest; ClothMarkers shows those that move.
 class ProximityMarkers {
  public:
@@ -38,9 +36,11 @@ class ProximityMarkers {
  private:
   void updateElements(const std::vector<proximity::Triangle>& triangles);
   void updateCursor(const std::vector<proximity::TaperedCapsule>& cursor);
-  void updateVolumes(const std::vector<proximity::Kdop>& volumes);
+  void updateVolumes(const VolumeGroup& group);
+  void addGroup(const std::string& name);
 
   visualization_msgs::MarkerArray markers_;
+  std::map<std::string, std::size_t> groups_;  // of volumes, the first of their two markers_
 };
 
 }  // namespace haptex::nodes

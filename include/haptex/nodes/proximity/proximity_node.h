@@ -67,10 +67,18 @@ class ProximityNode {
   tf2_ros::Buffer transforms_;
   tf2_ros::TransformListener transform_listener_;
 
-  std::mutex shown_mutex_;    // guards the next
-  ShownAnswer shown_;         // the last answer while the markers had subscribers
-  ProximityMarkers markers_;  // used by the timer only
-  std::atomic<int> volume_level_{-1};
+  /// Of an answer.
+  struct Shown {
+    std::vector<proximity::TaperedCapsule> cursor;  // in the world frame; empty for an obstacle
+    std::vector<int> triangles;                     // indices of the elements found
+    AnsweredQuery query;
+  };
+
+  std::mutex shown_mutex_;      // guards the next
+  std::optional<Shown> shown_;  // the last answer while the markers had subscribers
+  ProximityMarkers markers_;    // used by the timer only
+  std::atomic<int> volume_level_{SceneRequest::kNoLevel};
+  std::atomic<bool> tested_volumes_{false};
   dynamic_reconfigure::Server<haptex::ProximityConfig> reconfigure_;
 
   diagnostic_updater::Updater diagnostics_;  // used by its timer only
