@@ -146,6 +146,11 @@ class RefusedParameters(unittest.TestCase):
                 self.refused('_scene:=wool_sample', f'_{name}:={value}', node='force_renderer',
                              says=[f'~{name}'])
 
+    def test_fingers_that_nobody_has(self):
+        for value in ('ring', '3'):
+            self.refused('_scene:=wool_sample', f'_fingers:={value}', node='force_renderer',
+                         says=['fingers', 'allowed are both, index and thumb'])
+
     def test_tactile_limits_that_no_array_has(self):
         for name in ('lowest_frequency', 'highest_frequency', 'largest_displacement'):
             for value in ('0', '-1', 'many'):

@@ -18,17 +18,23 @@ std::string ageText(const std::optional<Time>& last, Time now) {
   return last ? std::to_string(1e3 * base::seconds(now - *last)) : "never";
 }
 
+}  // namespace
+
+/// Empty if nothing stands in its way.
+std::string ForceRendererNode::whyNoForce(Finger finger, const simulation::RendererNews& news,
+                                          Time now) const {
+  return touches_[finger] ? simulation::whySilent(finger, news, now) : "";
+}
+
 /// Which sources of any finger are silent; empty if none is.
-std::string whyAnySilent(const simulation::RendererNews& news, Time now) {
-  const std::string index = simulation::whySilent(Finger::kIndex, news, now);
-  const std::string thumb = simulation::whySilent(Finger::kThumb, news, now);
+std::string ForceRendererNode::whyAnyNoForce(const simulation::RendererNews& news, Time now) const {
+  const std::string index = whyNoForce(Finger::kIndex, news, now);
+  const std::string thumb = whyNoForce(Finger::kThumb, news, now);
   if (index == thumb) return index;
   if (index.empty()) return "thumb: " + thumb;
   if (thumb.empty()) return "index: " + index;
   return "index: " + index + "; thumb: " + thumb;
 }
-
-}  // namespace
 
 void ForceRendererNode::addDiagnostics() {
   diagnostics_.setHardwareID("none");
@@ -58,7 +64,7 @@ void ForceRendererNode::diagnoseSources(Status& status) {
   const Time time = realtime::steadyNow();
   const simulation::ForceLoopStatus now = loop_.status();
   const PatchSupplierStatus supplier = supplier_.status();
-  const std::string why = whyAnySilent(now.news, time);
+  const std::string why = whyAnyNoForce(now.news, time);
   if (!supplier.trouble.empty()) {
     status.summary(DiagnosticStatus::ERROR, "no force: " + supplier.trouble);
   } else if (!why.empty()) {
@@ -89,8 +95,10 @@ void ForceRendererNode::diagnoseSources(Status& status) {
 void ForceRendererNode::diagnoseForce(Finger finger, Status& status) {
   const simulation::ForceLoopStatus now = loop_.status();
   const simulation::ForceLoopStatus::OfFinger& of_finger = now.fingers[finger];
-  const std::string why = simulation::whySilent(finger, now.news, realtime::steadyNow());
-  if (!why.empty()) {
+  const std::string why = whyNoForce(finger, now.news, realtime::steadyNow());
+  if (!touches_[finger]) {
+    status.summary(DiagnosticStatus::OK, "does not touch, by the parameter fingers");
+  } else if (!why.empty()) {
     status.summary(DiagnosticStatus::ERROR, "no force: " + why);
   } else if (of_finger.gain < 1.0) {
     status.summary(DiagnosticStatus::OK, "the force rises");

@@ -45,6 +45,18 @@ double readRadius(const ros::NodeHandle& private_node, const std::string& name, 
   throw std::invalid_argument(message.str());
 }
 
+base::PerFinger<bool> readFingers(const ros::NodeHandle& private_node) {
+  if (!private_node.hasParam("fingers")) return {{true, true}};
+  const std::string allowed = "allowed are both, index and thumb";
+  const std::string fingers = readText(private_node, "fingers", allowed);
+  if (fingers == "both") return {{true, true}};
+  base::PerFinger<bool> touches;
+  for (const Finger finger : kFingers) touches[finger] = fingers == base::name(finger);
+  if (touches[Finger::kIndex] || touches[Finger::kThumb]) return touches;
+  throw std::invalid_argument("parameter " + private_node.resolveName("fingers") + " = '" +
+                              fingers + "': " + allowed);
+}
+
 std::string topic(Finger finger, const char* of_finger) {
   return std::string(base::name(finger)) + "/" + of_finger;
 }
@@ -63,6 +75,7 @@ ForceRendererParameters ForceRendererParameters::read(const ros::NodeHandle& pri
   parameters.scene_path = readScenePath(private_node);
   parameters.radii = {{readRadius(private_node, "index_radius", kIndexRadius),
                        readRadius(private_node, "thumb_radius", kThumbRadius)}};
+  parameters.touches = readFingers(private_node);
   const scene::Scene scene = scene::loadScene(parameters.scene_path);
   requireListed(parameters.scene_path, scene.fingers, "fingers", "force_renderer");
   parameters.tactile = scene.tactile;
@@ -80,6 +93,7 @@ ForceRendererNode::ForceRendererNode(const ros::NodeHandle& node,
       device_node_(node),
       input_node_(input_thread_.handle(node)),
       transform_listener_(transforms_, input_node_, false),
+      touches_(parameters.touches),
       tactile_(parameters.tactile),
       loop_(parameters.radii),
       diagnostics_(node, private_node),
@@ -136,7 +150,9 @@ void ForceRendererNode::findWhoTakesSingles() {
 void ForceRendererNode::subscribe() {
   device_node_.setCallbackQueue(&device_queue_);
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  for (const Finger finger : kFingers) subscribeToFinger(finger);
+  for (const Finger finger : kFingers) {
+    if (touches_[finger]) subscribeToFinger(finger);
+  }
   const boost::function<void(const haptex::Fingertips&)> take_fingertips =
       [this](const haptex::Fingertips& message) { receiveFingertips(message); };
   fingertip_subscriber_ = device_node_.subscribe<haptex::Fingertips>(
@@ -190,6 +206,7 @@ void ForceRendererNode::receiveFingertips(const haptex::Fingertips& message) {
   const Time arrival = realtime::steadyNow();
   const ros::Time now = ros::Time::now();
   for (const Finger finger : kFingers) {
+    if (!touches_[finger]) continue;
     FingerTopics& topics = fingers_[finger];
     const auto motion = topics.filter.receive(message, finger, now, arrival);
     if (!motion) continue;
@@ -309,14 +326,15 @@ void ForceRendererNode::publishContact(Finger finger, const ros::Time& stamp) {
 
 void ForceRendererNode::publishMarkers() {
   const Time now = realtime::steadyNow();
+  const Finger felt = touches_[Finger::kIndex] ? Finger::kIndex : Finger::kThumb;
   const LoopRates rates = {force_rate_.update(loop_thread_.periods(), now),
                            cloth_rate_.update(loop_.status().states, now),
                            proximity_rate_.update(supplier_.status().queries, now),
-                           exoskeleton_rate_.update(fingers_[Finger::kIndex].poses, now)};
+                           exoskeleton_rate_.update(fingers_[felt].poses, now)};
   if (marker_publisher_.getNumSubscribers() == 0) return;
   const simulation::ForceLoopStatus status = loop_.status();
-  const base::PerFinger<std::string> why{{simulation::whySilent(Finger::kIndex, status.news, now),
-                                          simulation::whySilent(Finger::kThumb, status.news, now)}};
+  const base::PerFinger<std::string> why{
+      {whyNoForce(Finger::kIndex, status.news, now), whyNoForce(Finger::kThumb, status.news, now)}};
   marker_publisher_.publish(markers_.update(loop_.picture(), rates, ros::Time::now(), why));
   loop_.askForPicture();
 }

@@ -45,6 +45,9 @@ struct ForceRendererParameters {
   /// ~index_radius, ~thumb_radius: m, > 0, at most 0.1; default 0.0075 and 0.009, the round ends
   /// in urdf/hand_exoskeleton.urdf
   base::PerFinger<double> radii;
+  /// ~fingers: both (default), index or thumb; one that does not touch feels nothing, and is not
+  /// missed
+  base::PerFinger<bool> touches{{true, true}};
   bool tactile = false;  ///< whether the scene lists it: forces under contactors are needed
 
   /// @throws std::invalid_argument naming the parameter, its value and what is allowed
@@ -120,6 +123,8 @@ class ForceRendererNode {
   void diagnoseLoop(Status& status);
   void diagnoseSources(Status& status);
   void diagnoseForce(Finger finger, Status& status);
+  std::string whyNoForce(Finger finger, const simulation::RendererNews& news, Time now) const;
+  std::string whyAnyNoForce(const simulation::RendererNews& news, Time now) const;
 
   ros::NodeHandle node_;
   ros::NodeHandle device_node_;  // whose callbacks run where the messages arrive
@@ -129,6 +134,7 @@ class ForceRendererNode {
   tf2_ros::Buffer transforms_;
   tf2_ros::TransformListener transform_listener_;
 
+  const base::PerFinger<bool> touches_;
   const bool tactile_;  // the scene lists it
   simulation::ForceLoop loop_;
   base::PerFinger<FingerTopics> fingers_;
