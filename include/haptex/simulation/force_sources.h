@@ -33,9 +33,8 @@ class ForceSources {
   explicit ForceSources(std::size_t particle_count) : particle_count_(particle_count) {}
 
   /// Replaces the forces of a source. Without particles or with lifetime 0 they end.
-  /// @throws std::invalid_argument naming what is wrong: the source is empty, there is not one
-  /// force
-  ///   for each particle, a particle does not exist or is named twice, a number is not finite or
+  /// @throws std::invalid_argument naming what is wrong: the source is empty, forces and particles
+  ///   differ in number, a particle does not exist or is named twice, a number is not finite or
   ///   beyond the bounds above, or kMax other sources act; nothing has changed then
   void set(const std::string& source, ParticleForces forces);
 
