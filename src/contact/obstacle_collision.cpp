@@ -66,10 +66,11 @@ Vector3d slidingEnd(const RigidObstacle& shape, const Path& path, double touch) 
 
 }  // namespace
 
-ObstacleCollision::ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles)
+ObstacleCollision::ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles,
+                                     double start)
     : obstacles_(std::move(obstacles)), positions_(cloth.particleCount()) {
   for (const mesh::Obstacle& obstacle : obstacles_) {
-    RigidObstacle shape = makeObstacle(obstacle);
+    RigidObstacle shape = makeObstacle(obstacle, start);
     if (cloth.selfContact() != nullptr) requireApart(cloth.mesh(), obstacle.name, shape);
     shape.setPose(Eigen::Isometry3d::Identity());
     const double reach = shape.boundingRadius() + kOffset;
@@ -78,6 +79,7 @@ ObstacleCollision::ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obst
   }
   if (cloth.selfContact() != nullptr) {
     cloth.setObstacles(obstacles_);
+    if (start != 0.0) cloth.moveObstacles(start, start);
   } else {
     contacts_.reserve(cloth.particleCount());
   }

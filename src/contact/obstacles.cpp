@@ -25,9 +25,9 @@ struct MakeShape {
 
 }  // namespace
 
-RigidObstacle makeObstacle(const mesh::Obstacle& obstacle) {
+RigidObstacle makeObstacle(const mesh::Obstacle& obstacle, double time) {
   RigidObstacle made = std::visit(MakeShape{}, obstacle.shape);
-  made.setPose(obstacle.pose);
+  made.setPose(time == 0.0 ? obstacle.pose : obstacle.poseAt(time));
   return made;
 }
 

@@ -38,12 +38,12 @@ double windingNumber(const mesh::ObstacleMesh& surface, const Vector3d& place) {
   return sum / (2.0 * M_PI);
 }
 
-/// An obstacle at time 0, and which side of it is the wrong one.
+/// An obstacle at the start, and which side of it is the wrong one.
 class Body {
  public:
-  explicit Body(const mesh::Obstacle& obstacle)
-      : shape_(makeObstacle(obstacle)),
-        to_own_(obstacle.pose.inverse()),
+  Body(const mesh::Obstacle& obstacle, double time)
+      : shape_(makeObstacle(obstacle, time)),
+        to_own_(shape_.pose().inverse()),
         surface_(std::get_if<mesh::ObstacleMesh>(&obstacle.shape)) {}
 
   const RigidObstacle& shape() const { return shape_; }
@@ -180,11 +180,11 @@ bool areApart(const std::vector<Body>& bodies, const mesh::ClothMesh& mesh,
 }  // namespace
 
 StartMove moveOutside(mesh::ClothMesh& mesh, const std::vector<mesh::Obstacle>& obstacles,
-                      const std::vector<int>& held) {
+                      const std::vector<int>& held, double start) {
   StartMove move;
   std::vector<Body> touched, others;
   for (const mesh::Obstacle& obstacle : obstacles) {
-    Body body(obstacle);
+    Body body(obstacle, start);
     const int triangle = firstTouching(mesh.triangles, mesh.initial_positions, body.shape());
     if (triangle < 0) {
       others.push_back(std::move(body));

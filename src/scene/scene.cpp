@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "haptex/base/constants.h"
 #include "haptex/base/yaml_reader.h"
 #include "haptex/cloth/forces/lattice_springs.h"
 #include "haptex/mesh/obj_file.h"
+#include "haptex/scene/cloth_state_file.h"
 #include "haptex/scene/obstacle_file.h"
 #include "haptex/scene/scene_values.h"
 #include "haptex/scene/step_values.h"
@@ -21,6 +24,7 @@ namespace {
 using base::YamlValue;
 
 constexpr double kMaxCurvature = 1000.0;  // 1/m
+constexpr double kHeldTolerance = 1e-9;   // m, of attached particles in a saved state
 const Eigen::Vector3d kDownwards(0.0, 0.0, -base::kStandardGravity);
 
 int readCells(const YamlValue& value) {
@@ -106,8 +110,34 @@ std::vector<int> readAttachedParticles(const YamlValue& value, const mesh::Cloth
   return std::vector<int>(attached.begin(), attached.end());
 }
 
+/// Lets the scene start from a saved state.
+void startFrom(const YamlValue& value, Scene& scene) {
+  const std::string path = resolveFile(value, "states", kStateExtension);
+  cloth::ClothState state = loadState(path);
+  mesh::ClothMesh& mesh = scene.mesh;
+  const std::size_t count = mesh.initial_positions.size();
+  if (state.positions.size() != count) {
+    value.refuseBecause(path + " has " + std::to_string(state.positions.size()) +
+                        " particles: allowed are " + std::to_string(count) +
+                        ", those of the scene's cloth");
+  }
+  for (const int particle : scene.attached_particles) {
+    const Eigen::Vector3d& held = mesh.initial_positions[particle];
+    const double way = (state.positions[particle] - held).norm();
+    if (way <= kHeldTolerance) continue;
+    std::ostringstream reason;
+    reason << path << " has particle " << particle << " " << way
+           << " m from where it is attached, (" << held.x() << ", " << held.y() << ", " << held.z()
+           << ") m: allowed are " << kHeldTolerance << " m";
+    value.refuseBecause(reason.str());
+  }
+  mesh.initial_positions = std::move(state.positions);
+  scene.start_velocities = std::move(state.velocities);
+  scene.start_time = state.time;
+}
+
 bool allowsAnyCells(const YamlValue& scene) {
-  if (!scene.has("sheet")) return false;
+  if (!scene.has("sheet") || scene.has("state")) return false;
   const std::vector<YamlValue> attached = scene.at("attach").items();
   return std::none_of(attached.begin(), attached.end(),
                       [](const YamlValue& item) { return item.isMap(); });
@@ -243,12 +273,13 @@ Scene readScene(const std::string& path, double cell_size) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"fabric", "attach", "model", "time_step"},
                    {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind",
-                    "integrator", "solver", "obstacles", "haptics"});
+                    "integrator", "solver", "obstacles", "haptics", "state"});
   Scene scene;
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.any_cells = allowsAnyCells(file);
   scene.mesh = readMesh(file, scene.any_cells ? cell_size : 0.0);
   scene.attached_particles = readAttachedParticles(file.at("attach"), scene.mesh);
+  if (file.has("state")) startFrom(file.at("state"), scene);
   const Listed listed = readModel(file);
   requireListedKeys(file, listed);
   scene.effects = readEffects(file, listed);
@@ -288,7 +319,8 @@ Scene readScene(const std::string& path, double cell_size) {
     file.at("model").refuseBecause("lists obstacles, so the key obstacles must have at least one");
   }
   if (scene.effects.contacts && scene.effects.self_collision) {
-    scene.start_move = contact::moveOutside(scene.mesh, scene.obstacles, scene.attached_particles);
+    scene.start_move = contact::moveOutside(scene.mesh, scene.obstacles, scene.attached_particles,
+                                            scene.start_time);
   }
   return scene;
 }

@@ -3,32 +3,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
+#include <numeric>
 #include <string>
 #include <utility>
+
+#include "haptex/base/require.h"
+#include "haptex/proximity/cursor.h"
+#include "haptex/simulation/particle_requests.h"
 
 namespace haptex::simulation {
 namespace {
 
-template <typename... Parts>
-[[noreturn]] void refuse(const Parts&... parts) {
-  std::ostringstream message;
-  (message << ... << parts);
-  throw std::invalid_argument(message.str());
-}
-
-void requirePlace(const std::string& name, const Eigen::Vector3d& place) {
-  if (!place.allFinite() || place.cwiseAbs().maxCoeff() > kMaxCoordinate) {
-    refuse(name, " = (", place.x(), ", ", place.y(), ", ", place.z(),
-           ") m: allowed are finite coordinates from ", -kMaxCoordinate, " to ", kMaxCoordinate,
-           " m");
-  }
-}
-
-std::string element(const std::string& array, std::size_t index) {
-  return array + "[" + std::to_string(index) + "]";
-}
+using base::refuse;
 
 /// Of the substeps so far and the next one.
 cloth::StepReport sum(const cloth::StepReport& first, cloth::StepReport last) {
@@ -51,7 +37,9 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric)
 SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
                                std::vector<StepPlan> plans)
     : cloth_(std::move(scene.mesh), std::move(fabric), scene.effects),
-      state_(cloth_.initialState()),
+      start_velocities_(std::move(scene.start_velocities)),
+      start_time_(scene.start_time),
+      state_(startState()),
       plans_(std::move(plans)),
       initially_attached_(std::move(scene.attached_particles)),
       time_step_(scene.time_step),
@@ -66,7 +54,9 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
       refuse("cycles = ", plan.cycles, ": allowed are numbers >= 1, and 1 with several substeps");
     }
   }
-  if (scene.effects.contacts) collision_.emplace(cloth_, std::move(scene.obstacles));
+  if (scene.effects.contacts) {
+    collision_.emplace(cloth_, std::move(scene.obstacles), start_time_);
+  }
   attachInitially();
   makeIntegrators();
 }
@@ -157,13 +147,24 @@ void SimulatedCloth::reset() {
   cloth_.releaseAll();
   cloth_.setPointLoads({});
   loaded_ = false;
+  for (int i = 0; pushed_ && i < static_cast<int>(cloth_.particleCount()); ++i) {
+    cloth_.setExternalForce(i, Eigen::Vector3d::Zero());
+  }
+  pushed_ = false;
   attachInitially();
-  state_ = cloth_.initialState();
+  state_ = startState();
   makeIntegrators();  // the old ones remember their last solutions and factors
   report_ = cloth::StepReport{};
   last_step_rejected_ = false;
   steps_ = 0;
   wake();
+}
+
+cloth::ClothState SimulatedCloth::startState() const {
+  cloth::ClothState state = cloth_.initialState();
+  if (!start_velocities_.empty()) state.velocities = start_velocities_;
+  state.time = start_time_;
+  return state;
 }
 
 void SimulatedCloth::makeIntegrators() {
@@ -191,8 +192,64 @@ void SimulatedCloth::setPointLoads(const std::vector<cloth::PointLoad>& loads) {
   if (changes) wake();
 }
 
+void SimulatedCloth::setExternalForce(std::uint32_t particle, const Eigen::Vector3d& force) {
+  cloth_.setExternalForce(static_cast<int>(particle), force);
+  pushed_ = true;
+  wake();
+}
+
+void SimulatedCloth::setState(const std::vector<std::uint32_t>& particles,
+                              const std::vector<Eigen::Vector3d>& positions,
+                              const std::vector<Eigen::Vector3d>& velocities) {
+  if (positions.empty() && velocities.empty()) {
+    refuse("positions and velocities are empty: allowed is one of them, or both");
+  }
+  requireParticles(particles, cloth_.particleCount());
+  std::vector<int> indices(particles.begin(), particles.end());
+  if (particles.empty()) {
+    indices.resize(cloth_.particleCount());
+    std::iota(indices.begin(), indices.end(), 0);
+  }
+  if (!positions.empty()) {
+    requireOneEach("positions", positions.size(), indices.size(), "none: they stay");
+  }
+  if (!velocities.empty()) {
+    requireOneEach("velocities", velocities.size(), indices.size(), "none: they stay");
+  }
+  requireAllWithin("positions", positions, proximity::kMaxLength, "m");
+  requireAllWithin("velocities", velocities, proximity::kMaxLength, "m/s");
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    requireHeld(indices[i], positions.empty() ? nullptr : &positions[i],
+                velocities.empty() ? nullptr : &velocities[i]);
+  }
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (cloth_.attachments()[indices[i]]) continue;
+    if (!positions.empty()) state_.positions[indices[i]] = positions[i];
+    if (!velocities.empty()) state_.velocities[indices[i]] = velocities[i];
+  }
+  if (!positions.empty()) cloth_.forget(state_);
+  makeIntegrators();  // the old ones remember where they have been
+  wake();
+}
+
+/// @param position, velocity that a particle shall get, or null
+void SimulatedCloth::requireHeld(int particle, const Eigen::Vector3d* position,
+                                 const Eigen::Vector3d* velocity) const {
+  const std::optional<cloth::AttachmentPath>& path = cloth_.attachments()[particle];
+  if (!path) return;
+  const auto require = [&](const char* what, const Eigen::Vector3d& wanted,
+                           const Eigen::Vector3d& held, const char* unit) {
+    if ((wanted - held).norm() <= kHeldTolerance) return;
+    refuse("particle ", particle, " is attached: allowed is its ", what, " (", held.x(), ", ",
+           held.y(), ", ", held.z(), ") ", unit, ", not (", wanted.x(), ", ", wanted.y(), ", ",
+           wanted.z(), "), or release it first");
+  };
+  if (position != nullptr) require("place", *position, path->position(state_.time), "m");
+  if (velocity != nullptr) require("velocity", *velocity, state_.velocities[particle], "m/s");
+}
+
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
-  for (const int particle : requireParticles(particles)) {
+  for (const int particle : requireSome(particles)) {
     cloth_.attach(particle, {state_.positions[particle], Eigen::Vector3d::Zero(), state_.time, 0});
   }
   wake();
@@ -200,14 +257,9 @@ void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
 
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,
                             const std::vector<Eigen::Vector3d>& places) {
-  const std::vector<int> indices = requireParticles(particles);
-  if (places.size() != indices.size()) {
-    refuse("positions has ", places.size(), " elements and particles ", indices.size(),
-           ": allowed is one position for each particle, or none to attach them where they are");
-  }
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    requirePlace(element("positions", i), places[i]);
-  }
+  const std::vector<int> indices = requireSome(particles);
+  requireOneEach("positions", places.size(), indices.size(), "none to attach them where they are");
+  requireAllWithin("positions", places, kMaxCoordinate, "m");
   for (std::size_t i = 0; i < places.size(); ++i) {
     cloth_.attach(indices[i], {places[i], Eigen::Vector3d::Zero(), state_.time, 0});
   }
@@ -227,7 +279,8 @@ void SimulatedCloth::move(const std::vector<std::uint32_t>& particles,
   std::vector<Eigen::Vector3d> starts;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     starts.push_back(cloth_.attachments()[indices[i]]->position(state_.time));
-    requirePlace("the end of the path of " + element("particles", i), starts[i] + displacement);
+    requireWithin("the end of the path of " + element("particles", i), starts[i] + displacement,
+                  kMaxCoordinate, "m");
   }
   for (std::size_t i = 0; i < indices.size(); ++i) {
     cloth_.attach(indices[i], {starts[i], displacement, state_.time, duration});
@@ -242,31 +295,18 @@ void SimulatedCloth::release(const std::vector<std::uint32_t>& particles) {
 
 std::vector<cloth::JacobianBlock> SimulatedCloth::jacobian(
     const std::vector<std::uint32_t>& particles) const {
-  return cloth_.jacobian(state_, requireParticles(particles));
+  return cloth_.jacobian(state_, requireSome(particles));
 }
 
-std::vector<int> SimulatedCloth::requireParticles(
-    const std::vector<std::uint32_t>& particles) const {
+std::vector<int> SimulatedCloth::requireSome(const std::vector<std::uint32_t>& particles) const {
   if (particles.empty()) refuse("particles is empty: allowed is at least one particle");
-  std::vector<bool> named(cloth_.particleCount(), false);
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    const std::uint32_t particle = particles[i];
-    if (particle >= named.size()) {
-      refuse(element("particles", i), " = ", particle, " does not exist: allowed are 0 to ",
-             named.size() - 1);
-    }
-    if (named[particle]) {
-      refuse(element("particles", i), " = ", particle,
-             " is named twice: allowed is each particle once");
-    }
-    named[particle] = true;
-  }
+  requireParticles(particles, cloth_.particleCount());
   return {particles.begin(), particles.end()};
 }
 
 std::vector<int> SimulatedCloth::requireAttached(
     const std::vector<std::uint32_t>& particles) const {
-  const std::vector<int> indices = requireParticles(particles);
+  const std::vector<int> indices = requireSome(particles);
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (!cloth_.isAttached(indices[i])) {
       refuse(element("particles", i), " = ", indices[i],

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
 """The promises of cloth_simulation's topics and services, and every request that it refuses."""
+import os
+import tempfile
 import unittest
 
 import numpy as np
@@ -7,9 +9,9 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point, Vector3
-from haptex.msg import ClothMesh, ClothState, ContactForces
+from haptex.msg import ClothMesh, ClothState, ContactForces, ExternalForces
 from haptex.srv import (AttachParticles, GetJacobian, MoveParticles, QueryBudget, ReleaseParticles,
-                        SetFabric, StepCloth)
+                        SaveState, SetFabric, SetState, StepCloth)
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import MarkerArray
@@ -37,7 +39,8 @@ class ClothSimulation(unittest.TestCase):
         services = {'reset': Trigger, 'pause': SetBool, 'step': StepCloth,
                     'set_fabric': SetFabric, 'attach': AttachParticles, 'move': MoveParticles,
                     'release': ReleaseParticles, 'get_jacobian': GetJacobian,
-                    'query_budget': QueryBudget}
+                    'query_budget': QueryBudget, 'set_state': SetState,
+                    'save_state': SaveState}
         for name, service in services.items():
             rospy.wait_for_service('cloth/' + name, WAIT)
             setattr(cls, name, rospy.ServiceProxy('cloth/' + name, service))
@@ -236,8 +239,10 @@ class ClothSimulation(unittest.TestCase):
                              forces=[Vector3(0.05, 0.0, 0.0)], stiffness=[0.0] * 9)
 
     def contact_publisher(self):
-        publisher = rospy.Publisher('cloth/contact_forces', ContactForces, queue_size=1,
-                                    tcp_nodelay=True)
+        return self.publisher('cloth/contact_forces', ContactForces)
+
+    def publisher(self, topic, message_class):
+        publisher = rospy.Publisher(topic, message_class, queue_size=20, tcp_nodelay=True)
         deadline = rospy.Time.now() + rospy.Duration(WAIT)
         while publisher.get_num_connections() == 0 and rospy.Time.now() < deadline:
             rospy.sleep(0.01)
@@ -301,6 +306,88 @@ class ClothSimulation(unittest.TestCase):
         self.assertGreater(after.step, before.step)
         self.assertLess(abs(after.positions[CORNER].x), 1e-6)  # nothing has pushed it
         publisher.unregister()
+
+    def test_external_forces_add_up_and_end(self):
+        publisher = self.publisher('cloth/external_forces', ExternalForces)
+
+        def push(source, newtons, lifetime):
+            publisher.publish(ExternalForces(header=WORLD, source=source, particles=[CORNER],
+                                             forces=[Vector3(newtons, 0, 0)], lifetime=lifetime))
+
+        def pushed():
+            """Newtons along x: all others are internal, and those of the bar, which is at x = 0."""
+            self.accepted(self.step(1))
+            return sum(force.x for force in self.state().forces)
+
+        def steps_until(newtons):
+            """A message takes its time."""
+            deadline = rospy.Time.now() + rospy.Duration(WAIT)
+            while abs(pushed() - newtons) > 1e-9:
+                self.assertLess(rospy.Time.now(), deadline)
+
+        push('wind', 2e-3, 3600)
+        steps_until(2e-3)
+        push('wind', NAN, 3600)  # refused, and nobody minds
+        publisher.publish(ExternalForces(source='wind'))  # of no frame
+        push('magnet', 1e-3, 4 * TIME_STEP)
+        steps_until(3e-3)
+        for _ in range(3):
+            self.assertAlmostEqual(pushed(), 3e-3, delta=1e-9)
+        self.assertAlmostEqual(pushed(), 2e-3, delta=1e-9)
+        push('wind', 0, 0)
+        steps_until(0.0)
+        status = message('/diagnostics', DiagnosticArray).status[0]
+        values = {item.key: item.value for item in status.values}
+        self.assertEqual(int(values['external forces refused']), 2)
+        self.assertEqual(values['last external forces refused for'],
+                         "header.frame_id = '': allowed is 'world'")
+        publisher.unregister()
+
+    def test_sets_states(self):
+        self.accepted(self.step(3))
+        before = self.state()
+        self.accepted(self.set_state(WORLD, [CORNER], [Point(0.01, -0.1, -0.19)], []))
+        after = self.state()
+        self.assertEqual(after.positions[CORNER], Point(0.01, -0.1, -0.19))
+        self.assertEqual(after.positions[1:], before.positions[1:])
+        self.assertEqual(after.velocities, before.velocities)
+        self.assertNotEqual(after.forces, before.forces)
+        self.assertGreater(after.header.stamp, before.header.stamp)
+        self.accepted(self.step(1))
+        self.accepted(self.set_state(WORLD, [], before.positions, before.velocities))
+        again = self.state()
+        self.assertEqual((again.positions, again.velocities), (before.positions, before.velocities))
+
+    def test_refuses_states(self):
+        for header in (Header(), Header(frame_id='map')):
+            self.refused(self.set_state, header, [CORNER], [Point()], [], says='header.frame_id')
+        for particles, places, velocities, says in (
+                ([CORNER], [], [], 'positions and velocities are empty'),
+                ([PARTICLES], [Point()], [], f'particles[0] = {PARTICLES} does not exist'),
+                ([CORNER], [Point(), Point()], [], 'positions has 2 elements and particles 1'),
+                ([CORNER], [Point(NAN, 0, 0)], [], 'positions[0] = (nan, 0, 0) m'),
+                ([CORNER], [], [Vector3(0, 0, INFINITY)], 'velocities[0] = (0, 0, inf) m/s'),
+                ([TOP_CORNER], [Point()], [], f'particle {TOP_CORNER} is attached')):
+            self.refused(self.set_state, WORLD, particles, places, velocities, says=says)
+
+    def test_saves_states(self):
+        self.accepted(self.step(3))
+        state = self.state()
+        with tempfile.TemporaryDirectory() as directory:
+            path = os.path.join(directory, 'three_steps.state')
+            self.accepted(self.save_state(path))
+            self.assertEqual(os.listdir(directory), ['three_steps.state'])
+            with open(path, encoding='utf-8') as file:
+                lines = file.read().splitlines()
+            self.assertEqual(lines[:3], ['haptex cloth state', f'particles {PARTICLES}',
+                                         f'time {state.simulated_time!r}'])
+            numbers = np.loadtxt(path, skiprows=3)
+            self.assertEqual(numbers[:, :3].tolist(), positions(state).tolist())
+            self.assertEqual(numbers[:, 3:].tolist(),
+                             [[v.x, v.y, v.z] for v in state.velocities])
+            self.refused(self.save_state, os.path.join(directory, 'none', 'a.state'),
+                         says='cannot be written: No such file or directory')
+        self.refused(self.save_state, 'three_steps.state', says='allowed are absolute paths')
 
     def test_heartbeat_goes_on_while_paused(self):
         beats = []

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "haptex/base/workload.h"
+#include "haptex/simulation/force_sources.h"
 #include "haptex/simulation/real_time_loop.h"
 #include "small_scene.h"
 
@@ -52,6 +53,33 @@ TEST(RealTimeLoop, TakesExactlyTheStepsAskedFor) {
   for (int i = 0; i < 17; ++i) alone.step();
   EXPECT_EQ(stateOf(loop).positions, alone.state().positions);
   EXPECT_EQ(loop.status().steps, 17u);
+}
+
+// Which other threads send meanwhile.
+TEST(RealTimeLoop, LetsExternalForcesLiveInItsOwnTime) {
+  ForceSources sources(kSmallParticles);
+  RealTimeLoop loop(smallSimulation(), ignore,
+                    [&](SimulatedCloth& simulation) { sources.apply(simulation); });
+  loop.start();
+  for (int i = 0; i < 50; ++i) {
+    sources.set("wind", {{0}, {Eigen::Vector3d(1e-4 * i, 0.0, 0.0)}, 3600.0});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  sources.set("magnet", {{1}, {Eigen::Vector3d(0.0, 0.01, 0.0)}, 2 * 0.005});
+  loop.setPaused(true);
+  loop.execute([&](SimulatedCloth& simulation) {
+    sources.clear();
+    simulation.reset();
+  });
+  sources.set("magnet", {{1}, {Eigen::Vector3d(0.0, 0.01, 0.0)}, 2 * 0.005});
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // four steps, if it ran
+  loop.runSteps(4);
+  SimulatedCloth alone = smallSimulation();
+  for (int i = 0; i < 4; ++i) {
+    alone.setExternalForce(1, Eigen::Vector3d(0.0, i < 2 ? 0.01 : 0.0, 0.0));
+    alone.step();
+  }
+  EXPECT_EQ(stateOf(loop).positions, alone.state().positions);
 }
 
 TEST(RealTimeLoop, RefusesStepsWhileRunning) {

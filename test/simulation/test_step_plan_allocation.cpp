@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "../malloc_counter.h"
+#include "haptex/simulation/force_sources.h"
 #include "step_plans.h"
 
 namespace haptex::simulation::test_step_plan_allocation {
@@ -27,6 +28,25 @@ TEST(StepPlanAllocation, StepsAndChangesAllocateNothing) {
   EXPECT_EQ(simulation.controller()->changes(), 3u);
   EXPECT_EQ(times.cycles, 200u);
   EXPECT_GT(before, 0) << "the count does not work";
+}
+
+TEST(StepPlanAllocation, ExternalForcesComeAndEndWithoutAllocation) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  SimulatedCloth simulation = smallSimulation();
+  ForceSources sources(kSmallParticles);
+  sources.set("wind", {{0, 1}, {{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}}, 0.02});
+  sources.set("magnet", {{1, 2}, {{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}}, 0.05});
+  const long before = allocations;
+  bool accepted = true;
+  for (int i = 0; i < 20; ++i) {
+    sources.apply(simulation);
+    accepted = simulation.step() && accepted;
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_TRUE(accepted);
+  EXPECT_EQ(sources.size(), 0u);
 }
 
 }  // namespace

@@ -34,10 +34,11 @@ class ObstacleCollision {
   static constexpr double kTolerance = 1e-6;  ///< m
 
   /// @param cloth the one that is stepped, with contacts among its effects
+  /// @param start s, simulated, of the first step
   /// @throws std::invalid_argument what makeObstacle() says, if an obstacle has no friction of
   ///   its own and the fabric has none, or if the cloth collides with itself and a triangle of it
-  ///   touches an obstacle or is inside of it at time 0
-  ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles);
+  ///   touches an obstacle or is inside of it at the start
+  ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles, double start = 0.0);
 
   /// Takes a step as cloth::Integrator::step(), from the obstacles' poses at the state's time to
   /// those at its end, and keeps the particles out of them.

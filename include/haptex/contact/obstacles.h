@@ -10,9 +10,10 @@
 
 namespace haptex::contact {
 
-/// The same shape with the pose that it has at time 0: its frame is then the world frame.
+/// The same shape with the pose that it has at a time (s, simulated): its frame is then the world
+/// frame.
 /// @throws std::invalid_argument what the factories of RigidObstacle and setPose() say
-proximity::RigidObstacle makeObstacle(const mesh::Obstacle& obstacle);
+proximity::RigidObstacle makeObstacle(const mesh::Obstacle& obstacle, double time = 0.0);
 
 /// The first of a cloth's triangles that touches an obstacle, or is inside of a solid one; -1:
 /// none.

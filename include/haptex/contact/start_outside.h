@@ -17,19 +17,20 @@ struct StartMove {
   std::string obstacle;  ///< that it touched
 };
 
-/// Moves the initial positions (world frame, m) of a cloth that touches obstacles at time 0 out of
-/// them, to a clearance of ObstacleCollision::kOffset. What is inside of a solid goes along the
-/// normal of its nearest surface; of a closed mesh that the cloth goes through, what is on the side
-/// where fewer particles are. Edges keep the length that they have at the start as far as that is
-/// possible, so what is beside it follows (position based dynamics: Mueller, Heidelberger, Hennix
-/// and Ratcliff, J. Visual Communication and Image Representation 18, 2007). What comes to
-/// intersect itself by it is for cloth::Untangling.
+/// Moves the initial positions (world frame, m) of a cloth that touches obstacles in their poses at
+/// the start out of them, to a clearance of ObstacleCollision::kOffset. What is inside of a solid
+/// goes along the normal of its nearest surface; of a closed mesh that the cloth goes through, what
+/// is on the side where fewer particles are. Edges keep the length that they have at the start as
+/// far as that is possible, so what is beside it follows (position based dynamics: Mueller,
+/// Heidelberger, Hennix and Ratcliff, J. Visual Communication and Image Representation 18, 2007).
+/// What comes to intersect itself by it is for cloth::Untangling.
 ///
 /// Nothing is moved where no triangle touches, or where this leads to no start outside, as for a
 /// needle that is stuck through the cloth or a surface that is not closed.
 /// @param held particles that stay where they are
+/// @param start s, simulated
 /// @throws std::invalid_argument what makeObstacle() says
 StartMove moveOutside(mesh::ClothMesh& mesh, const std::vector<mesh::Obstacle>& obstacles,
-                      const std::vector<int>& held);
+                      const std::vector<int>& held, double start = 0.0);
 
 }  // namespace haptex::contact

@@ -20,11 +20,14 @@ struct Scene {
   std::vector<int> attached_particles;  ///< at their initial positions
   double time_step = 0.0;               ///< s
   cloth::StepSettings step;
-  std::vector<mesh::Obstacle> obstacles;  ///< names unique; the cloth collides with them if
-                                          ///< effects has contacts
+  std::vector<mesh::Obstacle> obstacles;          ///< names unique; the cloth collides with them if
+                                                  ///< effects has contacts
+  std::vector<Eigen::Vector3d> start_velocities;  ///< m/s, one per particle; empty: at rest
+  double start_time = 0.0;                        ///< s, simulated, that of a saved state
   /// What was done to a start that reached into obstacles, where the cloth collides with itself.
   contact::StartMove start_move;
-  /// A sheet that is attached by nothing but its sides: it may have any cells.
+  /// A sheet that is attached by nothing but its sides and starts from no saved state: it may have
+  /// any cells.
   bool any_cells = false;
   // What is modelled beside the cloth.
   bool fingers = false;    ///< touch the cloth; effects has point loads then
@@ -35,10 +38,11 @@ struct Scene {
 /// Reads a scene file; docs/scene_files.md describes the format. A fabric or mesh name without a
 /// path separator is looked up in the directory of its kind beside the scene's directory
 /// (config/fabrics for config/scenes); one with a separator is a path from the scene's directory.
-/// @throws std::runtime_error if the scene file or its mesh cannot be read, or the scene is not
-/// YAML
-/// @throws std::invalid_argument naming file, key, value and what is allowed, or what loadObj()
-/// says
+/// With a saved state its positions are the mesh's initial ones.
+/// @throws std::runtime_error if the scene file, its mesh or its state cannot be read, or the scene
+/// is not YAML
+/// @throws std::invalid_argument naming file, key, value and what is allowed, or what loadObj() and
+/// loadState() say
 Scene loadScene(const std::string& path);
 
 /// The same, but a sheet of a scene with any_cells has as few cells as make no edge along weft or

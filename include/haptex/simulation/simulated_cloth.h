@@ -86,7 +86,8 @@ class SimulatedCloth {
   /// Null without one.
   const QualityController* controller() const { return controller_ ? &*controller_ : nullptr; }
 
-  /// Positions, velocities, attachments and time as at the start, without loads. The fabric stays.
+  /// Positions, velocities, attachments and time as at the start, without loads or external forces.
+  /// The fabric stays.
   void reset();
 
   /// Takes effect in the next step; positions and velocities stay.
@@ -95,6 +96,28 @@ class SimulatedCloth {
 
   /// Act until replaced. @throws std::invalid_argument what Cloth::setPointLoads() throws
   void setPointLoads(const std::vector<cloth::PointLoad>& loads);
+
+  /// User-defined external force (N) on a particle, until set again; zero at first. It acts as
+  /// gravity does. Allocates nothing.
+  /// @throws std::invalid_argument what Cloth::setExternalForce() throws
+  void setExternalForce(std::uint32_t particle, const Eigen::Vector3d& force);
+
+  /// Puts particles elsewhere and gives them other velocities; time, attachments and loads stay.
+  /// Methods that need the past start anew, and with positions so does what is remembered of
+  /// friction inside of the fabric (cloth::Cloth::forget()). A state that intersects itself is
+  /// pulled apart (cloth::Untangling). A particle that is set into a solid obstacle is outside
+  /// after the next step; cloth that collides with itself stays caught in what it was set into.
+  /// @param particles  empty: all, in their order
+  /// @param positions  m, one per particle; empty: they stay
+  /// @param velocities m/s, likewise
+  /// @throws std::invalid_argument if a particle does not exist or is named twice, both other lists
+  ///   are empty or one has another length, a component is not finite or beyond
+  ///   proximity::kMaxLength, or an attached particle would get another position than where it is
+  ///   attached, or another velocity than it has (more than kHeldTolerance away)
+  void setState(const std::vector<std::uint32_t>& particles,
+                const std::vector<Eigen::Vector3d>& positions,
+                const std::vector<Eigen::Vector3d>& velocities);
+  static constexpr double kHeldTolerance = 1e-9;  ///< m or m/s
 
   /// Attaches particles where they are now.
   /// @throws std::invalid_argument if there is none, one does not exist or is named twice
@@ -122,8 +145,11 @@ class SimulatedCloth {
   std::vector<cloth::JacobianBlock> jacobian(const std::vector<std::uint32_t>& particles) const;
 
  private:
-  std::vector<int> requireParticles(const std::vector<std::uint32_t>& particles) const;
+  std::vector<int> requireSome(const std::vector<std::uint32_t>& particles) const;
   std::vector<int> requireAttached(const std::vector<std::uint32_t>& particles) const;
+  void requireHeld(int particle, const Eigen::Vector3d* position,
+                   const Eigen::Vector3d* velocity) const;
+  cloth::ClothState startState() const;
   void attachInitially();
   void makeIntegrators();
   bool run(int cycles, double waited);
@@ -133,7 +159,10 @@ class SimulatedCloth {
   void sleepIfResting();
 
   cloth::Cloth cloth_;
-  bool loaded_ = false;  // with point loads
+  bool loaded_ = false;                            // with point loads
+  bool pushed_ = false;                            // external forces have been set
+  std::vector<Eigen::Vector3d> start_velocities_;  // m/s; empty: at rest
+  double start_time_;                              // s
   cloth::ClothState state_;
   cloth::ClothState before_;  // the step, if a plan has several substeps
   std::vector<StepPlan> plans_;

@@ -61,6 +61,14 @@ void warnOfTangles(const scene::Scene& scene) {
       pairs.size(), pairs[0][0], pairs[0][1]);
 }
 
+void addInput(diagnostic_updater::DiagnosticStatusWrapper& status, const std::string& name,
+              const InputStatus& input) {
+  status.add(name + " taken", input.taken);
+  status.add(name + " refused", input.refused);
+  status.add("last " + name + " refused for",
+             input.refused_why.empty() ? "none" : input.refused_why);
+}
+
 }  // namespace
 
 ClothNodeParameters ClothNodeParameters::read(const ros::NodeHandle& private_node) {
@@ -100,6 +108,7 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       tolerance_(scene.step.tolerance),
       particle_count_(scene.mesh.initial_positions.size()),
       triangle_count_(scene.mesh.triangles.size()),
+      force_input_(node, particle_count_),
       contact_input_(scene.fingers ? std::make_unique<ContactInput>(node, triangle_count_)
                                    : nullptr),
       heartbeat_(node, "cloth/heartbeat"),
@@ -108,11 +117,7 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
           [this](const simulation::SimulatedCloth& simulation, double until_next) {
             publishStep(simulation, until_next);
           },
-          contact_input_
-              ? simulation::RealTimeLoop::Command([this](simulation::SimulatedCloth& simulation) {
-                  takeContactForces(simulation);
-                })
-              : simulation::RealTimeLoop::Command()) {
+          [this](simulation::SimulatedCloth& simulation) { takeForces(simulation); }) {
   ROS_INFO("Scene %s: %zu particles, %zu triangles, steps of %g ms", parameters.scene_path.c_str(),
            particle_count_, triangle_count_, 1e3 * time_step_);
   warnOfTangles(scene);
@@ -196,8 +201,10 @@ void ClothNode::publishState(const simulation::SimulatedCloth& simulation, doubl
   state_publisher_.publish(state_message_);
 }
 
-void ClothNode::takeContactForces(simulation::SimulatedCloth& simulation) {
+void ClothNode::takeForces(simulation::SimulatedCloth& simulation) {
   // They have been checked when they came, so that this does not throw.
+  force_input_.sources().apply(simulation);
+  if (!contact_input_) return;
   if (contact_input_->loads().take(loads_, realtime::steadyNow())) simulation.setPointLoads(loads_);
 }
 
@@ -267,12 +274,9 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("particles", particle_count_);
   status.add("triangles", triangle_count_);
   if (quality_) diagnoseQuality(status);
-  if (!contact_input_) return;
-  const ContactInputStatus contact = contact_input_->status();
-  status.add("contact forces taken", contact.taken);
-  status.add("contact forces refused", contact.refused);
-  status.add("last contact forces refused for",
-             contact.refused_why.empty() ? "none" : contact.refused_why);
+  addInput(status, "external forces", force_input_.status());
+  status.add("sources of external forces", force_input_.sources().size());
+  if (contact_input_) addInput(status, "contact forces", contact_input_->status());
 }
 
 void ClothNode::diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& status) const {

@@ -1,5 +1,7 @@
 // The services of ClothNode. Each checks its request, changes the simulation between two steps, and
 // answers what was done or why nothing was.
+#include <algorithm>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -8,6 +10,7 @@
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/config_files.h"
 #include "haptex/nodes/common/service_answer.h"
+#include "haptex/scene/cloth_state_file.h"
 
 namespace haptex::nodes {
 namespace {
@@ -29,6 +32,8 @@ void ClothNode::advertiseServices() {
                node_.advertiseService("cloth/move", &ClothNode::move, this),
                node_.advertiseService("cloth/release", &ClothNode::release, this),
                node_.advertiseService("cloth/get_jacobian", &ClothNode::getJacobian, this),
+               node_.advertiseService("cloth/set_state", &ClothNode::setState, this),
+               node_.advertiseService("cloth/save_state", &ClothNode::saveState, this),
                node_.advertiseService("cloth/query_budget", &ClothNode::queryBudget, this)};
 }
 
@@ -36,6 +41,7 @@ bool ClothNode::reset(std_srvs::Trigger::Request& /*request*/,
                       std_srvs::Trigger::Response& response) {
   return answer("reset", response, [&] {
     loop_.execute([this](simulation::SimulatedCloth& simulation) {
+      force_input_.sources().clear();
       if (contact_input_) contact_input_->loads().clear();
       simulation.reset();
     });
@@ -125,6 +131,31 @@ bool ClothNode::getJacobian(GetJacobian::Request& request, GetJacobian::Response
       response.simulated_time = simulation.state().time;
     });
     return counted(response.rows.size(), "block");
+  });
+}
+
+bool ClothNode::setState(SetState::Request& request, SetState::Response& response) {
+  return answer("set_state", response, [&] {
+    requireFixedFrame(request.header);
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      simulation.setState(request.particles, fromMessage(request.positions),
+                          fromMessage(request.velocities));
+      state_stamp_ = ros::Time::now();  // another state of the same step
+    });
+    return "set " +
+           counted(std::max(request.positions.size(), request.velocities.size()), "particle");
+  });
+}
+
+bool ClothNode::saveState(SaveState::Request& request, SaveState::Response& response) {
+  return answer("save_state", response, [&] {
+    cloth::ClothState state;
+    loop_.execute([&](simulation::SimulatedCloth& simulation) { state = simulation.state(); });
+    scene::saveState(request.path, state);  // here: the loop does not wait for files
+    std::ostringstream message;
+    message << counted(state.positions.size(), "particle") << " at " << state.time << " s in "
+            << request.path;
+    return message.str();
   });
 }
 

@@ -19,6 +19,14 @@ void appendRowByRow(const Eigen::Matrix3d& block, std::vector<double>& numbers) 
   }
 }
 
+template <typename Message>
+std::vector<Eigen::Vector3d> fromXyz(const std::vector<Message>& messages) {
+  std::vector<Eigen::Vector3d> vectors;
+  vectors.reserve(messages.size());
+  for (const Message& message : messages) vectors.emplace_back(message.x, message.y, message.z);
+  return vectors;
+}
+
 }  // namespace
 
 haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, const ros::Time& stamp) {
@@ -78,10 +86,11 @@ void requireFixedFrame(const std_msgs::Header& header) {
 }
 
 std::vector<Eigen::Vector3d> fromMessage(const std::vector<geometry_msgs::Point>& points) {
-  std::vector<Eigen::Vector3d> vectors;
-  vectors.reserve(points.size());
-  for (const geometry_msgs::Point& point : points) vectors.emplace_back(point.x, point.y, point.z);
-  return vectors;
+  return fromXyz(points);
+}
+
+std::vector<Eigen::Vector3d> fromMessage(const std::vector<geometry_msgs::Vector3>& vectors) {
+  return fromXyz(vectors);
 }
 
 }  // namespace haptex::nodes

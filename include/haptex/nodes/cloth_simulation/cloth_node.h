@@ -8,7 +8,9 @@
 #include <haptex/MoveParticles.h>
 #include <haptex/QueryBudget.h>
 #include <haptex/ReleaseParticles.h>
+#include <haptex/SaveState.h>
 #include <haptex/SetFabric.h>
+#include <haptex/SetState.h>
 #include <haptex/StepCloth.h>
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
@@ -25,6 +27,7 @@
 
 #include "haptex/nodes/cloth_simulation/cloth_markers.h"
 #include "haptex/nodes/cloth_simulation/contact_input.h"
+#include "haptex/nodes/cloth_simulation/external_force_input.h"
 #include "haptex/nodes/cloth_simulation/heartbeat.h"
 #include "haptex/nodes/cloth_simulation/runtime_quality.h"
 #include "haptex/scene/scene.h"
@@ -54,8 +57,9 @@ struct ClothNodeParameters {
 ///   cloth/quality (ClothQuality, latched), with ~quality or ~budget_ms;
 ///   services cloth/reset (std_srvs/Trigger), cloth/pause (std_srvs/SetBool), cloth/step,
 ///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian,
-///   cloth/query_budget (srv/).
-/// In a scene with fingers it subscribes to cloth/contact_forces (ContactForces), which act for
+///   cloth/query_budget, cloth/set_state, cloth/save_state (srv/).
+/// It subscribes to cloth/external_forces (ExternalForces; simulation::ForceSources). In a scene
+/// with fingers it subscribes to cloth/contact_forces (ContactForces), which act for
 /// NewestLoads::kLifetime.
 /// A refused request is answered with success = false and changes nothing. The services may be
 /// called from several threads at once.
@@ -85,7 +89,7 @@ class ClothNode {
   void republishIfResting();
   void publishQuality(const simulation::SimulatedCloth& simulation);
   void publishQualityIfDue(const simulation::SimulatedCloth& simulation);
-  void takeContactForces(simulation::SimulatedCloth& simulation);
+  void takeForces(simulation::SimulatedCloth& simulation);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
@@ -97,6 +101,8 @@ class ClothNode {
   bool move(MoveParticles::Request& request, MoveParticles::Response& response);
   bool release(ReleaseParticles::Request& request, ReleaseParticles::Response& response);
   bool getJacobian(GetJacobian::Request& request, GetJacobian::Response& response);
+  bool setState(SetState::Request& request, SetState::Response& response);
+  bool saveState(SaveState::Request& request, SaveState::Response& response);
   bool queryBudget(QueryBudget::Request& request, QueryBudget::Response& response);
 
   ros::NodeHandle node_;
@@ -133,6 +139,7 @@ class ClothNode {
   std::size_t particle_count_;
   std::size_t triangle_count_;
 
+  ExternalForceInput force_input_;
   std::unique_ptr<ContactInput> contact_input_;  // null in a scene without fingers
   Heartbeat heartbeat_;
 

@@ -5,21 +5,12 @@
 #include <ros/ros.h>
 
 #include <cstddef>
-#include <cstdint>
-#include <mutex>
-#include <string>
 
+#include "haptex/nodes/cloth_simulation/input_count.h"
 #include "haptex/nodes/common/immediate_queue.h"
 #include "haptex/simulation/newest_loads.h"
 
 namespace haptex::nodes {
-
-/// Since the construction.
-struct ContactInputStatus {
-  std::uint64_t taken = 0;    ///< messages, no unit
-  std::uint64_t refused = 0;  ///< likewise
-  std::string refused_why;    ///< the last one
-};
 
 /// Subscribes to cloth/contact_forces below the namespace of `node`. A message that is refused is
 /// counted and changes nothing, not even the age of the loads that act.
@@ -29,15 +20,11 @@ class ContactInput {
   ContactInput(const ros::NodeHandle& node, std::size_t triangle_count);
 
   simulation::NewestLoads& loads() { return loads_; }
-  ContactInputStatus status() const;
+  InputStatus status() const { return count_.status(); }
 
  private:
-  void receive(const haptex::ContactForces& message);
-
-  const std::size_t triangle_count_;
   simulation::NewestLoads loads_;
-  mutable std::mutex mutex_;  // guards the following
-  ContactInputStatus status_;
+  InputCount count_{"cloth/contact_forces"};
   ImmediateQueue queue_;
   ros::Subscriber subscriber_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <geometry_msgs/Point.h>
+#include <geometry_msgs/Vector3.h>
 #include <haptex/ClothMesh.h>
 #include <haptex/ClothState.h>
 #include <haptex/GetJacobian.h>
@@ -42,5 +43,6 @@ void fillJacobianResponse(const std::vector<cloth::JacobianBlock>& blocks,
 void requireFixedFrame(const std_msgs::Header& header);
 
 std::vector<Eigen::Vector3d> fromMessage(const std::vector<geometry_msgs::Point>& points);
+std::vector<Eigen::Vector3d> fromMessage(const std::vector<geometry_msgs::Vector3>& vectors);
 
 }  // namespace haptex::nodes
