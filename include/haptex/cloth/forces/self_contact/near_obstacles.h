@@ -18,7 +18,8 @@ namespace haptex::cloth {
 /// cloth's is the first.
 ///
 /// Finds them through boxes around all triangles, those of the obstacles in a tree, those of the
-/// cloth one after the other, and then around their vertices and edges. Allocates nothing once its buffers have had the size that they need.
+/// cloth one after the other, and then around their vertices and edges. Allocates nothing once its
+/// buffers have had the size that they need.
 class NearObstacles {
  public:
   using Pair = NearPairs::Pair;
