@@ -87,8 +87,8 @@ class KdopHierarchy {
   void query(const Body& body, const Range& range, std::vector<NearElement>& found,
              QueryCost* cost = nullptr) const;
 
-  /// The volumes that such a query tests, each once. For pictures: it takes several times as long as
-  /// the query.
+  /// The volumes that such a query tests, each once. For pictures: it takes several times as long
+  /// as the query.
   std::vector<VolumeIndex> tested(const Cursor& cursor, const Range& range) const;
   std::vector<VolumeIndex> tested(const Body& body, const Range& range) const;
 
