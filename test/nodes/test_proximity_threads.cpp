@@ -76,7 +76,7 @@ TEST(ProximityThreads, EveryAnswerIsOfOneStateWhileStatesArrive) {
   threads.emplace_back([&] {
     while (!stop) {
       proximity.setMesh(message);  // as after a change of the fabric
-      proximity.scene({0, 1, 2}, 3);
+      proximity.scene({{0, 1, 2}, 3, {}});
       proximity.status(Clock::now());
     }
   });
