@@ -73,9 +73,9 @@ class RefusedParameters(unittest.TestCase):
             self.refused(f'_stale_after:={value}', node='proximity', says=['~stale_after'])
 
     def test_proximity_volume_levels_that_there_are_not(self):
-        for value in ('-2', '17', '1.5', 'all'):
+        for value in ('-3', '17', '1.5', 'all'):
             self.refused(f'_volume_level:={value}', node='proximity',
-                         says=['~volume_level', 'allowed are whole numbers from -1 to 16'])
+                         says=['~volume_level', 'allowed are whole numbers from -2 to 16'])
 
     def test_driver_ports(self):
         for port in ('_port:=', '_port:=3', '_rate:=1'):
