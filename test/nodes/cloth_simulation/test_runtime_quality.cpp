@@ -77,6 +77,7 @@ TEST_F(RuntimeQualityOfAScene, APresetIsByAMethodThatKnowsWhatTheSceneModels) {
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(simulation.step());
     const haptex::QualityPoint point = quality.message(simulation, ros::Time(1.0)).quality;
     EXPECT_EQ(point.integrator, "backward_euler") << point.name;
+    if (request.preset_path.empty()) continue;  // the front has points of backward Euler, too
     EXPECT_FALSE(point.cells_as_measured) << point.name;
     EXPECT_TRUE(point.motion.empty()) << point.name;
   }
