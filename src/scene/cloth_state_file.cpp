@@ -41,17 +41,13 @@ void append(std::string& text, const Vector3d& vector) {
   }
 }
 
-bool isAllowed(const Vector3d& vector) {
-  return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= kLargest;
-}
-
 std::string textOf(const std::string& path, const cloth::ClothState& state) {
   std::string text = std::string(kTitle) + "\nparticles " + std::to_string(state.positions.size());
   text += "\ntime ";
   append(text, state.time);
   text += "\n# of each particle in the world frame: x y z (m), vx vy vz (m/s)\n";
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    if (!isAllowed(state.positions[i]) || !isAllowed(state.velocities[i])) {
+    if (!proximity::isPlace(state.positions[i]) || !proximity::isPlace(state.velocities[i])) {
       refuse(path, ": particle ", i,
              " has a position or a velocity that is not allowed in a file: ",
              "finite numbers up to ", kLargest, " are");

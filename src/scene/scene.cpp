@@ -24,7 +24,6 @@ namespace {
 using base::YamlValue;
 
 constexpr double kMaxCurvature = 1000.0;  // 1/m
-constexpr double kHeldTolerance = 1e-9;   // m, of attached particles in a saved state
 const Eigen::Vector3d kDownwards(0.0, 0.0, -base::kStandardGravity);
 
 int readCells(const YamlValue& value) {

@@ -239,7 +239,7 @@ void SimulatedCloth::requireHeld(int particle, const Eigen::Vector3d* position,
   if (!path) return;
   const auto require = [&](const char* what, const Eigen::Vector3d& wanted,
                            const Eigen::Vector3d& held, const char* unit) {
-    if ((wanted - held).norm() <= kHeldTolerance) return;
+    if ((wanted - held).norm() <= scene::kHeldTolerance) return;
     refuse("particle ", particle, " is attached: allowed is its ", what, " (", held.x(), ", ",
            held.y(), ", ", held.z(), ") ", unit, ", not (", wanted.x(), ", ", wanted.y(), ", ",
            wanted.z(), "), or release it first");

@@ -79,15 +79,13 @@ Cloth sampleOf(Motion motion, const material::Fabric& fabric, const TradeOffPoin
   effects.bending = fabric.bending.has_value();
   effects.contacts = motion == Motion::kDrape;
   effects.self_collision = motion == Motion::kFold;
-  const bool hangs = motion != Motion::kDrape && motion != Motion::kFold;
   Eigen::Isometry3d above = Eigen::Isometry3d::Identity();
-  if (motion == Motion::kDrape)
-    above.translation().z() = kSphereRadius + ObstacleCollision::kOffset;
+  if (effects.contacts) above.translation().z() = kSphereRadius + ObstacleCollision::kOffset;
   const int cells = requireSound(point).cells;
-  mesh::ClothMesh mesh = hangs
-                             ? mesh::makeRectangle(kSampleSize, kSampleSize, cells, cells,
-                                                   mesh::Triangulation::kAlternating)
-                             : oracles::flatSheet({kSampleSize, kSampleSize}, cells, cells, above);
+  mesh::ClothMesh mesh = isTouched(motion)
+                             ? oracles::flatSheet({kSampleSize, kSampleSize}, cells, cells, above)
+                             : mesh::makeRectangle(kSampleSize, kSampleSize, cells, cells,
+                                                   mesh::Triangulation::kAlternating);
   return Cloth(std::move(mesh), fabricOf(motion, fabric, point), effects);
 }
 
@@ -155,7 +153,7 @@ class MotionRun {
       for (int i = 0; i <= kComparedIntervals; ++i) now.positions.push_back(placeOf(state, i, j));
     }
     now.energy = energyOf(state) - first_energy_;
-    if (!collision_) now.force = upperForce(state);
+    if (!collision_) now.force = edgeForce(state);
     return now;
   }
   const ClothState& state() const { return state_; }
@@ -244,27 +242,28 @@ class MotionRun {
   }
   int cells() const { return point_.cells; }
 
-  /// Of the attached upper edge, which rests. The viscous part is that of how strains have changed
-  /// within the last step: velocities at the end of a long step would stretch what only turns.
-  Vector3d upperForce(const ClothState& state) {
+  /// Of the attached edge that is told about: the upper one, which rests, or of fold the lower one.
+  /// The viscous part is that of how strains have changed within the last step: velocities at the
+  /// end of a long step would stretch what only turns.
+  Vector3d edgeForce(const ClothState& state) {
     ClothState slow = state;
     for (Vector3d& velocity : slow.velocities) velocity.setZero();
-    Vector3d force = -upperSum(slow);
+    Vector3d force = -edgeSum(slow);
     const double h = point_.timeStep();
     if (lower_held_) {
       for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
         slow.positions[i] = 0.5 * (before_.positions[i] + state.positions[i]);
       }
-      force += upperSum(slow);
+      force += edgeSum(slow);
       for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
         slow.velocities[i] = (state.positions[i] - before_.positions[i]) / h;
       }
-      force -= upperSum(slow);
+      force -= edgeSum(slow);
     }
     return force;
   }
 
-  Vector3d upperSum(const ClothState& state) {
+  Vector3d edgeSum(const ClothState& state) {
     cloth_.computeForces(state, forces_);
     Vector3d sum = Vector3d::Zero();
     for (int particle : motion_ == Motion::kFold ? lower_ : upper_) sum += forces_[particle];

@@ -88,7 +88,8 @@ class KdopHierarchy {
              QueryCost* cost = nullptr) const;
 
   /// The volumes that such a query tests, each once. For pictures: it takes several times as long
-  /// as the query.
+  /// as the query, and allocates.
+  /// @throws std::invalid_argument what requireValid() throws
   std::vector<VolumeIndex> tested(const Cursor& cursor, const Range& range) const;
   std::vector<VolumeIndex> tested(const Body& body, const Range& range) const;
 

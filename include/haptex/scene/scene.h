@@ -35,6 +35,9 @@ struct Scene {
   bool recording = false;  ///< a bag is recorded without being asked for
 };
 
+/// m, and m/s: how far a state may have an attached particle from where it is held.
+constexpr double kHeldTolerance = 1e-9;
+
 /// Reads a scene file; docs/scene_files.md describes the format. A fabric or mesh name without a
 /// path separator is looked up in the directory of its kind beside the scene's directory
 /// (config/fabrics for config/scenes); one with a separator is a path from the scene's directory.

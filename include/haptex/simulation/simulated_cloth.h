@@ -113,11 +113,10 @@ class SimulatedCloth {
   /// @throws std::invalid_argument if a particle does not exist or is named twice, both other lists
   ///   are empty or one has another length, a component is not finite or beyond
   ///   proximity::kMaxLength, or an attached particle would get another position than where it is
-  ///   attached, or another velocity than it has (more than kHeldTolerance away)
+  ///   attached, or another velocity than it has (more than scene::kHeldTolerance away)
   void setState(const std::vector<std::uint32_t>& particles,
                 const std::vector<Eigen::Vector3d>& positions,
                 const std::vector<Eigen::Vector3d>& velocities);
-  static constexpr double kHeldTolerance = 1e-9;  ///< m or m/s
 
   /// Attaches particles where they are now.
   /// @throws std::invalid_argument if there is none, one does not exist or is named twice

@@ -8,8 +8,9 @@ namespace haptex::nodes {
 ContactInput::ContactInput(const ros::NodeHandle& node, std::size_t triangle_count) {
   const boost::function<void(const haptex::ContactForces&)> callback =
       [this, triangle_count](const haptex::ContactForces& message) {
-        count_.count(
-            [&] { loads_.set(pointLoads(message, triangle_count), realtime::steadyNow()); });
+        count_.count("cloth/contact_forces", [&] {
+          loads_.set(pointLoads(message, triangle_count), realtime::steadyNow());
+        });
       };
   ros::NodeHandle subscribing = node;
   subscribing.setCallbackQueue(&queue_);

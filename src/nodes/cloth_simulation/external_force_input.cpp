@@ -13,7 +13,8 @@ ExternalForceInput::ExternalForceInput(const ros::NodeHandle& node, std::size_t 
     : sources_(particle_count) {
   const boost::function<void(const haptex::ExternalForces&)> callback =
       [this](const haptex::ExternalForces& message) {
-        count_.count([&] { sources_.set(message.source, particleForces(message)); });
+        count_.count("cloth/external_forces",
+                     [&] { sources_.set(message.source, particleForces(message)); });
       };
   ros::NodeHandle subscribing = node;
   subscribing.setCallbackQueue(&queue_);

@@ -207,7 +207,9 @@ bool EmulatorNode::cyclePower(std_srvs::Trigger::Request& /*request*/,
 
 void EmulatorNode::diagnose(Status& status) {
   const exoskeleton::EmulatorStatus now = emulator_.status();
-  const TargetInputStatus targets = targets_.status();
+  const InputStatus targets = targets_.status();
+  const std::string refusal =
+      targets.refused > 0 ? targets.refused_from + ": " + targets.refused_why : "";
   std::string faults;
   for (const std::string& fault : now.faults) faults += (faults.empty() ? "" : ", ") + fault;
   if (!now.port_trouble.empty()) {
@@ -216,7 +218,7 @@ void EmulatorNode::diagnose(Status& status) {
     status.summaryf(DiagnosticStatus::WARN, "gave up %.1f ms to keep up with real time",
                     base::milliseconds(now.skipped - diagnosed_.skipped));
   } else if (targets.refused > diagnosed_refusals_) {
-    status.summary(DiagnosticStatus::WARN, "refused " + targets.refused_why);
+    status.summary(DiagnosticStatus::WARN, "refused " + refusal);
   } else if (!faults.empty()) {
     status.summary(DiagnosticStatus::OK, "in real time, with faults asked for: " + faults);
   } else {
@@ -237,7 +239,7 @@ void EmulatorNode::diagnose(Status& status) {
   status.add("ports opened", now.line.ports);
   status.add("targets taken", targets.taken);
   status.add("targets refused", targets.refused);
-  status.add("why the last target was refused", targets.refused_why);
+  status.add("why the last target was refused", refusal);
   status.add("forces not published in time", truth_.lost());
   diagnosed_ = now;
   diagnosed_refusals_ = targets.refused;

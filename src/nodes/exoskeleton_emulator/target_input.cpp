@@ -2,9 +2,6 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
-#include <exception>
-#include <stdexcept>
-
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/transforms.h"
@@ -43,23 +40,8 @@ TargetInput::TargetInput(const ros::NodeHandle& node, exoskeleton::HandMotion& m
                                                                  ros::VoidConstPtr(), hints);
 }
 
-/// Applies a target; what is thrown is the refusal.
-template <typename Apply>
-void TargetInput::receive(const std::string& from, const Apply& apply) {
-  std::string why;
-  try {
-    apply();
-  } catch (const std::exception& error) {
-    why = error.what();
-    ROS_WARN_THROTTLE(1.0, "%s refused: %s", from.c_str(), error.what());
-  }
-  const std::lock_guard<std::mutex> lock(mutex_);
-  ++(why.empty() ? status_.taken : status_.refused);
-  if (!why.empty()) status_.refused_why = from + ": " + why;
-}
-
 void TargetInput::receivePoint(Finger finger, const geometry_msgs::PointStamped& message) {
-  receive(base::name(finger) + std::string("/target"), [&] {
+  count_.count(base::name(finger) + std::string("/target"), [&] {
     Eigen::Vector3d target = vector(message.point);
     if (target.allFinite() && message.header.frame_id != kHandFrame) {
       target = transformFrom(message.header, kHandFrame, transforms_) * target;
@@ -69,7 +51,7 @@ void TargetInput::receivePoint(Finger finger, const geometry_msgs::PointStamped&
 }
 
 void TargetInput::receivePose(const geometry_msgs::PoseStamped& message) {
-  receive("hand_base/target", [&] {
+  count_.count("hand_base/target", [&] {
     requireFixedFrame(message.header);
     motion_.receive(fromMessage(message.pose));
   });
@@ -119,11 +101,6 @@ void TargetInput::moveInteractiveMarkers(const exoskeleton::HandPlace& place) {
   for (const Finger finger : kFingers) move(fingertipMarker(finger, place));
   move(handMarker(place));
   interactive_->applyChanges();
-}
-
-TargetInputStatus TargetInput::status() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return status_;
 }
 
 }  // namespace haptex::nodes

@@ -28,14 +28,15 @@ TEST(ExternalForceMessages, KeepEveryNumberInItsPlace) {
 
 TEST(InputCount, TellsWhatWasTakenAndWhyTheLastWasRefused) {
   ros::Time::init();  // of warnings
-  InputCount count("topic");
+  InputCount count;
   EXPECT_EQ(count.status().taken, 0u);
-  count.count([] {});
-  count.count([] { throw std::invalid_argument("first"); });
-  count.count([] { throw std::invalid_argument("second"); });
-  count.count([] {});
+  count.count("topic", [] {});
+  count.count("topic", [] { throw std::invalid_argument("first"); });
+  count.count("topic", [] { throw std::invalid_argument("second"); });
+  count.count("topic", [] {});
   EXPECT_EQ(count.status().taken, 2u);
   EXPECT_EQ(count.status().refused, 2u);
+  EXPECT_EQ(count.status().refused_from, "topic");
   EXPECT_EQ(count.status().refused_why, "second");
 }
 

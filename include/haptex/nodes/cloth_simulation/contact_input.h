@@ -6,8 +6,8 @@
 
 #include <cstddef>
 
-#include "haptex/nodes/cloth_simulation/input_count.h"
 #include "haptex/nodes/common/immediate_queue.h"
+#include "haptex/nodes/common/input_count.h"
 #include "haptex/simulation/newest_loads.h"
 
 namespace haptex::nodes {
@@ -24,7 +24,7 @@ class ContactInput {
 
  private:
   simulation::NewestLoads loads_;
-  InputCount count_{"cloth/contact_forces"};
+  InputCount count_;
   ImmediateQueue queue_;
   ros::Subscriber subscriber_;
 };

@@ -6,8 +6,8 @@
 
 #include <cstddef>
 
-#include "haptex/nodes/cloth_simulation/input_count.h"
 #include "haptex/nodes/common/immediate_queue.h"
+#include "haptex/nodes/common/input_count.h"
 #include "haptex/simulation/force_sources.h"
 
 namespace haptex::nodes {
@@ -28,7 +28,7 @@ class ExternalForceInput {
 
  private:
   simulation::ForceSources sources_;
-  InputCount count_{"cloth/external_forces"};
+  InputCount count_;
   ImmediateQueue queue_;
   ros::Subscriber subscriber_;
 };

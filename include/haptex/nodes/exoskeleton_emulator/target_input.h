@@ -8,22 +8,15 @@
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
 
 #include "haptex/base/finger.h"
 #include "haptex/exoskeleton/emulator/hand_motion.h"
+#include "haptex/nodes/common/input_count.h"
 
 namespace haptex::nodes {
-
-/// Since the construction.
-struct TargetInputStatus {
-  std::uint64_t taken = 0;    ///< messages and movements of markers, no unit
-  std::uint64_t refused = 0;  ///< likewise
-  std::string refused_why;    ///< the last one
-};
 
 /// Below the namespace of `node`: subscribes to <finger>/target (geometry_msgs/PointStamped in
 /// hand_base or a frame that tf connects with it; the point stays where it is in hand_base) and
@@ -39,7 +32,8 @@ class TargetInput {
   /// Shows where hand and fingers are to be. By one thread.
   void show(const exoskeleton::HandPlace& place);
 
-  TargetInputStatus status() const;
+  /// Movements of markers count as messages.
+  InputStatus status() const { return count_.status(); }
 
  private:
   using Feedback = visualization_msgs::InteractiveMarkerFeedbackConstPtr;
@@ -47,8 +41,6 @@ class TargetInput {
   void receivePoint(base::Finger finger, const geometry_msgs::PointStamped& message);
   void receivePose(const geometry_msgs::PoseStamped& message);
   void receiveFeedback(const Feedback& feedback);
-  template <typename Apply>
-  void receive(const std::string& from, const Apply& apply);
   void moveInteractiveMarkers(const exoskeleton::HandPlace& place);
 
   ros::NodeHandle node_;
@@ -56,8 +48,8 @@ class TargetInput {
   tf2_ros::Buffer transforms_;
   tf2_ros::TransformListener transform_listener_;
 
-  mutable std::mutex mutex_;  // guards the following
-  TargetInputStatus status_;
+  InputCount count_;
+  std::mutex mutex_;     // guards the next
   std::string dragged_;  // name of the interactive marker that is held now, or empty
 
   std::unique_ptr<interactive_markers::InteractiveMarkerServer> interactive_;  // or none

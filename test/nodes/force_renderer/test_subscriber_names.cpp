@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "haptex/nodes/common/subscriber_names.h"
+#include "haptex/nodes/force_renderer/subscriber_names.h"
 
 namespace haptex::nodes::test_subscriber_names {
 namespace {

@@ -1,4 +1,4 @@
-// How many messages of a topic were taken and refused.
+// How many messages were taken and refused.
 #pragma once
 
 #include <ros/console.h>
@@ -7,7 +7,6 @@
 #include <exception>
 #include <mutex>
 #include <string>
-#include <utility>
 
 namespace haptex::nodes {
 
@@ -15,27 +14,29 @@ namespace haptex::nodes {
 struct InputStatus {
   std::uint64_t taken = 0;    ///< messages, no unit
   std::uint64_t refused = 0;  ///< likewise
-  std::string refused_why;    ///< the last one
+  std::string refused_from;   ///< topic of the last one
+  std::string refused_why;    ///< what was wrong with it
 };
 
 /// By any thread.
 class InputCount {
  public:
-  explicit InputCount(std::string topic) : topic_(std::move(topic)) {}
-
-  /// Runs `take` for a message; what it throws is the refusal, which is told at most once a second.
+  /// Runs `take` for a message of a topic; what it throws is the refusal, which is told at most
+  /// once a second.
   template <typename Take>
-  void count(const Take& take) {
+  void count(const std::string& topic, const Take& take) {
     std::string why;
     try {
       take();
     } catch (const std::exception& error) {
       why = error.what();
-      ROS_WARN_THROTTLE(1.0, "%s refused: %s", topic_.c_str(), error.what());
+      ROS_WARN_THROTTLE(1.0, "%s refused: %s", topic.c_str(), error.what());
     }
     const std::lock_guard<std::mutex> lock(mutex_);
     ++(why.empty() ? status_.taken : status_.refused);
-    if (!why.empty()) status_.refused_why = why;
+    if (why.empty()) return;
+    status_.refused_from = topic;
+    status_.refused_why = why;
   }
 
   InputStatus status() const {
@@ -44,7 +45,6 @@ class InputCount {
   }
 
  private:
-  const std::string topic_;
   mutable std::mutex mutex_;  // guards the following
   InputStatus status_;
 };
