@@ -9,7 +9,7 @@ namespace {
 
 class Writer {
  public:
-  Writer(const TesterFabric& fabric, std::ostream& out) : fabric_(fabric), yaml_(out) {
+  Writer(const TesterFabric& fabric, std::ostream& out) : fabric_(fabric), out_(out), yaml_(out) {
     yaml_.SetDoublePrecision(12);
   }
 
@@ -43,7 +43,8 @@ class Writer {
       add("value", friction->value);
       end();
     }
-    yaml_ << YAML::EndMap << YAML::Newline;
+    yaml_ << YAML::EndMap;
+    out_ << '\n';
   }
 
  private:
@@ -147,6 +148,7 @@ class Writer {
   }
 
   const TesterFabric& fabric_;
+  std::ostream& out_;
   YAML::Emitter yaml_;
 };
 
