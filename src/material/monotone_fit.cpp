@@ -84,10 +84,14 @@ MonotoneBasis::MonotoneBasis(std::vector<double> knots) : knots_(std::move(knots
                    " must be finite and greater than the one before");
     }
   }
-  const Index size = 2 * static_cast<Index>(knots_.size()) - 1;
-  to_increments_ = MatrixXd::Identity(size, size);
-  to_increments_(0, 1) = to_increments_(0, 2) = kShare;
-  to_increments_(size - 1, size - 2) = to_increments_(size - 1, size - 3) = kShare;
+  // The first parameter is the increment of the first two coefficients alike: no curvature there.
+  const Index increments = 2 * static_cast<Index>(knots_.size()) - 1;
+  to_increments_ = MatrixXd::Zero(increments, increments - 1);
+  to_increments_.bottomRows(increments - 1).setIdentity();
+  to_increments_.row(0) = to_increments_.row(1);
+  to_increments_(0, 1) = to_increments_(1, 1) = kShare;
+  to_increments_(increments - 1, increments - 3) = kShare;
+  if (increments > 3) to_increments_(increments - 1, increments - 4) = kShare;
 }
 
 // Coefficients 2i + 1 and 2i + 2 of the B-splines are the inner Bezier ordinates of piece i, and a
@@ -117,16 +121,16 @@ RowVectorXd MonotoneBasis::splinesAt(double x) const {
 }
 
 RowVectorXd MonotoneBasis::at(double x) const {
-  RowVectorXd sums = splinesAt(x).tail(size());  // each of itself and all after it
-  for (Index i = size() - 1; i-- > 0;) sums(i) += sums(i + 1);
+  RowVectorXd sums = splinesAt(x).tail(to_increments_.rows());  // each of itself and all after it
+  for (Index i = sums.size() - 1; i-- > 0;) sums(i) += sums(i + 1);
   return sums * to_increments_;
 }
 
 PiecewiseCubic MonotoneBasis::curve(const VectorXd& parameters, double first_value) const {
   const VectorXd increments = to_increments_ * parameters;
-  VectorXd b(size() + 1);  // coefficients of the B-splines
+  VectorXd b(increments.size() + 1);  // coefficients of the B-splines
   b(0) = first_value;
-  for (Index i = 0; i < size(); ++i) b(i + 1) = b(i) + increments(i);
+  for (Index i = 0; i < increments.size(); ++i) b(i + 1) = b(i) + increments(i);
   PiecewiseCubic curve{knots_, {}};
   const auto at_knot = [&](std::size_t knot) { return splinesAt(knots_[knot]).dot(b); };
   for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {

@@ -32,11 +32,13 @@ Residuals residualsOf(const PiecewiseCubic& curve, const std::vector<CurvePoint>
 
 /// The rising C1 piecewise cubics over given knots as sums of functions with parameters >= 0,
 /// beside their value at the first knot. They are integrated splines (Ramsay 1988, Statistical
-/// Science 3:425) with double knots: with n pieces 2n + 1 functions, each the sum of all cubic
-/// B-splines from one on, so that parameters >= 0 make the coefficients of the B-splines, and with
-/// them the curve, rise. The ends are kept from being level, as the curve goes on with the slopes
-/// that it has there: about kLeastEndSlope of the mean slope of the outermost piece, unless all of
-/// it is level.
+/// Science 3:425) with double knots: each is the sum of all cubic B-splines from one on, so that
+/// parameters
+/// >= 0 make the coefficients of the B-splines, and with them the curve, rise. At the first knot,
+/// from where the curve goes on as a straight line, it has no curvature: with that the slope at
+/// rest comes out up to four times surer of the same noisy readings. The ends are kept from being
+/// level: they have at least about kLeastEndSlope of the mean slope of their piece, unless all of
+/// it is level. n pieces have 2n functions.
 class MonotoneBasis {
  public:
   static constexpr double kLeastEndSlope = 0.1;
