@@ -3,7 +3,6 @@
 #include <functional>
 #include <stdexcept>
 
-#include "haptex/base/require.h"
 #include "haptex/kes/virtual_kes.h"
 #include "haptex/kes/virtual_test.h"
 #include "haptex/material/strain_measures.h"
@@ -309,23 +308,6 @@ void addShear(const Fabric& fabric, Direction direction, KesResult& result) {
 }
 
 }  // namespace
-
-double exactShearStrain(const MembraneCurves& pulled, double angle) {
-  constexpr double kMostAngle = 60.0;  // degrees
-  base::require(std::abs(angle) <= kMostAngle, "exactShearStrain", "angle", angle,
-                "within 60 degrees either way");
-  const double slack = std::cos(angle * kDegree);
-  // By how much the threads are longer than slack: at the height slack (1 + elongation).
-  const auto lacking = [&](double elongation) {
-    const double stress = pulled.elastic.evaluate(material::greenStrain(elongation)).stress;
-    return slack * (1.0 + elongation) * stress - kKesShearTension;
-  };
-  Sample above{1e-3, 0.0};
-  while ((above.value = lacking(above.x)) < 0.0) above.x = longerThan(above.x);
-  const double elongation =
-      rootOf(lacking, {0.0, -kKesShearTension}, above, 1e-11 * kKesShearTension);
-  return std::sin(angle * kDegree) * (1.0 + elongation);
-}
 
 KesResult kesTensile(const Fabric& fabric) {
   KesResult result;

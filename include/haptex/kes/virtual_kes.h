@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "haptex/material/fabric.h"
+#include "haptex/material/kes_conditions.h"
 
 namespace haptex::kes {
 
@@ -37,26 +38,19 @@ struct KesResult {
 
 // Conditions of the tests (Kawabata 1980, The Standardization and Analysis of Hand Evaluation, 2nd
 // edition, Textile Machinery Society of Japan), in SI units.
-constexpr double kKesGramPerCentimetre = 0.980665;               ///< N/m, 1 gf/cm
-constexpr double kKesTensileLoad = 500 * kKesGramPerCentimetre;  ///< N/m
-constexpr double kKesStrainRate = 4e-3;                          ///< 1/s
-constexpr double kKesShearTension = 10 * kKesGramPerCentimetre;  ///< N/m
-constexpr double kKesShearRate = 8.34e-3;                        ///< 1/s
-constexpr double kKesLargestShear = 8.0;                         ///< degrees
-constexpr double kKesLargestCurvature = 250.0;                   ///< 1/m
-constexpr double kKesBendingGauge = 0.01;                        ///< m, between the clamps
-constexpr double kKesCompressionSpeed = 20e-6;                   ///< m/s
-constexpr double kKesCompressionArea = 2e-4;                     ///< m^2
-constexpr double kKesFrictionLoad = 50 * 9.80665e-3;             ///< N
-constexpr double kKesFrictionSide = 5e-3;                        ///< m, of the square contactor
-
-/// The shear strain U.V of a sample at a shear angle when the tester's tension pulls its threads,
-/// by their curve: with the shear a and the height b, b s((a^2 + b^2 - 1) / 2) is the tension and
-/// a / b the tangent of the angle.
-/// @param pulled whose elastic curve rises @param angle degrees, within 60 either way
-/// @throws std::invalid_argument naming another angle; std::runtime_error if the threads give way
-///   to the tension by more than 2000 %
-double exactShearStrain(const material::MembraneCurves& pulled, double angle);
+using material::kKesGramPerCentimetre;
+using material::kKesShearTension;
+using material::kKesTensileLoad;
+constexpr double kKesStrainRate = 4e-3;               ///< 1/s
+constexpr double kKesShearRate = 8.34e-3;             ///< 1/s
+constexpr double kKesLargestShear = 8.0;              ///< degrees
+constexpr double kKesLargestCurvature = 250.0;        ///< 1/m
+constexpr double kKesBendingGauge = 0.01;             ///< m, between the clamps
+constexpr double kKesCompressionSpeed = 20e-6;        ///< m/s
+constexpr double kKesCompressionArea = 2e-4;          ///< m^2
+constexpr double kKesFrictionLoad = 50 * 9.80665e-3;  ///< N
+constexpr double kKesFrictionSide = 5e-3;             ///< m, of the square contactor
+using material::exactShearStrain;
 
 /// The five tests. Hysteresis is that of the simulated cycle: the fabric's own where the file says
 /// one (bending, stretch and shear), at rest; elsewhere what comes from viscosity at the rate of
