@@ -301,7 +301,12 @@ Scene readScene(const std::string& path, double cell_size) {
       file.at("bending").refuseBecause("is not allowed with mass_spring, which bends by springs");
     }
   }
-  scene.time_step = readTimeStep(file.at("time_step"));
+  if (const YamlValue steps = file.at("time_step"); steps.isMap()) {
+    scene.adaptive_steps = readAdaptiveSteps(steps);
+    scene.time_step = scene.adaptive_steps->longest;
+  } else {
+    scene.time_step = readTimeStep(steps);
+  }
   scene.step = readStepSettings(file);
   const bool among_obstacles = scene.effects.contacts;
   if (scene.effects.self_collision &&

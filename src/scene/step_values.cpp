@@ -8,8 +8,7 @@ namespace {
 
 using base::YamlValue;
 
-constexpr double kShortestTimeStep = 1e-6;  // s
-constexpr double kLongestTimeStep = 10.0;   // s
+constexpr double kLargestError = 1.0;  // m
 constexpr int kMaxNewtonIterations = 1000;
 
 cloth::IntegrationMethod readIntegrator(const YamlValue& value) {
@@ -72,6 +71,19 @@ double readTimeStep(const YamlValue& value) {
     value.refuse("must be from 1e-6 to 10 s");
   }
   return time_step;
+}
+
+cloth::AdaptiveSteps readAdaptiveSteps(const YamlValue& map) {
+  map.requireKeys({"from", "to", "error"});
+  cloth::AdaptiveSteps steps;
+  steps.shortest = readTimeStep(map.at("from"));
+  steps.longest = readTimeStep(map.at("to"));
+  if (steps.longest < steps.shortest) map.at("to").refuse("must not be shorter than from");
+  steps.error = map.at("error").number();
+  if (steps.error <= 0.0 || steps.error > kLargestError) {
+    map.at("error").refuse("must be > 0 and at most 1 m");
+  }
+  return steps;
 }
 
 cloth::StepSettings readStepSettings(const YamlValue& map) {

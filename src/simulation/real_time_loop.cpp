@@ -69,7 +69,8 @@ void RealTimeLoop::setPaused(bool paused) {
   });
 }
 
-StepsRun RealTimeLoop::runSteps(std::uint32_t count) {
+StepsRun RealTimeLoop::runSteps(std::uint32_t count, std::optional<double> duration) {
+  if (duration) SimulatedCloth::requireDuration(*duration);
   std::unique_lock<std::mutex> lock(mutex_);
   requireRunning();
   if (!status_.paused) {
@@ -81,6 +82,7 @@ StepsRun RealTimeLoop::runSteps(std::uint32_t count) {
   steps_requested_ = true;
   steps_taken_ = StepsRun{};
   steps_wanted_ = count;
+  duration_wanted_ = duration;
   wake_loop_.notify_all();
   wake_callers_.wait(lock, [&] { return steps_wanted_ == 0; });
   steps_requested_ = false;
@@ -180,6 +182,7 @@ void RealTimeLoop::runDueStep(std::unique_lock<std::mutex>& lock) {
 /// Takes a step and shows it to the observer. @returns its computing time, s
 double RealTimeLoop::step(std::unique_lock<std::mutex>& lock, bool in_real_time) {
   const bool rests = steps_wanted_ == 1;
+  const std::optional<double> duration = duration_wanted_;
   const Clock::time_point due = due_;
   const Clock::time_point ready = std::max(due_, computed_);
   lock.unlock();
@@ -187,6 +190,7 @@ double RealTimeLoop::step(std::unique_lock<std::mutex>& lock, bool in_real_time)
   if (prepare_) prepare_(simulation_);
   const bool slept = simulation_.asleep();
   const bool accepted = in_real_time ? simulation_.stepInRealTime(inSeconds(Clock::now() - ready))
+                        : duration   ? simulation_.step(*duration)
                                      : simulation_.step();
   computed_ = Clock::now();
   const Clock::duration took = computed_ - begin;
@@ -241,6 +245,7 @@ void RealTimeLoop::recordSimulation() {
   status_.last_step_rejected = simulation_.lastStepRejected();
   status_.asleep = simulation_.asleep();
   status_.last_report = simulation_.lastReport();
+  status_.last_adaptive_report = simulation_.lastAdaptiveReport();
   status_.steps = simulation_.steps();
   status_.simulated_time = simulation_.state().time;
 }

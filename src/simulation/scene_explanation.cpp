@@ -99,6 +99,10 @@ void printScene(const std::string& path, const scene::Scene& scene, const materi
                 scene.attached_particles.size(), 1e3 * medianCellSize(scene.mesh)));
   printRow(out, "stretch and shear", elasticityName(scene.effects.elasticity));
   std::string step = text("%g ms, %s", 1e3 * scene.time_step, nameOf(scene.step.method));
+  if (const auto& adaptive = scene.adaptive_steps) {
+    step = text("%g to ", 1e3 * adaptive->shortest) + step +
+           text(", as long as each misses at most %g mm", 1e3 * adaptive->error);
+  }
   if (cloth::isImplicit(scene.step.method)) {
     step += text(", %d linear solve%s by %s to %g, %d thread%s", scene.step.newton_iterations,
                  scene.step.newton_iterations == 1 ? "" : "s at most",

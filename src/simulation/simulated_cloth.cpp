@@ -9,6 +9,7 @@
 
 #include "haptex/base/require.h"
 #include "haptex/proximity/cursor.h"
+#include "haptex/scene/step_values.h"
 #include "haptex/simulation/particle_requests.h"
 
 namespace haptex::simulation {
@@ -32,7 +33,8 @@ cloth::StepReport sum(const cloth::StepReport& first, cloth::StepReport last) {
 }  // namespace
 
 SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric)
-    : SimulatedCloth(std::move(scene), std::move(fabric), {{scene.step, 1}}) {}
+    : SimulatedCloth(std::move(scene), std::move(fabric),
+                     {{scene.step, 1, 1, scene.adaptive_steps}}) {}
 
 SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
                                std::vector<StepPlan> plans)
@@ -43,6 +45,7 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
       plans_(std::move(plans)),
       initially_attached_(std::move(scene.attached_particles)),
       time_step_(scene.time_step),
+      last_duration_(scene.time_step),
       disturbed_(scene.effects.contacts &&
                  std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
                              [](const mesh::Obstacle& obstacle) { return obstacle.moves(); })),
@@ -53,6 +56,10 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
     if (plan.cycles < 1 || (plan.cycles > 1 && plan.substeps > 1)) {
       refuse("cycles = ", plan.cycles, ": allowed are numbers >= 1, and 1 with several substeps");
     }
+    if (plan.adaptive && (plan.substeps > 1 || plan.cycles > 1)) {
+      refuse("a plan that is adaptive has ", plan.substeps, " substeps and ", plan.cycles,
+             " cycles: allowed are 1 and 1");
+    }
   }
   if (scene.effects.contacts) {
     collision_.emplace(cloth_, std::move(scene.obstacles), start_time_);
@@ -61,22 +68,37 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
   makeIntegrators();
 }
 
-bool SimulatedCloth::step() { return run(1, 0.0); }
+bool SimulatedCloth::step() { return run(time_step_, 1, 0.0); }
 
-bool SimulatedCloth::stepInRealTime(double waited) { return run(plans_[plan_].cycles, waited); }
+bool SimulatedCloth::step(double duration) {
+  requireDuration(duration);
+  return run(duration, 1, 0.0);
+}
 
-bool SimulatedCloth::run(int cycles, double waited) {
-  last_cycles_ = asleep_ ? 1 : cycles;
+void SimulatedCloth::requireDuration(double duration) {
+  if (!(duration >= scene::kShortestTimeStep && duration <= scene::kLongestTimeStep)) {
+    refuse("the step takes ", duration, " s: allowed are ", scene::kShortestTimeStep, " to ",
+           scene::kLongestTimeStep, " s");
+  }
+}
+
+bool SimulatedCloth::stepInRealTime(double waited) {
+  const int cycles = asleep_ ? 1 : plans_[plan_].cycles;
+  return run(cycles * time_step_, cycles, waited);
+}
+
+bool SimulatedCloth::run(double duration, int cycles, double waited) {
+  last_duration_ = duration;
   if (asleep_) {
-    state_.time += time_step_;
+    state_.time += duration;
     ++steps_;
     return true;
   }
   if (!controller_) {
-    runSubsteps(cycles * time_step_);
+    runSubsteps(duration);
   } else {
     const auto begin = std::chrono::steady_clock::now();
-    runSubsteps(cycles * time_step_);
+    runSubsteps(duration);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     plan_ = controller_->record(waited + took.count(), cycles);
   }
@@ -97,6 +119,7 @@ void SimulatedCloth::sleepIfResting() {
   asleep_ = rest_.resting() && cloth::isUndisturbed(cloth_, state_.time);
   if (!asleep_) return;
   report_ = cloth::StepReport{};  // of the steps to come, which do nothing
+  adaptive_report_ = AdaptiveReport{};
   report_.accepted = true;
 }
 
@@ -106,6 +129,8 @@ void SimulatedCloth::wake() {
 }
 
 void SimulatedCloth::runSubsteps(double duration) {
+  adaptive_report_ = AdaptiveReport{};
+  if (lengths_[plan_]) return runAdaptiveSubsteps(duration);
   const int substeps = plans_[plan_].substeps;
   if (substeps > 1) before_ = state_;
   report_ = runSubstep(duration / substeps);
@@ -113,6 +138,36 @@ void SimulatedCloth::runSubsteps(double duration) {
     report_ = sum(report_, runSubstep(duration / substeps));
   }
   if (substeps > 1 && !report_.accepted) state_ = before_;
+}
+
+/// A step that is not finite, as one that misses the error, is repeated in shorter ones.
+void SimulatedCloth::runAdaptiveSubsteps(double duration) {
+  cloth::StepLengthControl& lengths = *lengths_[plan_];
+  before_ = state_;
+  cloth::StepReport total;
+  double left = duration;
+  while (left > 0.0) {
+    const double length = lengths.lengthWithin(left);
+    before_substep_ = state_;
+    total = sum(total, runSubstep(length));
+    if (!total.accepted) {
+      if (lengths.shorten(left)) continue;
+      state_ = before_;
+      lengths.forget();
+      break;
+    }
+    if (!lengths.judge(cloth_, before_substep_, state_, left)) {
+      state_ = before_substep_;
+      ++adaptive_report_.repeated;
+      continue;
+    }
+    left = length < left ? left - length : 0.0;
+    const int taken = adaptive_report_.substeps++;
+    adaptive_report_.shortest = taken == 0 ? length : std::min(adaptive_report_.shortest, length);
+    adaptive_report_.error = std::max(adaptive_report_.error, lengths.error());
+    adaptive_report_.missed = adaptive_report_.missed || lengths.missed();
+  }
+  report_ = total;
 }
 
 cloth::StepReport SimulatedCloth::runSubstep(double duration) {
@@ -155,6 +210,7 @@ void SimulatedCloth::reset() {
   state_ = startState();
   makeIntegrators();  // the old ones remember their last solutions and factors
   report_ = cloth::StepReport{};
+  adaptive_report_ = AdaptiveReport{};
   last_step_rejected_ = false;
   steps_ = 0;
   wake();
@@ -169,12 +225,17 @@ cloth::ClothState SimulatedCloth::startState() const {
 
 void SimulatedCloth::makeIntegrators() {
   integrators_.clear();
-  bool several = false;
+  lengths_.clear();
+  bool several = false, adaptive = false;
   for (const StepPlan& plan : plans_) {
     integrators_.emplace_back(cloth_, plan.step);
-    several = several || plan.substeps > 1;
+    lengths_.emplace_back();
+    if (plan.adaptive) lengths_.back().emplace(cloth_, plan.step.method, *plan.adaptive);
+    several = several || plan.substeps > 1 || plan.adaptive;
+    adaptive = adaptive || plan.adaptive;
   }
   if (several) before_ = state_;
+  if (adaptive) before_substep_ = state_;
 }
 
 void SimulatedCloth::setFabric(material::Fabric fabric) {

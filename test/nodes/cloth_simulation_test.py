@@ -121,10 +121,10 @@ class ClothSimulation(unittest.TestCase):
 
     def test_cloth_at_rest_sleeps_until_something_changes(self):
         self.assertEqual(self.sleeps(), 'no')
-        self.accepted(self.step(1600))
+        self.accepted(self.step(steps=1600))
         self.assertEqual(self.sleeps(), 'yes')
         before = self.state()
-        self.accepted(self.step(80))
+        self.accepted(self.step(steps=80))
         after = self.state()
         self.assertEqual(after.step, before.step + 80)
         self.assertAlmostEqual(after.simulated_time, before.simulated_time + 1.0, delta=1e-9)
@@ -132,7 +132,7 @@ class ClothSimulation(unittest.TestCase):
                          (after.positions, after.velocities, after.forces, after.attached))
         self.assertGreater(after.header.stamp, before.header.stamp)
         self.accepted(self.move(WORLD, [TOP_CORNER], Vector3(0.01, 0, 0), 0.1))
-        self.accepted(self.step(8))
+        self.accepted(self.step(steps=8))
         self.assertEqual(self.sleeps(), 'no')
         self.assertNotEqual(positions(after).tolist(), positions(self.state()).tolist())
 
@@ -147,7 +147,7 @@ class ClothSimulation(unittest.TestCase):
         self.assertEqual(positions(before).tolist(), positions(self.state()).tolist())
 
     def test_takes_exactly_the_steps_asked_for(self):
-        self.accepted(self.step(7))
+        self.accepted(self.step(steps=7))
         state = self.state()
         self.assertEqual(state.step, 7)
         self.assertAlmostEqual(state.simulated_time, 7 * TIME_STEP, delta=1e-12)  # rounding
@@ -155,7 +155,7 @@ class ClothSimulation(unittest.TestCase):
     def test_reset_restores_the_start(self):
         before = self.state()
         self.accepted(self.release([TOP_CORNER]))
-        self.accepted(self.step(10))
+        self.accepted(self.step(steps=10))
         self.assertNotEqual(positions(before).tolist(), positions(self.state()).tolist())
         self.accepted(self.reset())
         after = self.state()
@@ -164,59 +164,67 @@ class ClothSimulation(unittest.TestCase):
         self.accepted(self.move(WORLD, [TOP_CORNER], Vector3(), 0))  # attached again
 
     def test_fabric_changes_without_a_jump(self):
-        self.accepted(self.step(20))
+        self.accepted(self.step(steps=20))
         before = self.state()
         self.accepted(self.set_fabric('linear'))
         after = self.state()
         self.assertEqual(positions(before).tolist(), positions(after).tolist())
         self.assertEqual(before.velocities, after.velocities)
         self.assertNotEqual(before.forces, after.forces)
-        self.accepted(self.step(1))
+        self.accepted(self.step(steps=1))
         # Free fall for one step from rest moves g h^2 = 1.5 mm; nothing here may move faster.
         moved = np.linalg.norm(positions(self.state()) - positions(before), axis=1).max()
         self.assertLess(moved, 9.81 * TIME_STEP ** 2)
 
     def test_attached_particle_goes_where_it_is_told(self):
         self.accepted(self.attach(WORLD, [CORNER], [Point(0.01, -0.1, -0.19)]))
-        self.accepted(self.step(1))
+        self.accepted(self.step(steps=1))
         self.assertEqual(self.state().positions[CORNER], Point(0.01, -0.1, -0.19))
 
     def test_particle_is_attached_where_it_is(self):
-        self.accepted(self.step(5))
+        self.accepted(self.step(steps=5))
         place = self.state().positions[CORNER]
         self.accepted(self.attach(WORLD, [CORNER], []))
-        self.accepted(self.step(20))
+        self.accepted(self.step(steps=20))
         self.assertEqual(self.state().positions[CORNER], place)
 
     def test_move_ends_exactly_at_its_target(self):
         start = positions(self.state())[TOP_CORNER]
         displacement = np.array([0.02, 0.0, 0.01])
         self.accepted(self.move(WORLD, [TOP_CORNER], Vector3(*displacement), 10 * TIME_STEP))
-        self.accepted(self.step(5))
+        self.accepted(self.step(steps=5))
         half = positions(self.state())[TOP_CORNER]
         # A minimum-jerk path is half way after half of its time.
         np.testing.assert_allclose(half, start + displacement / 2, rtol=0, atol=1e-12)
-        self.accepted(self.step(6))
+        self.accepted(self.step(steps=6))
         self.assertEqual(positions(self.state())[TOP_CORNER].tolist(),
                          (start + displacement).tolist())
+
+    def test_takes_steps_of_a_chosen_length(self):
+        before = self.state().simulated_time
+        self.accepted(self.step(steps=3, time_step=0.002))
+        self.accepted(self.step(steps=1))
+        self.assertAlmostEqual(self.state().simulated_time, before + 0.006 + TIME_STEP, places=12)
+        for wrong in (-0.001, 1e-7, 11.0, float('nan'), float('inf')):
+            self.refused(self.step, 1, wrong, says='allowed are 1e-06 to 10 s')
 
     def test_move_without_duration_is_made_in_one_step(self):
         start = positions(self.state())[TOP_CORNER]
         self.accepted(self.move(WORLD, [TOP_CORNER], Vector3(0.001, 0.0, 0.0), 0.0))
-        self.accepted(self.step(1))
+        self.accepted(self.step(steps=1))
         self.assertEqual(positions(self.state())[TOP_CORNER].tolist(),
                          (start + np.array([0.001, 0, 0])).tolist())
 
     def test_released_particle_falls(self):
         top = list(range(PARTICLES - 33, PARTICLES))
         self.accepted(self.release(top))
-        self.accepted(self.step(1))
+        self.accepted(self.step(steps=1))
         fallen = positions(self.state())[TOP_CORNER][2]
         # Backward Euler falls g h^2 in its first step from rest, strain-free as the cloth starts.
         self.assertAlmostEqual(fallen, -9.80665 * TIME_STEP ** 2, delta=1e-6)
 
     def test_jacobian_has_its_blocks_and_their_sum_is_zero(self):
-        self.accepted(self.step(5))
+        self.accepted(self.step(steps=5))
         response = self.accepted(self.get_jacobian([CORNER, 500]))
         self.assertEqual(set(response.rows), {CORNER, 500})
         blocks = len(response.rows)
@@ -271,7 +279,7 @@ class ClothSimulation(unittest.TestCase):
         pushed = self.state()
         self.assertGreater(pushed.positions[CORNER].x, 0.01)
         rospy.sleep(0.2)
-        self.accepted(self.step(1))
+        self.accepted(self.step(steps=1))
         released = self.state()
         # The loads have ended, so the published forces lack them: internal forces sum to nothing,
         # and what remains along x is nothing but the bar's share.
@@ -316,7 +324,7 @@ class ClothSimulation(unittest.TestCase):
 
         def pushed():
             """Newtons along x: all others are internal, and those of the bar, which is at x = 0."""
-            self.accepted(self.step(1))
+            self.accepted(self.step(steps=1))
             return sum(force.x for force in self.state().forces)
 
         def steps_until(newtons):
@@ -344,7 +352,7 @@ class ClothSimulation(unittest.TestCase):
         publisher.unregister()
 
     def test_sets_states(self):
-        self.accepted(self.step(3))
+        self.accepted(self.step(steps=3))
         before = self.state()
         self.accepted(self.set_state(WORLD, [CORNER], [Point(0.01, -0.1, -0.19)], []))
         after = self.state()
@@ -353,7 +361,7 @@ class ClothSimulation(unittest.TestCase):
         self.assertEqual(after.velocities, before.velocities)
         self.assertNotEqual(after.forces, before.forces)
         self.assertGreater(after.header.stamp, before.header.stamp)
-        self.accepted(self.step(1))
+        self.accepted(self.step(steps=1))
         self.accepted(self.set_state(WORLD, [], before.positions, before.velocities))
         again = self.state()
         self.assertEqual((again.positions, again.velocities), (before.positions, before.velocities))
@@ -371,7 +379,7 @@ class ClothSimulation(unittest.TestCase):
             self.refused(self.set_state, WORLD, particles, places, velocities, says=says)
 
     def test_saves_states(self):
-        self.accepted(self.step(3))
+        self.accepted(self.step(steps=3))
         state = self.state()
         with tempfile.TemporaryDirectory() as directory:
             path = os.path.join(directory, 'three_steps.state')
@@ -402,10 +410,10 @@ class ClothSimulation(unittest.TestCase):
         self.assertEqual(beats[0].frame_id, 'world')
 
     def test_refuses_steps(self):
-        self.refused(self.step, 0, says='steps = 0: allowed are 1 to 100000')
-        self.refused(self.step, 100001, says='steps = 100001: allowed are 1 to 100000')
+        self.refused(self.step, 0, 0.0, says='steps = 0: allowed are 1 to 100000')
+        self.refused(self.step, 100001, 0.0, says='steps = 100001: allowed are 1 to 100000')
         self.accepted(self.pause(False))
-        response = self.step(1)
+        response = self.step(steps=1)
         self.assertFalse(response.success)
         self.assertIn('while it is paused', response.message)
 
@@ -438,7 +446,7 @@ class ClothSimulation(unittest.TestCase):
         for number in (NAN, INFINITY, -INFINITY, 101.0):
             self.refused(self.attach, WORLD, [0, 1], [Point(), Point(0, 0, number)],
                          says='positions[1] = ')
-        self.accepted(self.step(1))
+        self.accepted(self.step(steps=1))
         self.refused(self.release, [CORNER], says='is not attached')  # none has been attached
 
     def test_refuses_to_move(self):
@@ -454,7 +462,7 @@ class ClothSimulation(unittest.TestCase):
         for duration in (-1.0, NAN, INFINITY):
             self.refused(self.move, WORLD, [TOP_CORNER], Vector3(), duration, says='duration = ')
         place = positions(self.state())[TOP_CORNER].tolist()
-        self.accepted(self.step(5))
+        self.accepted(self.step(steps=5))
         self.assertEqual(positions(self.state())[TOP_CORNER].tolist(), place)
 
     def test_refuses_to_release(self):

@@ -30,6 +30,27 @@ TEST(StepPlanAllocation, StepsAndChangesAllocateNothing) {
   EXPECT_GT(before, 0) << "the count does not work";
 }
 
+TEST(StepPlanAllocation, AdaptiveStepsAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  for (const StepPlan& plan : severalPlans()) {
+    SimulatedCloth simulation =
+        plannedSimulation({{plan.step, 1, 1, cloth::AdaptiveSteps{1e-4, 0.005, 1e-6}}}, true);
+    const long before = allocations;
+    bool accepted = true;
+    int repeated = 0;
+    for (int i = 0; i < 40; ++i) {
+      simulation.setPointLoads({});
+      accepted = simulation.step() && accepted;
+      repeated += simulation.lastAdaptiveReport().repeated;
+    }
+    EXPECT_EQ(allocations - before, 0);
+    EXPECT_TRUE(accepted);
+    EXPECT_GT(repeated, 0);
+  }
+}
+
 TEST(StepPlanAllocation, ExternalForcesComeAndEndWithoutAllocation) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer brings its own malloc";

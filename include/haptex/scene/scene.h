@@ -2,11 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/step.h"
+#include "haptex/cloth/dynamics/step_length_control.h"
 #include "haptex/contact/start_outside.h"
 #include "haptex/mesh/mesh.h"
 #include "haptex/mesh/obstacle.h"
@@ -19,6 +21,8 @@ struct Scene {
   cloth::ModelledEffects effects;
   std::vector<int> attached_particles;  ///< at their initial positions
   double time_step = 0.0;               ///< s
+  /// Taken in shorter steps where their error asks for them; time_step is the longest then.
+  std::optional<cloth::AdaptiveSteps> adaptive_steps;
   cloth::StepSettings step;
   std::vector<mesh::Obstacle> obstacles;          ///< names unique; the cloth collides with them if
                                                   ///< effects has contacts

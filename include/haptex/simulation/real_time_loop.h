@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "haptex/realtime/duration_histogram.h"
@@ -25,13 +26,14 @@ struct LoopStatus {
   double real_time_factor = 0.0;   ///< simulated seconds per second of the steady clock
   double mean_step_seconds = 0.0;  ///< computing time of a step
   double largest_step_seconds = 0.0;
-  double largest_residual = 0.0;     ///< relative, of all linear solves
-  double dropped_seconds = 0.0;      ///< simulated time given up since the start, for lag
-  std::uint64_t rejected_steps = 0;  ///< since the start
-  std::uint64_t unsolved_steps = 0;  ///< since the start: tolerance of a linear solve missed
-  cloth::StepReport last_report;     ///< of the last step
-  std::uint64_t steps = 0;           ///< accepted since the start or the last reset
-  double simulated_time = 0.0;       ///< s, likewise
+  double largest_residual = 0.0;        ///< relative, of all linear solves
+  double dropped_seconds = 0.0;         ///< simulated time given up since the start, for lag
+  std::uint64_t rejected_steps = 0;     ///< since the start
+  std::uint64_t unsolved_steps = 0;     ///< since the start: tolerance of a linear solve missed
+  cloth::StepReport last_report;        ///< of the last step
+  AdaptiveReport last_adaptive_report;  ///< likewise
+  std::uint64_t steps = 0;              ///< accepted since the start or the last reset
+  double simulated_time = 0.0;          ///< s, likewise
 };
 
 /// What RealTimeLoop::runSteps() did.
@@ -81,9 +83,10 @@ class RealTimeLoop {
   void setPaused(bool paused);
 
   /// Takes steps as fast as possible and waits for them. Commands are carried out between them.
+  /// @param duration s of a step; nothing: the scene's
   /// @throws std::invalid_argument if the loop is not paused or already takes steps for another
-  ///   caller, std::runtime_error if it has ended
-  StepsRun runSteps(std::uint32_t count);
+  ///   caller, or as SimulatedCloth::step(), std::runtime_error if it has ended
+  StepsRun runSteps(std::uint32_t count, std::optional<double> duration = {});
 
   LoopStatus status() const;
   /// Computing times since the start of all steps that were not slept through.
@@ -120,8 +123,9 @@ class RealTimeLoop {
   std::condition_variable wake_callers_;
   std::deque<Request*> requests_;
   bool running_ = false;
-  bool steps_requested_ = false;    // a caller waits in runSteps()
-  std::uint32_t steps_wanted_ = 0;  // still to be taken for it
+  bool steps_requested_ = false;           // a caller waits in runSteps()
+  std::uint32_t steps_wanted_ = 0;         // still to be taken for it
+  std::optional<double> duration_wanted_;  // s, of them
   StepsRun steps_taken_;
   Clock::time_point due_;       // of the next step
   Clock::time_point computed_;  // the last step

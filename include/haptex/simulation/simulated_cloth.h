@@ -10,6 +10,7 @@
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/cloth/dynamics/rest_detector.h"
+#include "haptex/cloth/dynamics/step_length_control.h"
 #include "haptex/contact/obstacle_collision.h"
 #include "haptex/material/fabric.h"
 #include "haptex/scene/scene.h"
@@ -27,6 +28,17 @@ struct StepPlan {
   int substeps = 1;  ///< > 0
   int cycles = 1;    ///< > 0, how many steps of the scene stepInRealTime() takes as one; 1 with
                      ///< several substeps
+  /// Substeps as long as their error allows instead; only with one substep and one cycle.
+  std::optional<cloth::AdaptiveSteps> adaptive = {};
+};
+
+/// Of the last step of a plan that is adaptive.
+struct AdaptiveReport {
+  int substeps = 0;       ///< taken
+  int repeated = 0;       ///< tried before, and not taken because they were too long
+  double shortest = 0.0;  ///< s, of those taken
+  double error = 0.0;     ///< m, the largest of those taken (cloth::StepLengthControl)
+  bool missed = false;    ///< the error that is allowed, by a substep of the shortest length
 };
 
 /// Steps a scene and changes it between two steps. Every change checks its whole request first and
@@ -54,17 +66,25 @@ class SimulatedCloth {
   std::uint64_t steps() const { return steps_; }  ///< accepted since the start or reset()
   /// Of the last step: sums of counts and times over its substeps, the rest of the last of them.
   const cloth::StepReport& lastReport() const { return report_; }
+  /// All zero without a plan that is adaptive.
+  const AdaptiveReport& lastAdaptiveReport() const { return adaptive_report_; }
   /// False again after reset().
   bool lastStepRejected() const { return last_step_rejected_; }
 
   /// Takes one step, with all its substeps. @returns false if one was rejected and the state is as
   /// before the first
   bool step();
+  /// The same over another time (s) than that of the scene.
+  /// @throws std::invalid_argument what requireDuration() says
+  bool step(double duration);
+  /// @throws std::invalid_argument unless it is from scene::kShortestTimeStep to
+  ///   scene::kLongestTimeStep
+  static void requireDuration(double duration);
   /// As step(), but as many steps of the scene at once as the plan says.
   /// @param waited s, how long the step has waited for its turn; counts as computing time for the
   ///   controller
   bool stepInRealTime(double waited);
-  double lastStepDuration() const { return last_cycles_ * time_step_; }  ///< s of simulated time
+  double lastStepDuration() const { return last_duration_; }  ///< s of simulated time
   bool asleep() const { return asleep_; }
   /// Accepted since the construction, without those that were slept through.
   std::uint64_t computedSteps() const { return computed_steps_; }
@@ -151,8 +171,9 @@ class SimulatedCloth {
   cloth::ClothState startState() const;
   void attachInitially();
   void makeIntegrators();
-  bool run(int cycles, double waited);
+  bool run(double duration, int cycles, double waited);
   void runSubsteps(double duration);
+  void runAdaptiveSubsteps(double duration);
   cloth::StepReport runSubstep(double duration);
   void wake();
   void sleepIfResting();
@@ -163,16 +184,19 @@ class SimulatedCloth {
   std::vector<Eigen::Vector3d> start_velocities_;  // m/s; empty: at rest
   double start_time_;                              // s
   cloth::ClothState state_;
-  cloth::ClothState before_;  // the step, if a plan has several substeps
+  cloth::ClothState before_;          // the step, if a plan has several substeps
+  cloth::ClothState before_substep_;  // of a plan that is adaptive
   std::vector<StepPlan> plans_;
-  std::vector<cloth::Integrator> integrators_;  // one per plan
+  std::vector<cloth::Integrator> integrators_;                    // one per plan
+  std::vector<std::optional<cloth::StepLengthControl>> lengths_;  // one per plan
   std::size_t plan_ = 0;
   std::optional<QualityController> controller_;
   std::optional<contact::ObstacleCollision> collision_;
   std::vector<int> initially_attached_;
   double time_step_;
-  int last_cycles_ = 1;
+  double last_duration_;  // s
   cloth::StepReport report_;
+  AdaptiveReport adaptive_report_;
   bool last_step_rejected_ = false;
   std::uint64_t steps_ = 0;
   std::uint64_t computed_steps_ = 0;

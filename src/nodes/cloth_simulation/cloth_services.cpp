@@ -1,6 +1,7 @@
 // The services of ClothNode. Each checks its request, changes the simulation between two steps, and
 // answers what was done or why nothing was.
 #include <algorithm>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -62,7 +63,9 @@ bool ClothNode::step(StepCloth::Request& request, StepCloth::Response& response)
       throw std::invalid_argument("steps = " + std::to_string(request.steps) +
                                   ": allowed are 1 to " + std::to_string(kMaxSteps));
     }
-    const simulation::StepsRun taken = loop_.runSteps(request.steps);
+    std::optional<double> time_step;
+    if (request.time_step != 0.0) time_step = request.time_step;
+    const simulation::StepsRun taken = loop_.runSteps(request.steps, time_step);
     const std::string message = "took " + counted(taken.steps, "step");
     if (taken.end == simulation::StepsRun::End::kRejected) {
       throw std::runtime_error(message + "; the next was not finite and was rejected");
