@@ -13,6 +13,7 @@
 #include "haptex/base/yaml_reader.h"
 #include "haptex/cloth/forces/lattice_springs.h"
 #include "haptex/mesh/obj_file.h"
+#include "haptex/scene/body_values.h"
 #include "haptex/scene/cloth_state_file.h"
 #include "haptex/scene/obstacle_file.h"
 #include "haptex/scene/scene_values.h"
@@ -314,6 +315,8 @@ Scene readScene(const std::string& path, double cell_size) {
                   "tr_bdf2 are");
   }
   if (file.has("obstacles")) scene.obstacles = readObstacles(file.at("obstacles"));
+  requireBodiesKnown(file, scene);
+  if (file.has("penalty")) scene.penalty = readPenalty(file, scene);
   if (scene.effects.contacts && scene.obstacles.empty()) {
     file.at("model").refuseBecause("lists obstacles, so the key obstacles must have at least one");
   }

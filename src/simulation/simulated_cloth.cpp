@@ -56,9 +56,26 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
   }
   if (scene.effects.contacts) {
     collision_.emplace(cloth_, std::move(scene.obstacles), start_time_);
+    start_bodies_ = bodies_before_ = collision_->bodies();
+    if (scene.penalty) setPenalty(*scene.penalty);
   }
   attachInitially();
   makeIntegrators();
+}
+
+/// Implicit steps keep what their contacts say.
+void SimulatedCloth::setPenalty(double stiffness) {
+  for (const StepPlan& plan : plans_) {
+    if (!cloth::isImplicit(plan.step.method)) continue;
+    refuse("the scene has a penalty, which ", nameOf(plan.step.method),
+           " does not know: allowed are explicit integrators");
+  }
+  collision_->setPenalty(stiffness);
+}
+
+const std::vector<contact::FreeBody>& SimulatedCloth::bodies() const {
+  static const std::vector<contact::FreeBody> none;
+  return collision_ ? collision_->bodies() : none;
 }
 
 bool SimulatedCloth::step() { return run(1, 0.0); }
@@ -108,11 +125,14 @@ void SimulatedCloth::wake() {
 void SimulatedCloth::runSubsteps(double duration) {
   const int substeps = plans_[plan_].substeps;
   if (substeps > 1) before_ = state_;
+  if (substeps > 1 && !bodies_before_.empty()) bodies_before_ = collision_->bodies();
   report_ = runSubstep(duration / substeps);
   for (int i = 1; i < substeps && report_.accepted; ++i) {
     report_ = sum(report_, runSubstep(duration / substeps));
   }
-  if (substeps > 1 && !report_.accepted) state_ = before_;
+  if (substeps == 1 || report_.accepted) return;
+  state_ = before_;
+  if (!bodies_before_.empty()) collision_->setBodies(bodies_before_);
 }
 
 cloth::StepReport SimulatedCloth::runSubstep(double duration) {
@@ -153,6 +173,7 @@ void SimulatedCloth::reset() {
   pushed_ = false;
   attachInitially();
   state_ = startState();
+  if (!start_bodies_.empty()) collision_->setBodies(start_bodies_);
   makeIntegrators();  // the old ones remember their last solutions and factors
   report_ = cloth::StepReport{};
   last_step_rejected_ = false;

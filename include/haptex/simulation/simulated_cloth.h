@@ -35,11 +35,12 @@ struct StepPlan {
 /// Cloth that has come to rest (cloth::RestDetector) sleeps: its steps only let the time pass.
 /// Every change wakes it, and it goes on from the state in which it fell asleep. It does not fall
 /// asleep as long as something outside moves: an attachment on its way, wind that changes, or an
-/// obstacle that moves.
+/// obstacle that moves or has mass.
 class SimulatedCloth {
  public:
   /// @throws std::invalid_argument what cloth::Cloth throws for the scene, and
-  ///   contact::ObstacleCollision if the cloth collides with its obstacles
+  ///   contact::ObstacleCollision if the cloth collides with its obstacles, or if an obstacle has
+  ///   mass or the scene a penalty that a plan's integrator does not know
   SimulatedCloth(scene::Scene scene, material::Fabric fabric);
 
   /// Can take its steps by any of these plans, at first by number 0, instead of by the scene's
@@ -50,6 +51,8 @@ class SimulatedCloth {
 
   const cloth::Cloth& cloth() const { return cloth_; }
   const cloth::ClothState& state() const { return state_; }
+  /// The obstacles with mass, in the scene's order, where they are now.
+  const std::vector<contact::FreeBody>& bodies() const;
   double timeStep() const { return time_step_; }  ///< s, of the scene: of all substeps together
   std::uint64_t steps() const { return steps_; }  ///< accepted since the start or reset()
   /// Of the last step: sums of counts and times over its substeps, the rest of the last of them.
@@ -86,7 +89,7 @@ class SimulatedCloth {
   /// Null without one.
   const QualityController* controller() const { return controller_ ? &*controller_ : nullptr; }
 
-  /// Positions, velocities, attachments and time as at the start, without loads or external forces.
+  /// Positions, velocities, attachments, bodies and time as at the start, without loads or external forces.
   /// The fabric stays.
   void reset();
 
@@ -151,6 +154,7 @@ class SimulatedCloth {
   cloth::ClothState startState() const;
   void attachInitially();
   void makeIntegrators();
+  void setPenalty(double stiffness);
   bool run(int cycles, double waited);
   void runSubsteps(double duration);
   cloth::StepReport runSubstep(double duration);
@@ -169,6 +173,8 @@ class SimulatedCloth {
   std::size_t plan_ = 0;
   std::optional<QualityController> controller_;
   std::optional<contact::ObstacleCollision> collision_;
+  std::vector<contact::FreeBody> start_bodies_;   // of collision_
+  std::vector<contact::FreeBody> bodies_before_;  // the step, as before_
   std::vector<int> initially_attached_;
   double time_step_;
   int last_cycles_ = 1;

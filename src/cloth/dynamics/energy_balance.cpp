@@ -36,7 +36,8 @@ double contactWork(const Cloth& cloth, const std::vector<ContactReaction>& react
     const Vector3d way = h * contact.velocity;
     const double depth =
         -contact.gap - contact.normal.dot(begin[contact.particle] - (contact.place - way));
-    work += reactions[c].force.dot(way + std::max(0.0, depth) * contact.normal);
+    const Vector3d gone = contact.body >= 0 ? Vector3d(h * reactions[c].velocity) : way;
+    work += reactions[c].force.dot(gone + std::max(0.0, depth) * contact.normal);
   }
   return work;
 }

@@ -48,6 +48,13 @@ void requireSelfCollision(const Cloth& cloth, IntegrationMethod method) {
                               ", which the integrator " + nameOf(method) + " does not know");
 }
 
+void requireBodies(const Cloth& cloth, IntegrationMethod method) {
+  if (cloth.bodies().bodies.empty() || knowsBodies(method)) return;
+  throw std::invalid_argument(std::string("there are obstacles with mass, which the integrator ") +
+                              nameOf(method) +
+                              " does not know; allowed are backward_euler and explicit ones");
+}
+
 bool allFinite(const std::vector<Vector3d>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(),
                      [](const Vector3d& vector) { return vector.allFinite(); });
@@ -59,9 +66,11 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
     : settings_(requireSound(settings)),
       pattern_size_(cloth.patternSize()),
       held_size_(cloth.forces().heldSize()),
+      bodies_(cloth.bodies().bodies.size()),
       end_(cloth.initialState()) {
   const IntegrationMethod method = settings.method;
   requireSelfCollision(cloth, method);
+  requireBodies(cloth, method);
   if (!isImplicit(method)) {
     explicit_step_.emplace(cloth, method);
     return;
@@ -89,7 +98,7 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
   if (state.positions.size() != cloth.particleCount() ||
       state.velocities.size() != cloth.particleCount() ||
       end_.positions.size() != cloth.particleCount() || cloth.patternSize() != pattern_size_ ||
-      cloth.forces().heldSize() != held_size_ ||
+      cloth.forces().heldSize() != held_size_ || cloth.bodies().bodies.size() != bodies_ ||
       state.memory.size() != cloth.forces().memorySize() ||
       end_.memory.size() != cloth.forces().memorySize()) {
     throw std::invalid_argument("the state, the cloth and the integrator differ in size");
@@ -200,8 +209,14 @@ bool Integrator::touches() const {
   return stages_ && stages_->contacts() && stages_->contacts()->holding();
 }
 
-void Integrator::settle(Velocities& velocities) const {
-  if (touches()) stages_->contacts()->settle(velocities);
+/// Bodies touch each other, too, when the cloth does not.
+void Integrator::settle(Velocities& velocities) {
+  if (touches() || (stages_ && bodies_ > 0)) stages_->contacts()->settle(velocities);
+}
+
+const std::vector<BodyMotion>& Integrator::bodyMotions() {
+  static const std::vector<BodyMotion> none;
+  return stages_ && stages_->contacts() ? stages_->contacts()->bodyMotions() : none;
 }
 
 const std::vector<ContactReaction>& Integrator::contactReactions() const {
