@@ -273,7 +273,7 @@ Scene readScene(const std::string& path, double cell_size) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"fabric", "attach", "model", "time_step"},
                    {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind",
-                    "integrator", "solver", "obstacles", "haptics", "state"});
+                    "integrator", "solver", "obstacles", "penalty", "haptics", "state"});
   Scene scene;
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.any_cells = allowsAnyCells(file);

@@ -90,7 +90,7 @@ TEST_P(Masses, KeepMomentumAndMakeNoEnergyWhereTheyHitAFreeSheet) {
   settings.solver = linear::LinearSolverMethod::kCholesky;
   for (const int solves : {1, 3}) {
     settings.newton_iterations = solves;
-    Sheet sheet({ball(GetParam(), {0.02, 0.01, 0.06}, {0.3, 0.0, -2.0})}, 0.0, settings);
+    Sheet sheet({ball(GetParam(), {0.02, 0.01, 0.04}, {0.1, 0.0, -0.5})}, 0.0, settings);
     const Vector3d before = sheet.momentum();
     const double energy = sheet.energy();
     double least = energy;
@@ -103,7 +103,7 @@ TEST_P(Masses, KeepMomentumAndMakeNoEnergyWhereTheyHitAFreeSheet) {
       }
       least = std::min(least, sheet.energy());
     }
-    EXPECT_GT(sheet.collision.bodies()[0].velocity()[2], -1.9995) << "it did not hit the sheet";
+    EXPECT_GT(sheet.collision.bodies()[0].velocity()[2], -0.4999) << "it did not hit the sheet";
   }
 }
 

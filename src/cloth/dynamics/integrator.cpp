@@ -55,6 +55,28 @@ void requireBodies(const Cloth& cloth, IntegrationMethod method) {
                               " does not know; allowed are backward_euler and explicit ones");
 }
 
+/// m/s, of the free particles' centre of mass.
+Vector3d meanVelocity(const Cloth& cloth, const Velocities& velocities) {
+  Vector3d momentum = Vector3d::Zero();
+  double mass = 0.0;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (cloth.attachments()[i]) continue;
+    momentum += cloth.masses()[i] * velocities[i];
+    mass += cloth.masses()[i];
+  }
+  return mass > 0.0 ? Vector3d(momentum / mass) : momentum;
+}
+
+/// J, of the free particles' motion beside a velocity.
+double kineticBeside(const Cloth& cloth, const Velocities& velocities, const Vector3d& mean) {
+  double energy = 0.0;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (cloth.attachments()[i]) continue;
+    energy += 0.5 * cloth.masses()[i] * (velocities[i] - mean).squaredNorm();
+  }
+  return energy;
+}
+
 bool allFinite(const std::vector<Vector3d>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(),
                      [](const Vector3d& vector) { return vector.allFinite(); });
@@ -160,14 +182,25 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
   if (gained > 0.0) slowDown(cloth, gained, report);
 }
 
-/// Takes energy (J) out of the velocities at the end, as far as there is any.
+/// Takes energy (J) out of the velocities at the end, as far as there is any. With bodies, whose
+/// momentum and the cloth's stay together, only the motion beside the mean is slowed down.
 void Integrator::slowDown(const Cloth& cloth, double energy, StepReport& report) {
-  const double kinetic = balance_->kineticAtEnd();
+  double kinetic = balance_->kineticAtEnd();
+  Vector3d mean = Vector3d::Zero();
+  if (bodies_ > 0) {
+    mean = meanVelocity(cloth, end_.velocities);
+    kinetic = kineticBeside(cloth, end_.velocities, mean);
+  }
   if (!(kinetic > 0.0)) return;
   report.energy_taken = std::min(energy, kinetic);
   const double factor = std::sqrt(1.0 - report.energy_taken / kinetic);
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (!cloth.attachments()[i]) end_.velocities[i] *= factor;
+    if (cloth.attachments()[i]) continue;
+    if (bodies_ > 0) {
+      end_.velocities[i] = mean + factor * (end_.velocities[i] - mean);
+    } else {
+      end_.velocities[i] *= factor;
+    }
   }
   settle(end_.velocities);
 }
