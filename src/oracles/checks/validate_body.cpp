@@ -230,8 +230,8 @@ void validateNet(const std::string& config_directory, const Sink& sink) {
   }
   const std::string name = kPrefix + "net/";
   sink({name + "steps_rejected", 0.0, double(rejected), double(rejected), 0.0});
-  // The net is 1 m deep and slack.
-  sink({name + "farthest_m", -1.3, farthest, std::max(0.0, -1.3 - farthest), 0.0});
+  // The net is 0.15 m deep and slack.
+  sink({name + "farthest_m", -0.2, farthest, std::max(0.0, -0.2 - farthest), 0.0});
   const double left = net.bodies()[0].kineticEnergy() / start;
   sink({name + "energy_left", 0.0, left, left, 0.05});
 }
