@@ -1,9 +1,9 @@
 // What does the response by penalty cost that mass-spring cloths began with, beside exact
-// constraints? Prints for the scene sphere_mass_spring in still air, over a second in which the ball
-// rolls through the hanging lattice: computing time over simulated time, how deep particles get into
-// the ball, how far the ball ends from where it does in short steps of the same response, and by how
-// much the energy of ball and cloth together ever rises. Responses: penalty with Runge-Kutta,
-// particles brought back with Runge-Kutta, and constraints in the implicit step.
+// constraints? Prints for the scene sphere_mass_spring in still air, over a second in which the
+// ball rolls through the hanging lattice: computing time over simulated time, how deep particles
+// get into the ball, how far the ball ends from where it does in short steps of the same response,
+// and by how much the energy of ball and cloth together ever rises. Responses: penalty with
+// Runge-Kutta, particles brought back with Runge-Kutta, and constraints in the implicit step.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -42,8 +42,8 @@ double energyOf(const simulation::SimulatedCloth& simulation) {
   double energy = simulation.cloth().kineticEnergy(simulation.state()) +
                   simulation.cloth().potentialEnergy(simulation.state());
   for (const contact::FreeBody& body : simulation.bodies()) {
-    energy += body.kineticEnergy() - body.mass() * simulation.cloth().effects().gravity.dot(
-                                                       body.pose().translation());
+    energy += body.kineticEnergy() -
+              body.mass() * simulation.cloth().effects().gravity.dot(body.pose().translation());
   }
   return energy;
 }
@@ -55,8 +55,9 @@ Outcome run(const Response& response, double time_step) {
   scene.step.newton_iterations = 3;
   scene.time_step = time_step;
   if (!response.penalty) scene.penalty.reset();
-  const auto ball = std::find_if(scene.obstacles.begin(), scene.obstacles.end(),
-                                 [](const mesh::Obstacle& obstacle) { return bool(obstacle.body); });
+  const auto ball =
+      std::find_if(scene.obstacles.begin(), scene.obstacles.end(),
+                   [](const mesh::Obstacle& obstacle) { return bool(obstacle.body); });
   const double radius = std::get<mesh::ObstacleSphere>(ball->shape).radius;
   const material::Fabric fabric = material::loadFabric(scene.fabric_path);
   simulation::SimulatedCloth simulation(scene, fabric);
@@ -87,9 +88,8 @@ void print(const Response& response) {
   std::vector<Outcome> outcomes;
   for (const double time_step : response.time_steps) outcomes.push_back(run(response, time_step));
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    const std::string name =
-        "sphere/" + response.name + "/" + std::to_string(std::lround(1e6 * response.time_steps[i])) +
-        "_us/";
+    const std::string name = "sphere/" + response.name + "/" +
+                             std::to_string(std::lround(1e6 * response.time_steps[i])) + "_us/";
     bench::printLine(name + "blown_up", outcomes[i].blown_up ? 1.0 : 0.0, "1");
     if (outcomes[i].blown_up) continue;
     bench::printLine(name + "load", outcomes[i].load, "1");

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "haptex/base/require.h"
-#include "haptex/contact/obstacle_path.h"
+#include "haptex/contact/bodies/obstacle_path.h"
 #include "haptex/contact/obstacles.h"
 
 namespace haptex::contact {
@@ -216,10 +216,9 @@ void ObstacleCollision::findContact(const cloth::ClothState& state, int particle
 
 /// Whether a body is so far from everything that nothing could touch it.
 bool ObstacleCollision::isAlone(int body) const {
-  return std::none_of(rigid_.contacts.begin(), rigid_.contacts.end(),
-                      [&](const auto& contact) {
-                        return contact.body == body || contact.other == body;
-                      }) &&
+  return std::none_of(
+             rigid_.contacts.begin(), rigid_.contacts.end(),
+             [&](const auto& contact) { return contact.body == body || contact.other == body; }) &&
          std::none_of(contacts_.begin(), contacts_.end(),
                       [&](const auto& contact) { return contact.body == body; });
 }
@@ -268,8 +267,7 @@ bool ObstacleCollision::bringBack(double mass, const Vector3d& from, double h,
   if (distance > kOffset + length) return false;
   const Path path{begin, end};
   // What was that near at the beginning has nothing to be kept on a side of.
-  const double touch =
-      distance >= kUntouched ? firstTouch(obstacle.shape, path, kUntouched) : 2.0;
+  const double touch = distance >= kUntouched ? firstTouch(obstacle.shape, path, kUntouched) : 2.0;
   const Vector3d place = slidingEnd(obstacle.shape, path, touch);
   const SurfaceDistance there = obstacle.shape.distance(place);
   if (!there.normal.allFinite()) return false;

@@ -9,36 +9,39 @@ namespace haptex::scene {
 
 using base::YamlValue;
 
-void requireBodiesKnown(const YamlValue& file, const Scene& scene) {
+void requireBodiesKnown(const YamlValue& file, const std::vector<mesh::Obstacle>& obstacles,
+                        const cloth::ModelledEffects& effects, cloth::IntegrationMethod method) {
   const auto bodies = static_cast<std::size_t>(
-      std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
+      std::count_if(obstacles.begin(), obstacles.end(),
                     [](const mesh::Obstacle& obstacle) { return obstacle.body.has_value(); }));
   if (bodies == 0) return;
-  const YamlValue obstacles = file.at("obstacles");
+  const YamlValue list = file.at("obstacles");
   if (bodies > contact::ObstacleCollision::kMostBodies) {
-    obstacles.refuseBecause("has " + std::to_string(bodies) + " obstacles with body, at most " +
-                            std::to_string(contact::ObstacleCollision::kMostBodies) +
-                            " are allowed");
+    list.refuseBecause("has " + std::to_string(bodies) + " obstacles with body, at most " +
+                       std::to_string(contact::ObstacleCollision::kMostBodies) + " are allowed");
   }
-  if (!scene.effects.contacts) {
-    obstacles.refuseBecause("has a body, which is allowed only if model lists obstacles");
+  if (!effects.contacts) {
+    list.refuseBecause("has a body, which is allowed only if model lists obstacles");
   }
-  if (scene.effects.self_collision) {
-    obstacles.refuseBecause("has a body, which is not allowed if model lists self_collision");
+  if (effects.self_collision) {
+    list.refuseBecause("has a body, which is not allowed if model lists self_collision");
   }
   if (file.has("state")) {
-    file.at("state").refuseBecause("is not allowed with a body among the obstacles: states have "
-                                   "the cloth alone");
+    file.at("state").refuseBecause(
+        "is not allowed with a body among the obstacles: states have "
+        "the cloth alone");
   }
-  if (cloth::knowsBodies(scene.step.method)) return;
+  if (cloth::knowsBodies(method)) return;
   file.at("integrator")
-      .refuse("is not allowed with a body among the obstacles: backward_euler and the explicit "
-              "ones are");
+      .refuse(
+          "is not allowed with a body among the obstacles: backward_euler and the explicit "
+          "ones are");
 }
 
-double readPenalty(const YamlValue& file, const Scene& scene) {
+double readPenalty(const YamlValue& file, const cloth::ModelledEffects& effects,
+                   cloth::IntegrationMethod method) {
   const YamlValue value = file.at("penalty");
-  if (!scene.effects.contacts || cloth::isImplicit(scene.step.method)) {
+  if (!effects.contacts || cloth::isImplicit(method)) {
     value.refuseBecause(
         "is allowed only with an explicit integrator, and if model lists obstacles");
   }

@@ -315,8 +315,8 @@ Scene readScene(const std::string& path, double cell_size) {
                   "tr_bdf2 are");
   }
   if (file.has("obstacles")) scene.obstacles = readObstacles(file.at("obstacles"));
-  requireBodiesKnown(file, scene);
-  if (file.has("penalty")) scene.penalty = readPenalty(file, scene);
+  requireBodiesKnown(file, scene.obstacles, scene.effects, scene.step.method);
+  if (file.has("penalty")) scene.penalty = readPenalty(file, scene.effects, scene.step.method);
   if (scene.effects.contacts && scene.obstacles.empty()) {
     file.at("model").refuseBecause("lists obstacles, so the key obstacles must have at least one");
   }

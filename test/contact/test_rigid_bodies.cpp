@@ -77,7 +77,8 @@ struct Sheet {
   double energy() const {
     double sum = cloth.kineticEnergy(state) + cloth.potentialEnergy(state);
     for (const FreeBody& body : collision.bodies()) {
-      sum += body.kineticEnergy() - cloth.effects().gravity.dot(body.pose().translation()) * body.mass();
+      sum += body.kineticEnergy() -
+             cloth.effects().gravity.dot(body.pose().translation()) * body.mass();
     }
     return sum;
   }

@@ -80,16 +80,15 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"PenaltyOfImplicitSteps", "obstacles: [", "penalty: 10\nobstacles: [",
                 "penalty: is allowed only with an explicit integrator, and if model lists "
                 "obstacles"},
-        Refusal{"NegativePenalty",
-                "obstacles: [", "integrator: midpoint\npenalty: -10\nobstacles: [",
+        Refusal{"NegativePenalty", "obstacles: [",
+                "integrator: midpoint\npenalty: -10\nobstacles: [",
                 "penalty: '-10' must be > 0 N/m"}),
     [](const testing::TestParamInfo<Refusal>& info) { return info.param.name; });
 
 TEST_F(SceneBodies, AreSixteenAtMost) {
   std::string balls;
   for (int i = 0; i < 17; ++i) {
-    balls += (i > 0 ? ", " : "") +
-             replaced(kBall, "name: ball", "name: ball" + std::to_string(i));
+    balls += (i > 0 ? ", " : "") + replaced(kBall, "name: ball", "name: ball" + std::to_string(i));
   }
   EXPECT_EQ(refusalOf(replaced(kWithBall, kBall, balls)),
             path() + ": obstacles: has 17 obstacles with body, at most 16 are allowed");

@@ -8,8 +8,8 @@
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/contact/free_body.h"
-#include "haptex/contact/placed_obstacle.h"
+#include "haptex/contact/bodies/free_body.h"
+#include "haptex/contact/bodies/placed_obstacle.h"
 #include "haptex/mesh/obstacle.h"
 
 namespace haptex::contact {
@@ -31,8 +31,8 @@ namespace haptex::contact {
 /// (cloth::Cloth::setObstacles()), and no part of it passes through them.
 ///
 /// Obstacles with mass go as gravity, the cloth and what they touch push them: with backward Euler
-/// in one implicit step with the cloth (cloth::BodyCoupling), with explicit steps by the impulses of
-/// what has been brought back. Momentum of cloth and bodies together changes by nothing else but
+/// in one implicit step with the cloth (cloth::BodyCoupling), with explicit steps by the impulses
+/// of what has been brought back. Momentum of cloth and bodies together changes by nothing else but
 /// gravity, attachments, air and other obstacles. One that is near nothing flies its parabola.
 ///
 /// A step allocates nothing, but where such cloth is near to more than ever before.
@@ -72,8 +72,8 @@ class ObstacleCollision {
 
   /// Steps with an explicit method respond from now on by penalty and removal of velocity, as the
   /// mass-spring cloth of Deformable Objects (docs/mechanics.md, Penalty) did: a particle nearer
-  /// than kOffset loses what of its velocity leads into an obstacle, and one inside is pushed out by
-  /// `stiffness` (N/m) times its depth. Nothing is brought back.
+  /// than kOffset loses what of its velocity leads into an obstacle, and one inside is pushed out
+  /// by `stiffness` (N/m) times its depth. Nothing is brought back.
   /// @throws std::invalid_argument unless it is finite and > 0
   void setPenalty(double stiffness);
 
@@ -102,10 +102,10 @@ class ObstacleCollision {
   std::optional<cloth::BodyContactSolver> alone_;  // how they go without the cloth
   Eigen::VectorXd momenta_, velocities_;           // of all bodies
   std::vector<cloth::BodyMotion> motions_;
-  std::optional<double> penalty_;                  // N/m
-  std::vector<Eigen::Vector3d> before_;            // m/s, with penalty_: at the beginning
-  std::vector<FreeBody> bodies_before_;            // likewise
-  std::vector<Eigen::Vector3d> positions_;         // m, at the beginning of the step
+  std::optional<double> penalty_;           // N/m
+  std::vector<Eigen::Vector3d> before_;     // m/s, with penalty_: at the beginning
+  std::vector<FreeBody> bodies_before_;     // likewise
+  std::vector<Eigen::Vector3d> positions_;  // m, at the beginning of the step
   std::vector<cloth::ParticleContact> contacts_;
 };
 

@@ -44,7 +44,8 @@ struct ObstacleDrift {
   Eigen::Vector3d velocity;  ///< m/s
 };
 
-/// Makes a sphere or a box, of the same density all through, a rigid body that goes as it is pushed.
+/// Makes a sphere or a box, of the same density all through, a rigid body that goes as it is
+/// pushed.
 struct ObstacleBody {
   double mass;                                                 ///< kg, > 0
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< m/s, at the start

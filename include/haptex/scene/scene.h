@@ -21,8 +21,8 @@ struct Scene {
   std::vector<int> attached_particles;  ///< at their initial positions
   double time_step = 0.0;               ///< s
   cloth::StepSettings step;
-  std::vector<mesh::Obstacle> obstacles;          ///< names unique; the cloth collides with them if
-                                                  ///< effects has contacts
+  std::vector<mesh::Obstacle> obstacles;  ///< names unique; the cloth collides with them if
+                                          ///< effects has contacts
   std::optional<double> penalty;  ///< N/m: how an explicit step responds to obstacles, if not by
                                   ///< bringing back what has gone in
   std::vector<Eigen::Vector3d> start_velocities;  ///< m/s, one per particle; empty: at rest

@@ -89,8 +89,8 @@ class SimulatedCloth {
   /// Null without one.
   const QualityController* controller() const { return controller_ ? &*controller_ : nullptr; }
 
-  /// Positions, velocities, attachments, bodies and time as at the start, without loads or external forces.
-  /// The fabric stays.
+  /// Positions, velocities, attachments, bodies and time as at the start, without loads or external
+  /// forces. The fabric stays.
   void reset();
 
   /// Takes effect in the next step; positions and velocities stay.

@@ -248,8 +248,7 @@ void ActiveSetContactSolver::prepareMode(int mode, linear::BlockVector& rhs) {
     if (entry.state == State::kOpen) continue;
     const Vector3d motion = bodies_.motion(mode, entry);
     const bool sticks = entry.state == State::kSticks;
-    mode_.col(entry.particle) =
-        sticks ? motion : Vector3d(entry.normal * entry.normal.dot(motion));
+    mode_.col(entry.particle) = sticks ? motion : Vector3d(entry.normal * entry.normal.dot(motion));
   }
   free_matrix_.multiply(mode_, rhs);
   rhs = -rhs;

@@ -55,26 +55,16 @@ void requireBodies(const Cloth& cloth, IntegrationMethod method) {
                               " does not know; allowed are backward_euler and explicit ones");
 }
 
-/// m/s, of the free particles' centre of mass.
-Vector3d meanVelocity(const Cloth& cloth, const Velocities& velocities) {
+/// m/s, of the free particles' centre of mass. @param mass kg, theirs
+Vector3d meanVelocity(const Cloth& cloth, const Velocities& velocities, double& mass) {
   Vector3d momentum = Vector3d::Zero();
-  double mass = 0.0;
+  mass = 0.0;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     if (cloth.attachments()[i]) continue;
     momentum += cloth.masses()[i] * velocities[i];
     mass += cloth.masses()[i];
   }
   return mass > 0.0 ? Vector3d(momentum / mass) : momentum;
-}
-
-/// J, of the free particles' motion beside a velocity.
-double kineticBeside(const Cloth& cloth, const Velocities& velocities, const Vector3d& mean) {
-  double energy = 0.0;
-  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (cloth.attachments()[i]) continue;
-    energy += 0.5 * cloth.masses()[i] * (velocities[i] - mean).squaredNorm();
-  }
-  return energy;
 }
 
 bool allFinite(const std::vector<Vector3d>& vectors) {
@@ -188,8 +178,9 @@ void Integrator::slowDown(const Cloth& cloth, double energy, StepReport& report)
   double kinetic = balance_->kineticAtEnd();
   Vector3d mean = Vector3d::Zero();
   if (bodies_ > 0) {
-    mean = meanVelocity(cloth, end_.velocities);
-    kinetic = kineticBeside(cloth, end_.velocities, mean);
+    double mass = 0.0;
+    mean = meanVelocity(cloth, end_.velocities, mass);
+    kinetic -= 0.5 * mass * mean.squaredNorm();
   }
   if (!(kinetic > 0.0)) return;
   report.energy_taken = std::min(energy, kinetic);

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int kMostSweeps = 1000;
-constexpr double kConverged = 1e-14;  // change of a velocity in a sweep, of the fastest
+constexpr double kConverged = 1e-12;  // change of a velocity in a sweep, of the fastest
 constexpr double kStill = 1e-15;      // m/s, likewise where nothing moves
 
 /// Three columns of twists that impulses along the axes make.
@@ -116,7 +116,8 @@ const VectorXd& BodyContactSolver::settle(const VectorXd& right) {
 void BodyContactSolver::iterate(bool keeps_gaps) {
   for (std::size_t c = 0; c < held_.size(); ++c) {
     if (!keeps_gaps) held_[c].impulse.setZero();
-    velocities_ += columns_.middleCols<3>(static_cast<Eigen::Index>(3 * c)) * held_[c].impulse;
+    velocities_.noalias() +=
+        columns_.middleCols<3>(static_cast<Eigen::Index>(3 * c)) * held_[c].impulse;
   }
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     double change = 0.0;
@@ -154,7 +155,7 @@ double BodyContactSolver::relax(std::size_t index, double bias) {
   const Vector3d change = impulse - held.impulse;
   held.impulse = impulse;
   held.state = state;
-  velocities_ += columns_.middleCols<3>(static_cast<Eigen::Index>(3 * index)) * change;
+  velocities_.noalias() += columns_.middleCols<3>(static_cast<Eigen::Index>(3 * index)) * change;
   return (held.delassus * change).norm();
 }
 
@@ -170,7 +171,7 @@ const VectorXd& BodyContactSolver::respond(const VectorXd& change) {
       const Vector3d impulse = held.state == State::kSticks
                                    ? Vector3d(-held.inverse * motion)
                                    : Vector3d(-n.dot(motion) / n.dot(held.delassus * n) * n);
-      velocities_ += columns_.middleCols<3>(static_cast<Eigen::Index>(3 * c)) * impulse;
+      velocities_.noalias() += columns_.middleCols<3>(static_cast<Eigen::Index>(3 * c)) * impulse;
       moved = std::max(moved, (held.delassus * impulse).norm());
     }
     if (!(moved > kConverged * velocities_.cwiseAbs().maxCoeff() + kStill)) break;

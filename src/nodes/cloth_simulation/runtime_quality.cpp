@@ -78,8 +78,8 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
   if (!preset.empty()) preset = {presetFor(fabric_, request.preset_path, preset, studied_)};
   if (!scene_.any_cells) front = simulation::settingsAlone(front, meanCellSize(scene_.mesh));
   const auto measure = [&](const scene::Quality& quality, int substeps) {
-    return simulation::measureCycle(scene_path, fabric_,
-                                    simulation::knownTo(scene_, quality), substeps);
+    return simulation::measureCycle(scene_path, fabric_, simulation::knownTo(scene_, quality),
+                                    substeps);
   };
   candidates_ = simulation::calibrate(
       front, cycle, measure,

@@ -43,8 +43,8 @@ void addStripes(Marker& marker) {
   constexpr float kDark = 0.45F;
   for (std::size_t i = 0; i + 2 < marker.points.size(); i += 3) {
     double product = 1.0;
-    for (const auto coordinate : {&geometry_msgs::Point::x, &geometry_msgs::Point::y,
-                                  &geometry_msgs::Point::z}) {
+    for (const auto coordinate :
+         {&geometry_msgs::Point::x, &geometry_msgs::Point::y, &geometry_msgs::Point::z}) {
       product *= marker.points[i].*coordinate + marker.points[i + 1].*coordinate +
                  marker.points[i + 2].*coordinate;
     }

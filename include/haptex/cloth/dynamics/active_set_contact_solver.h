@@ -158,7 +158,7 @@ class ActiveSetContactSolver {
   Eigen::VectorXd results_;  // N
   FrictionLoads friction_;
   BodyCoupling bodies_;
-  linear::BlockVector mode_;                 // m/s, how contacts move with a degree of freedom
+  linear::BlockVector mode_;           // m/s, how contacts move with a degree of freedom
   std::vector<ContactMemory> memory_;  // per particle
   std::vector<ContactReaction> reactions_;
 };

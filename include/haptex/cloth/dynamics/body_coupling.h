@@ -22,9 +22,9 @@ struct BodyMotion {
 /// and what the contacts exert on them acts on it in turn. Of the linear system A x = b of a round
 /// the bodies leave the Schur complement
 ///   (M + sum J_i^T (A X)_i) u = M u_free - sum J_i^T (A x - b)_i + impulses of their own contacts,
-/// with one column of X per degree of freedom, how the cloth responds to a contact that moves so: six
-/// solves more of the same matrix for each body that is touched. Bodies and cloth then move in one
-/// implicit step, stable whatever the ratio of their masses, and what one loses the other gets.
+/// with one column of X per degree of freedom, how the cloth responds to a contact that moves so:
+/// six solves more of the same matrix for each body that is touched. Bodies and cloth then move in
+/// one implicit step, stable whatever the ratio of their masses, and what one loses the other gets.
 ///
 /// Allocates nothing after construction.
 class BodyCoupling {

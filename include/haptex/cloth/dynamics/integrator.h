@@ -42,8 +42,8 @@ class Integrator {
  public:
   /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1),
   ///   newton_iterations is less than 1, threads is not from 1 to kMaxThreads, or the cloth
-  ///   collides with itself and the method is not backward Euler, or there are rigid bodies that the
-  ///   method does not know (knowsBodies())
+  ///   collides with itself and the method is not backward Euler, or there are rigid bodies that
+  ///   the method does not know (knowsBodies())
   Integrator(const Cloth& cloth, const StepSettings& settings);
 
   /// Advances `state` by `time_step` seconds; steps need not be uniform.
@@ -57,8 +57,8 @@ class Integrator {
   /// forces are those at the end of the step but for the midpoint method. Empty with an explicit
   /// method or a cloth without contacts.
   const std::vector<ContactReaction>& contactReactions() const;
-  /// How the cloth's rigid bodies went through the last step, in their order. Empty with an explicit
-  /// method, or a cloth without contacts.
+  /// How the cloth's rigid bodies went through the last step, in their order. Empty with an
+  /// explicit method, or a cloth without contacts.
   const std::vector<BodyMotion>& bodyMotions();
 
  private:

@@ -7,8 +7,8 @@
 
 namespace haptex::nodes {
 
-/// In the namespace "obstacles", with the pose at time 0. One with mass is striped, which shows how it
-/// turns.
+/// In the namespace "obstacles", with the pose at time 0. One with mass is striped, which shows how
+/// it turns.
 visualization_msgs::Marker obstacleMarker(const mesh::Obstacle& obstacle, int id);
 
 }  // namespace haptex::nodes

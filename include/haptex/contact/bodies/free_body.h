@@ -8,21 +8,22 @@
 
 namespace haptex::contact {
 
-/// A sphere or a box of one density. What it keeps is momentum and angular momentum about its centre
-/// of mass, so that neither changes but by impulses. World frame.
+/// A sphere or a box of one density. What it keeps is momentum and angular momentum about its
+/// centre of mass, so that neither changes but by impulses. World frame.
 class FreeBody {
  public:
   /// As at the start.
-  /// @throws std::invalid_argument naming the obstacle unless it is a sphere or a box without motion
+  /// @throws std::invalid_argument naming the obstacle unless it is a sphere or a box without
+  /// motion
   ///   of its own, its mass is finite and > 0, its velocities are finite and its friction is finite
   ///   and >= 0
   explicit FreeBody(const mesh::Obstacle& obstacle);
 
-  double mass() const { return mass_; }           ///< kg
-  double friction() const { return friction_; }   ///< on other obstacles
+  double mass() const { return mass_; }          ///< kg
+  double friction() const { return friction_; }  ///< on other obstacles
   const Eigen::Isometry3d& pose() const { return pose_; }
-  Eigen::Matrix3d inertia() const;                ///< kg m^2, about the centre, as it is turned now
-  cloth::Twist velocity() const;                  ///< of the centre, and angular
+  Eigen::Matrix3d inertia() const;  ///< kg m^2, about the centre, as it is turned now
+  cloth::Twist velocity() const;    ///< of the centre, and angular
   const Eigen::Vector3d& momentum() const { return momentum_; }  ///< N s
   /// N m s, about the centre.
   const Eigen::Vector3d& angularMomentum() const { return angular_momentum_; }

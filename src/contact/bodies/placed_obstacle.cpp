@@ -1,11 +1,11 @@
-#include "haptex/contact/placed_obstacle.h"
+#include "haptex/contact/bodies/placed_obstacle.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <variant>
 
-#include "haptex/contact/obstacle_path.h"
+#include "haptex/contact/bodies/obstacle_path.h"
 
 namespace haptex::contact {
 
@@ -67,8 +67,7 @@ struct Pair {
   bool first_touches, second_touches;
 
   Pair(const PlacedObstacle& first, const PlacedObstacle& second)
-      : first_touches(isPoint(first) || !isPoint(second)),
-        second_touches(!isPoint(first)) {}
+      : first_touches(isPoint(first) || !isPoint(second)), second_touches(!isPoint(first)) {}
 };
 
 bool eitherHasMass(const PlacedObstacle& first, const PlacedObstacle& second) {

@@ -1,4 +1,4 @@
-#include "haptex/contact/obstacle_path.h"
+#include "haptex/contact/bodies/obstacle_path.h"
 
 #include <algorithm>
 

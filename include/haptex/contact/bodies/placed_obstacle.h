@@ -15,8 +15,8 @@ struct PlacedObstacle {
   proximity::RigidObstacle shape;
   double reach;  ///< m, radius around the origin that holds it and what touches it
   Eigen::Isometry3d begin, end;
-  double friction;            ///< of the cloth on it
-  int body = -1;              ///< number among those with mass; -1: it moves as it wants
+  double friction;             ///< of the cloth on it
+  int body = -1;               ///< number among those with mass; -1: it moves as it wants
   double body_friction = 0.0;  ///< of a body on obstacles
   /// m: points by which it touches other obstacles' surfaces, and how near to those they get.
   std::vector<Eigen::Vector3d> points = {};

@@ -1,4 +1,4 @@
-#include "haptex/contact/free_body.h"
+#include "haptex/contact/bodies/free_body.h"
 
 #include <algorithm>
 #include <cmath>
