@@ -273,9 +273,9 @@ bool ObstacleCollision::bringBack(double mass, const Vector3d& from, double h,
   if (!there.normal.allFinite()) return false;
   if (touch > 1.0 && there.distance >= kOffset - kTolerance) return false;
   const Vector3d outside = place + std::max(0.0, kOffset - there.distance) * there.normal;
-  const Vector3d way = obstacle.end * outside - position;
-  const Vector3d before = velocity;
-  position += way;
+  const Vector3d reached = obstacle.end * outside;
+  const Vector3d way = reached - position, before = velocity;
+  position = reached;
   stopAt(obstacle, mass, outside, obstacle.end.linear() * there.normal, h, velocity);
   if (obstacle.body < 0) return true;
   // The centre of mass of both stays, and so does the angular momentum about it.

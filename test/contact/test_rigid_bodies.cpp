@@ -129,7 +129,14 @@ TEST(RigidBodies, FallOnTheFloorAndRest) {
   box.pose.linear() = Eigen::AngleAxisd(0.3, Vector3d(1.0, 2.0, 0.5).normalized()).matrix();
   box.body = mesh::ObstacleBody{0.1, Vector3d::Zero(), Vector3d::Zero(), 0.5};
   Sheet sheet({ball(0.1, {0.5, 0.5, -0.2}, Vector3d::Zero()), floor, box}, 9.81);
-  for (int i = 0; i < 200; ++i) ASSERT_TRUE(sheet.step(0.0125));
+  const double start = sheet.energy();
+  double least = start;
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_TRUE(sheet.step(0.0125));
+    // A box that tumbles over a corner goes along the chord of its arc, and is lifted out after.
+    EXPECT_LE(sheet.energy(), least + 1e-3 * std::abs(start)) << i;
+    least = std::min(least, sheet.energy());
+  }
   for (const FreeBody& body : sheet.collision.bodies()) {
     EXPECT_LT(body.velocity().norm(), 1e-6) << body.pose().translation().transpose();
   }
