@@ -14,6 +14,9 @@ using base::YamlValue;
 
 constexpr double kShortestPeriod = 1e-3;  // s
 constexpr double kFastest = 1e3;          // m/s
+constexpr double kFastestTurn = 1e4;      // rad/s
+constexpr double kLightest = 1e-6;        // kg
+constexpr double kHeaviest = 1e6;         // kg
 const std::vector<std::string> kShapes = {"sphere", "box", "capsule", "mesh"};
 
 Eigen::Vector3d readPosition(const YamlValue& value) {
@@ -76,14 +79,16 @@ mesh::ObstacleOrbit readOrbit(const YamlValue& value) {
   return orbit;
 }
 
-mesh::ObstacleDrift readDrift(const YamlValue& value) {
-  const mesh::ObstacleDrift drift{readVector(value)};
+Eigen::Vector3d readVelocity(const YamlValue& value, double fastest, const char* allowed) {
+  const Eigen::Vector3d velocity = readVector(value);
   for (int i = 0; i < 3; ++i) {
-    if (std::abs(drift.velocity[i]) > kFastest) {
-      value.items(3)[i].refuse("must be from -1000 to 1000 m/s");
-    }
+    if (std::abs(velocity[i]) > fastest) value.items(3)[i].refuse(allowed);
   }
-  return drift;
+  return velocity;
+}
+
+Eigen::Vector3d readSpeed(const YamlValue& value) {
+  return readVelocity(value, kFastest, "must be from -1000 to 1000 m/s");
 }
 
 auto readMotion(const YamlValue& value) -> decltype(mesh::Obstacle::motion) {
@@ -91,7 +96,7 @@ auto readMotion(const YamlValue& value) -> decltype(mesh::Obstacle::motion) {
     value.refuseBecause("must have at most one of orbit, velocity");
   }
   if (value.has("orbit")) return readOrbit(value.at("orbit"));
-  if (value.has("velocity")) return readDrift(value.at("velocity"));
+  if (value.has("velocity")) return mesh::ObstacleDrift{readSpeed(value.at("velocity"))};
   return {};
 }
 
@@ -101,9 +106,38 @@ double readFriction(const YamlValue& value) {
   return friction;
 }
 
+mesh::ObstacleBody readBody(const YamlValue& value) {
+  value.requireKeys({"mass", "friction"}, {"velocity", "angular_velocity"});
+  mesh::ObstacleBody body{value.at("mass").number()};
+  if (!(body.mass >= kLightest && body.mass <= kHeaviest)) {
+    value.at("mass").refuse("must be from 1e-6 to 1e6 kg");
+  }
+  body.friction = readFriction(value.at("friction"));
+  if (value.has("velocity")) body.velocity = readSpeed(value.at("velocity"));
+  if (value.has("angular_velocity")) {
+    body.angular_velocity = readVelocity(value.at("angular_velocity"), kFastestTurn,
+                                         "must be from -10000 to 10000 rad/s");
+  }
+  return body;
+}
+
+/// What a rigid body with mass may not be beside.
+void requireFree(const YamlValue& value) {
+  for (const char* key : {"capsule", "mesh"}) {
+    if (!value.has(key)) continue;
+    value.at("body").refuseBecause(std::string("is not allowed with ") + key +
+                                   ", only with sphere or box");
+  }
+  for (const char* key : {"orbit", "velocity"}) {
+    if (!value.has(key)) continue;
+    value.at("body").refuseBecause(std::string("is not allowed with ") + key +
+                                   ": a body goes as it is pushed, from body.velocity on");
+  }
+}
+
 mesh::Obstacle readObstacle(const YamlValue& value) {
   std::vector<std::string> optional = kShapes;
-  for (const char* key : {"rpy", "orbit", "velocity", "friction"}) optional.push_back(key);
+  for (const char* key : {"rpy", "orbit", "velocity", "friction", "body"}) optional.push_back(key);
   value.requireKeys({"name", "position"}, optional);
   mesh::Obstacle obstacle;
   obstacle.name = value.at("name").text();
@@ -112,6 +146,10 @@ mesh::Obstacle readObstacle(const YamlValue& value) {
   obstacle.pose.translation() = readPosition(value.at("position"));
   if (value.has("rpy")) obstacle.pose.linear() = readRotation(value.at("rpy"));
   obstacle.motion = readMotion(value);
+  if (value.has("body")) {
+    requireFree(value);
+    obstacle.body = readBody(value.at("body"));
+  }
   if (value.has("friction")) obstacle.friction = readFriction(value.at("friction"));
   return obstacle;
 }

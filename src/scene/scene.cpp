@@ -13,6 +13,7 @@
 #include "haptex/base/yaml_reader.h"
 #include "haptex/cloth/forces/lattice_springs.h"
 #include "haptex/mesh/obj_file.h"
+#include "haptex/scene/body_values.h"
 #include "haptex/scene/cloth_state_file.h"
 #include "haptex/scene/obstacle_file.h"
 #include "haptex/scene/scene_values.h"
@@ -272,7 +273,7 @@ Scene readScene(const std::string& path, double cell_size) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"fabric", "attach", "model", "time_step"},
                    {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind",
-                    "integrator", "solver", "obstacles", "haptics", "state"});
+                    "integrator", "solver", "obstacles", "penalty", "haptics", "state"});
   Scene scene;
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.any_cells = allowsAnyCells(file);
@@ -319,6 +320,8 @@ Scene readScene(const std::string& path, double cell_size) {
                   "tr_bdf2 are");
   }
   if (file.has("obstacles")) scene.obstacles = readObstacles(file.at("obstacles"));
+  requireBodiesKnown(file, scene.obstacles, scene.effects, scene.step.method);
+  if (file.has("penalty")) scene.penalty = readPenalty(file, scene.effects, scene.step.method);
   if (scene.effects.contacts && scene.obstacles.empty()) {
     file.at("model").refuseBecause("lists obstacles, so the key obstacles must have at least one");
   }

@@ -46,8 +46,14 @@ int substepsOf(double cycle, double time_step) {
   return std::max(1, static_cast<int>(std::ceil(cycle / time_step * (1.0 - kRounding))));
 }
 
-scene::Quality knownTo(const cloth::ModelledEffects& effects, scene::Quality quality) {
-  if (!effects.self_collision || cloth::collidesWithItself(quality.step.method, effects.contacts)) {
+scene::Quality knownTo(const scene::Scene& scene, scene::Quality quality) {
+  const cloth::ModelledEffects& effects = scene.effects;
+  const cloth::IntegrationMethod method = quality.step.method;
+  const bool bodies =
+      std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                  [](const mesh::Obstacle& obstacle) { return obstacle.body.has_value(); });
+  if ((!effects.self_collision || cloth::collidesWithItself(method, effects.contacts)) &&
+      (!bodies || cloth::knowsBodies(method))) {
     return quality;
   }
   quality.step.method = cloth::IntegrationMethod::kBackwardEuler;

@@ -112,8 +112,12 @@ void printScene(const std::string& path, const scene::Scene& scene, const materi
   }
   printRow(out, "step", step);
   if (!scene.obstacles.empty()) {
+    const auto bodies =
+        std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
+                      [](const mesh::Obstacle& obstacle) { return obstacle.body.has_value(); });
+    const std::string with_mass = bodies > 0 ? text(", %td with mass", bodies) : std::string();
     printRow(out, "obstacles",
-             text("%zu, %s", scene.obstacles.size(),
+             text("%zu%s, %s", scene.obstacles.size(), with_mass.c_str(),
                   scene.effects.contacts ? "with which the cloth collides"
                                          : "to be asked about only: the cloth goes through them"));
   }

@@ -63,9 +63,26 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
   }
   if (scene.effects.contacts) {
     collision_.emplace(cloth_, std::move(scene.obstacles), start_time_);
+    start_bodies_ = collision_->bodies();
+    if (scene.penalty) setPenalty(*scene.penalty);
   }
   attachInitially();
   makeIntegrators();
+}
+
+/// Implicit steps keep what their contacts say.
+void SimulatedCloth::setPenalty(double stiffness) {
+  for (const StepPlan& plan : plans_) {
+    if (!cloth::isImplicit(plan.step.method)) continue;
+    refuse("the scene has a penalty, which ", nameOf(plan.step.method),
+           " does not know: allowed are explicit integrators");
+  }
+  collision_->setPenalty(stiffness);
+}
+
+const std::vector<contact::FreeBody>& SimulatedCloth::bodies() const {
+  static const std::vector<contact::FreeBody> none;
+  return collision_ ? collision_->bodies() : none;
 }
 
 bool SimulatedCloth::step() { return run(time_step_, 1, 0.0); }
@@ -132,32 +149,42 @@ void SimulatedCloth::runSubsteps(double duration) {
   adaptive_report_ = AdaptiveReport{};
   if (lengths_[plan_]) return runAdaptiveSubsteps(duration);
   const int substeps = plans_[plan_].substeps;
-  if (substeps > 1) before_ = state_;
+  if (substeps > 1) keep(before_);
   report_ = runSubstep(duration / substeps);
   for (int i = 1; i < substeps && report_.accepted; ++i) {
     report_ = sum(report_, runSubstep(duration / substeps));
   }
-  if (substeps > 1 && !report_.accepted) state_ = before_;
+  if (substeps > 1 && !report_.accepted) bringBack(before_);
+}
+
+void SimulatedCloth::keep(Snapshot& snapshot) const {
+  snapshot.state = state_;
+  if (!start_bodies_.empty()) snapshot.bodies = collision_->bodies();
+}
+
+void SimulatedCloth::bringBack(const Snapshot& snapshot) {
+  state_ = snapshot.state;
+  if (!start_bodies_.empty()) collision_->setBodies(snapshot.bodies);
 }
 
 /// A step that is not finite, as one that misses the error, is repeated in shorter ones.
 void SimulatedCloth::runAdaptiveSubsteps(double duration) {
   cloth::StepLengthControl& lengths = *lengths_[plan_];
-  before_ = state_;
+  keep(before_);
   cloth::StepReport total;
   double left = duration;
   while (left > 0.0) {
     const double length = lengths.lengthWithin(left);
-    before_substep_ = state_;
+    keep(before_substep_);
     total = sum(total, runSubstep(length));
     if (!total.accepted) {
       if (lengths.shorten(left)) continue;
-      state_ = before_;
+      bringBack(before_);
       lengths.forget();
       break;
     }
-    if (!lengths.judge(cloth_, before_substep_, state_, left)) {
-      state_ = before_substep_;
+    if (!lengths.judge(cloth_, before_substep_.state, state_, left)) {
+      bringBack(before_substep_);
       ++adaptive_report_.repeated;
       continue;
     }
@@ -208,6 +235,7 @@ void SimulatedCloth::reset() {
   pushed_ = false;
   attachInitially();
   state_ = startState();
+  if (!start_bodies_.empty()) collision_->setBodies(start_bodies_);
   makeIntegrators();  // the old ones remember their last solutions and factors
   report_ = cloth::StepReport{};
   adaptive_report_ = AdaptiveReport{};
@@ -234,8 +262,8 @@ void SimulatedCloth::makeIntegrators() {
     several = several || plan.substeps > 1 || plan.adaptive;
     adaptive = adaptive || plan.adaptive;
   }
-  if (several) before_ = state_;
-  if (adaptive) before_substep_ = state_;
+  if (several) keep(before_);
+  if (adaptive) keep(before_substep_);
 }
 
 void SimulatedCloth::setFabric(material::Fabric fabric) {

@@ -31,10 +31,12 @@ SteppedScene::SteppedScene(const scene::Scene& scene, const material::Fabric& fa
     : cloth_(scene.mesh, fabric, scene.effects),
       start_(cloth_.initialState()),
       state_(start_),
+      collision_(scene.effects.contacts
+                     ? std::make_optional<contact::ObstacleCollision>(cloth_, scene.obstacles)
+                     : std::nullopt),
       integrator_(cloth_, scene.step),
       attached_(scene.attached_particles),
       time_step_(scene.time_step) {
-  if (scene.effects.contacts) collision_.emplace(cloth_, scene.obstacles);
   restart();
 }
 

@@ -1,6 +1,8 @@
 // An executable of its own, because it counts every call of malloc in the process.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "../malloc_counter.h"
 #include "fixtures.h"
 #include "haptex/contact/obstacle_collision.h"
@@ -78,6 +80,43 @@ TEST(ContactAllocation, StepsAmongObstaclesAllocateNothing) {
     }
     EXPECT_EQ(allocations - before, 0);
     EXPECT_GT(rounds, 40);
+  }
+}
+
+TEST(ContactAllocation, StepsWithBodiesAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  const auto at = [](double x, double z) {
+    return Eigen::Isometry3d(Eigen::Translation3d(x, 0.0, z));
+  };
+  std::vector<mesh::Obstacle> obstacles = {
+      {"ball", mesh::ObstacleSphere{0.03}, at(0.034, -0.02)},
+      {"box", mesh::ObstacleBox{{0.02, 0.03, 0.04}}, at(0.1, -0.07)},
+      {"floor", mesh::ObstacleBox{{1.0, 1.0, 0.02}}, at(0.0, -0.11)}};
+  obstacles[0].body = mesh::ObstacleBody{0.01, {-0.5, 0.0, 0.0}, {0.0, 0.0, 5.0}, 0.3};
+  obstacles[1].body = mesh::ObstacleBody{0.01, {-0.5, 0.0, 0.0}, {1.0, 2.0, 3.0}, 0.3};
+  for (const int newton_iterations : {0, 1, 5}) {  // 0: an explicit method
+    cloth::ModelledEffects effects;
+    effects.gravity = {0.0, 0.0, -9.81};
+    effects.contacts = true;
+    cloth::Cloth cloth(smallSample(), wool(), effects);
+    ObstacleCollision collision(cloth, obstacles);
+    cloth::StepSettings settings;
+    settings.newton_iterations = std::max(1, newton_iterations);
+    if (newton_iterations == 0) settings.method = cloth::IntegrationMethod::kRungeKutta4;
+    cloth::Integrator integrator(cloth, settings);
+    cloth::ClothState state = cloth.initialState();
+    const double h = newton_iterations == 0 ? 2e-5 : 0.01;
+    int rounds = 0;
+    const long before = allocations;
+    for (int i = 0; i < 40; ++i) {
+      rounds += collision.step(cloth, integrator, state, h).contact_rounds;
+    }
+    EXPECT_EQ(allocations - before, 0) << newton_iterations;
+    if (newton_iterations > 0) {
+      EXPECT_GT(rounds, 40);
+    }
   }
 }
 

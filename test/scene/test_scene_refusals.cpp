@@ -31,8 +31,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"UnknownKey", "fabric: silk", "fabric: silk\nwaves: 3",
                 "waves: unknown key, allowed here: fabric, attach, model, time_step, sheet, mesh, "
-                "elasticity, gravity, bending, air, wind, integrator, solver, obstacles, haptics, "
-                "state"},
+                "elasticity, gravity, bending, air, wind, integrator, solver, obstacles, "
+                "penalty, haptics, state"},
         Refusal{"MissingModel", "model: [gravity, viscosity]\n", "",
                 "the key 'model' is missing, required here: fabric, attach, model, time_step"},
         Refusal{"MissingAttach", "attach: [top]\n", "",

@@ -76,10 +76,11 @@ TEST(QualityChoice, AMethodThatDoesNotKnowSelfCollisionBecomesBackwardEuler) {
   quality.name = "fast";
   quality.step.newton_error = 1e-2;
   quality.measured = {{"swing", "wool", 1e-3, 0.01, 2e-5, 0.25}};
-  cloth::ModelledEffects effects;
+  scene::Scene scene;
+  cloth::ModelledEffects& effects = scene.effects;
   const auto method = [&](cloth::IntegrationMethod of_quality) {
     quality.step.method = of_quality;
-    const scene::Quality known = knownTo(effects, quality);
+    const scene::Quality known = knownTo(scene, quality);
     EXPECT_EQ(known.measured.empty(), known.step.method != of_quality);
     EXPECT_EQ(known.name == "fast", known.step.method == of_quality);
     EXPECT_EQ(known.step.newton_error, 1e-2);
@@ -93,6 +94,16 @@ TEST(QualityChoice, AMethodThatDoesNotKnowSelfCollisionBecomesBackwardEuler) {
   effects.contacts = true;
   EXPECT_EQ(method(IntegrationMethod::kTrBdf2), IntegrationMethod::kBackwardEuler);
   EXPECT_EQ(method(IntegrationMethod::kBackwardEuler), IntegrationMethod::kBackwardEuler);
+}
+
+TEST(QualityChoice, AMethodThatDoesNotKnowObstaclesWithMassBecomesBackwardEuler) {
+  scene::Quality quality;
+  scene::Scene scene;
+  scene.obstacles = {{"ball", mesh::ObstacleSphere{0.1}, Eigen::Isometry3d::Identity()}};
+  quality.step.method = cloth::IntegrationMethod::kTrBdf2;
+  EXPECT_EQ(knownTo(scene, quality).step.method, cloth::IntegrationMethod::kTrBdf2);
+  scene.obstacles[0].body = mesh::ObstacleBody{1.0};
+  EXPECT_EQ(knownTo(scene, quality).step.method, cloth::IntegrationMethod::kBackwardEuler);
 }
 
 TEST(QualityChoice, OnAMeshThatStaysSettingsCountOnce) {

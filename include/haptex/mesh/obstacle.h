@@ -44,6 +44,15 @@ struct ObstacleDrift {
   Eigen::Vector3d velocity;  ///< m/s
 };
 
+/// Makes a sphere or a box, of the same density all through, a rigid body that goes as it is
+/// pushed.
+struct ObstacleBody {
+  double mass;                                                 ///< kg, > 0
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< m/s, at the start
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rad/s, likewise, world frame
+  double friction = 0.0;  ///< of it on other obstacles, >= 0; of two bodies the less
+};
+
 /// Data only: what is near an obstacle is told by the room proximity, what it does to the cloth by
 /// the room contact.
 struct Obstacle {
@@ -53,9 +62,12 @@ struct Obstacle {
   std::variant<std::monostate, ObstacleOrbit, ObstacleDrift> motion = {};  ///< rests without one
   std::optional<double> friction = {};  ///< of the cloth on it, >= 0; the fabric's if not given
 
+  std::optional<ObstacleBody> body = {};  ///< of a sphere or a box without motion of its own
+
+  /// Of a body, which goes as it is pushed, that at the start.
   /// @param time s, simulated
   Eigen::Isometry3d poseAt(double time) const;
-  bool moves() const { return motion.index() != 0; }
+  bool moves() const { return motion.index() != 0 || body; }
 };
 
 }  // namespace haptex::mesh

@@ -24,8 +24,10 @@ struct Scene {
   /// Taken in shorter steps where their error asks for them; time_step is the longest then.
   std::optional<cloth::AdaptiveSteps> adaptive_steps;
   cloth::StepSettings step;
-  std::vector<mesh::Obstacle> obstacles;          ///< names unique; the cloth collides with them if
-                                                  ///< effects has contacts
+  std::vector<mesh::Obstacle> obstacles;  ///< names unique; the cloth collides with them if
+                                          ///< effects has contacts
+  std::optional<double> penalty;  ///< N/m: how an explicit step responds to obstacles, if not by
+                                  ///< bringing back what has gone in
   std::vector<Eigen::Vector3d> start_velocities;  ///< m/s, one per particle; empty: at rest
   double start_time = 0.0;                        ///< s, simulated, that of a saved state
   /// What was done to a start that reached into obstacles, where the cloth collides with itself.

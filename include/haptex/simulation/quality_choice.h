@@ -25,10 +25,10 @@ struct Candidate {
 /// As few equal substeps as make none longer than the time step (both s, > 0).
 int substepsOf(double cycle, double time_step);
 
-/// A quality for a cloth with these effects: by backward Euler, to the same end of its steps, where
-/// the cloth collides with itself and the quality's method does not know that
-/// (cloth::collidesWithItself()). What was measured does not hold then.
-scene::Quality knownTo(const cloth::ModelledEffects& effects, scene::Quality quality);
+/// A quality for a scene: by backward Euler, to the same end of its steps, where the cloth collides
+/// with itself or an obstacle has mass, and the quality's method does not know that
+/// (cloth::collidesWithItself(), cloth::knowsBodies()). What was measured does not hold then.
+scene::Quality knownTo(const scene::Scene& scene, scene::Quality quality);
 
 /// How the candidate takes the steps of a scene, with so many threads.
 StepPlan planOf(const Candidate& candidate, int threads);

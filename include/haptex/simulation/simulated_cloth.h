@@ -47,11 +47,12 @@ struct AdaptiveReport {
 /// Cloth that has come to rest (cloth::RestDetector) sleeps: its steps only let the time pass.
 /// Every change wakes it, and it goes on from the state in which it fell asleep. It does not fall
 /// asleep as long as something outside moves: an attachment on its way, wind that changes, or an
-/// obstacle that moves.
+/// obstacle that moves or has mass.
 class SimulatedCloth {
  public:
   /// @throws std::invalid_argument what cloth::Cloth throws for the scene, and
-  ///   contact::ObstacleCollision if the cloth collides with its obstacles
+  ///   contact::ObstacleCollision if the cloth collides with its obstacles, or if an obstacle has
+  ///   mass or the scene a penalty that a plan's integrator does not know
   SimulatedCloth(scene::Scene scene, material::Fabric fabric);
 
   /// Can take its steps by any of these plans, at first by number 0, instead of by the scene's
@@ -62,6 +63,8 @@ class SimulatedCloth {
 
   const cloth::Cloth& cloth() const { return cloth_; }
   const cloth::ClothState& state() const { return state_; }
+  /// The obstacles with mass, in the scene's order, where they are now.
+  const std::vector<contact::FreeBody>& bodies() const;
   double timeStep() const { return time_step_; }  ///< s, of the scene: of all substeps together
   std::uint64_t steps() const { return steps_; }  ///< accepted since the start or reset()
   /// Of the last step: sums of counts and times over its substeps, the rest of the last of them.
@@ -106,8 +109,8 @@ class SimulatedCloth {
   /// Null without one.
   const QualityController* controller() const { return controller_ ? &*controller_ : nullptr; }
 
-  /// Positions, velocities, attachments and time as at the start, without loads or external forces.
-  /// The fabric stays.
+  /// Positions, velocities, attachments, bodies and time as at the start, without loads or external
+  /// forces. The fabric stays.
   void reset();
 
   /// Takes effect in the next step; positions and velocities stay.
@@ -168,9 +171,18 @@ class SimulatedCloth {
   std::vector<int> requireAttached(const std::vector<std::uint32_t>& particles) const;
   void requireHeld(int particle, const Eigen::Vector3d* position,
                    const Eigen::Vector3d* velocity) const;
+  /// What a step changes beside what the integrators remember.
+  struct Snapshot {
+    cloth::ClothState state;
+    std::vector<contact::FreeBody> bodies;
+  };
+
+  void keep(Snapshot& snapshot) const;
+  void bringBack(const Snapshot& snapshot);
   cloth::ClothState startState() const;
   void attachInitially();
   void makeIntegrators();
+  void setPenalty(double stiffness);
   bool run(double duration, int cycles, double waited);
   void runSubsteps(double duration);
   void runAdaptiveSubsteps(double duration);
@@ -184,14 +196,15 @@ class SimulatedCloth {
   std::vector<Eigen::Vector3d> start_velocities_;  // m/s; empty: at rest
   double start_time_;                              // s
   cloth::ClothState state_;
-  cloth::ClothState before_;          // the step, if a plan has several substeps
-  cloth::ClothState before_substep_;  // of a plan that is adaptive
+  Snapshot before_;          // the step, if a plan has several substeps
+  Snapshot before_substep_;  // of a plan that is adaptive
   std::vector<StepPlan> plans_;
   std::vector<cloth::Integrator> integrators_;                    // one per plan
   std::vector<std::optional<cloth::StepLengthControl>> lengths_;  // one per plan
   std::size_t plan_ = 0;
   std::optional<QualityController> controller_;
   std::optional<contact::ObstacleCollision> collision_;
+  std::vector<contact::FreeBody> start_bodies_;  // of collision_
   std::vector<int> initially_attached_;
   double time_step_;
   double last_duration_;  // s

@@ -48,8 +48,8 @@ class SteppedScene {
   cloth::Cloth cloth_;
   cloth::ClothState start_;
   cloth::ClothState state_;
-  cloth::Integrator integrator_;
   std::optional<contact::ObstacleCollision> collision_;
+  cloth::Integrator integrator_;
   std::vector<int> attached_;
   double time_step_;
   int strokes_ = 0;  // of the shaking, begun

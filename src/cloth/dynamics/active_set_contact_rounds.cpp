@@ -38,6 +38,7 @@ double ActiveSetContactSolver::smoothingOfSlips() const {
 
 bool ActiveSetContactSolver::update(const linear::BlockVector& solution) {
   if (phase_ == Phase::kForces) {
+    takeForces();
     finish();
     return false;
   }
@@ -47,9 +48,17 @@ bool ActiveSetContactSolver::update(const linear::BlockVector& solution) {
     entry.force = residual_.col(entry.particle) / a_;
     if (entry.state == State::kOpen) entry.force.setZero();
   }
+  takeForces();
   const bool again = phase_ == Phase::kSearch ? search(solution) : holdRatios(solution);
   if (!again) finish();
   return again;
+}
+
+/// The bodies', too.
+void ActiveSetContactSolver::takeForces() {
+  if (bodies_.empty()) return;
+  bodies_.takeForces(entries_, a_);
+  bodies_.place(entries_);
 }
 
 /// How far from the accepted solution towards the new one the potential of the new loads falls.
@@ -66,15 +75,20 @@ double ActiveSetContactSolver::searchLine(const linear::BlockVector& solution) {
   if (rounds_ == 1 || last_) return 1.0;
   accepted_ = solution - accepted_;
   free_matrix_.multiply(accepted_, product_);
-  const double curvature = product_.cwiseProduct(accepted_).sum();
-  const double slope = residual_.cwiseProduct(accepted_).sum() - curvature;
+  double curvature = product_.cwiseProduct(accepted_).sum();
+  double slope = residual_.cwiseProduct(accepted_).sum() - curvature;
+  if (!bodies_.empty()) {
+    curvature += bodies_.curvature();
+    slope += bodies_.slope() - bodies_.curvature();
+  }
   accepted_ = solution - accepted_;
   // What has closed goes out of the body on the way: more than its normal force is worth that.
   double entered = 0.0;
   for (const Entry& entry : entries_) {
     if (!entry.fresh || entry.state == State::kOpen) continue;
     const double out =
-        entry.normal.dot(solution.col(entry.particle) - accepted_.col(entry.particle));
+        entry.normal.dot(solution.col(entry.particle) - accepted_.col(entry.particle)) -
+        bodies_.bodyPart(entry);
     const double load = std::max(0.0, entry.normal.dot(entry.force));
     entered += a_ * kPenalty * load * std::max(0.0, out);
   }
@@ -104,6 +118,10 @@ bool ActiveSetContactSolver::search(const linear::BlockVector& solution) {
   bool changed = false, creeps = false;
   double limit = 0.0, off = 0.0, beyond = 0.0;
   accepted_ += share * (solution - accepted_);
+  if (!bodies_.empty()) {
+    bodies_.accept(share);
+    bodies_.place(entries_);
+  }
   for (Entry& entry : entries_) {
     const State before = entry.state;
     const Vector3d exerted = entry.force - entry.normal * entry.normal.dot(entry.force);

@@ -11,6 +11,7 @@
 //                   force on the right-hand side and the resistance of its direction on the
 //                   diagonal;
 //   confine()       takes the normals of what slips out of the unknowns;
+//   prepareMode(), setResponse(), moveBodies()  if contacts hold to rigid bodies (BodyCoupling);
 //   compareLoads()  after the solve: r = A dv - b of the free system are the impulses that the
 //                   constraints had to exert, r / a the forces N n + T. Until the friction of what
 //                   slips was that of these N, prepareLoads() and addLoads() change it;
@@ -27,7 +28,8 @@ constexpr double kLoadTolerance = 1e-6;  // of the loads of all contacts togethe
 
 }  // namespace
 
-ActiveSetContactSolver::ActiveSetContactSolver(const linear::SymmetricBlockMatrix& pattern)
+ActiveSetContactSolver::ActiveSetContactSolver(const linear::SymmetricBlockMatrix& pattern,
+                                               const RigidBodies& bodies)
     : guess_(3, pattern.size()),
       free_matrix_(pattern),
       free_rhs_(3, pattern.size()),
@@ -41,7 +43,9 @@ ActiveSetContactSolver::ActiveSetContactSolver(const linear::SymmetricBlockMatri
       loads_(Eigen::VectorXd::Zero(pattern.size())),
       results_(Eigen::VectorXd::Zero(pattern.size())),
       friction_(pattern.size(), 3 * pattern.size()),
+      bodies_(bodies.bodies.size(), bodies.contacts.capacity(), pattern.size()),
       memory_(pattern.size()) {
+  if (!bodies_.empty()) mode_.resize(3, pattern.size());
   entries_.reserve(pattern.size());
   kept_.reserve(pattern.size());
   reactions_.reserve(pattern.size());
@@ -51,6 +55,7 @@ void ActiveSetContactSolver::begin(const Cloth& cloth, const Stage& stage, const
                                    const std::vector<char>& attached) {
   a_ = stage.a;
   entries_.clear();
+  if (!bodies_.empty()) bodies_.begin(cloth.bodies(), stage.a);
   reactions_.assign(cloth.contacts().size(), {});
   for (std::size_t i = 0; i < cloth.contacts().size(); ++i) {
     if (!attached[cloth.contacts()[i].particle]) {
@@ -65,6 +70,7 @@ void ActiveSetContactSolver::begin(const Cloth& cloth, const Stage& stage, const
   attached_ = attached;
   loads_.setZero();
   results_.setZero();
+  if (!bodies_.empty()) bodies_.place(entries_);
   // What was not there in the last stage knows nothing.
   for (Entry& entry : entries_) {
     if (entry.stage == stages_ - 1) continue;
@@ -89,6 +95,13 @@ ActiveSetContactSolver::Entry ActiveSetContactSolver::entryOf(const Cloth& cloth
   // With it the stage goes its share of the way: x* + a v = x* + share (place - x*).
   entry.target = stage.share / stage.a * (place - stage.base.positions[contact.particle]);
   entry.friction = contact.friction;
+  if (contact.body >= 0) {
+    entry.rigid = contact.body;
+    entry.arm = contact.arm;
+    entry.mass = cloth.masses()[contact.particle];
+    entry.predicted_body = entry.body;
+    entry.predicted_target = entry.target;
+  }
   entry.slip -= entry.normal * entry.normal.dot(entry.slip);  // the plane may have turned
   return entry;
 }
@@ -106,6 +119,7 @@ void ActiveSetContactSolver::beginSystem(const Velocities& velocities,
     entry.fresh = false;
   }
   accepted_.setZero();
+  if (!bodies_.empty()) bodies_.beginSystem();
   last_ = false;
   kept_smoothing_ = 0.0;
   smoothing_ = std::max(smoothingOfSlips(), left_smoothing_);
@@ -118,6 +132,14 @@ bool ActiveSetContactSolver::prepareRound(linear::SymmetricBlockMatrix& matrix,
   matrix = free_matrix_;
   rhs = free_rhs_;
   fixed = attached_;
+  if (!bodies_.empty()) {
+    bodies_.place(entries_);
+    if (phase_ == Phase::kForces) {
+      bodies_.endRounds();
+    } else {
+      bodies_.beginRound(entries_);
+    }
+  }
   std::fill(confined_.begin(), confined_.end(), 0);
   for (std::size_t k = 0; k < entries_.size(); ++k) {
     Entry& entry = entries_[k];
@@ -204,6 +226,10 @@ bool ActiveSetContactSolver::prepareLoads(linear::BlockVector& rhs) const {
 
 void ActiveSetContactSolver::addLoads(linear::BlockVector& change, linear::BlockVector& solution) {
   free_matrix_.multiply(change, residual_);
+  if (modes() > 0) {
+    bodies_.respond(residual_, entries_, change);
+    free_matrix_.multiply(change, residual_);
+  }
   for (std::size_t k = 0; k < entries_.size(); ++k) {
     const Entry& entry = entries_[k];
     if (!confined_[entry.particle] || entry.friction == 0.0) continue;
@@ -214,8 +240,56 @@ void ActiveSetContactSolver::addLoads(linear::BlockVector& change, linear::Block
   friction_.add(results_, change_numbers, loads_, numbers);
 }
 
+/// With a contact that holds to a body go its particle, where it slips along the normal alone, and
+/// friction's resistance.
+void ActiveSetContactSolver::prepareMode(int mode, linear::BlockVector& rhs) {
+  mode_.setZero();
+  for (const Entry& entry : entries_) {
+    if (entry.state == State::kOpen) continue;
+    const Vector3d motion = bodies_.motion(mode, entry);
+    const bool sticks = entry.state == State::kSticks;
+    mode_.col(entry.particle) = sticks ? motion : Vector3d(entry.normal * entry.normal.dot(motion));
+  }
+  free_matrix_.multiply(mode_, rhs);
+  rhs = -rhs;
+  for (const Entry& entry : entries_) {
+    if (entry.state == State::kOpen) continue;
+    const int i = entry.particle;
+    if (entry.state == State::kSticks) {
+      rhs.col(i).setZero();
+      continue;
+    }
+    if (phase_ == Phase::kSearch && entry.friction > 0.0) {
+      rhs.col(i) += a_ * frictionResistance(entry, smoothing_) * bodies_.motion(mode, entry);
+    }
+    rhs.col(i) -= entry.normal * entry.normal.dot(rhs.col(i));
+  }
+  for (int i = 0; i < rhs.cols(); ++i) {
+    if (attached_[i]) rhs.col(i).setZero();
+  }
+}
+
+void ActiveSetContactSolver::setResponse(int mode, linear::BlockVector& response) {
+  response += mode_;
+  free_matrix_.multiply(response, residual_);
+  bodies_.setResponse(mode, response, residual_, entries_);
+}
+
+void ActiveSetContactSolver::moveBodies(linear::BlockVector& solution) {
+  free_matrix_.multiply(solution, residual_);
+  residual_ -= free_rhs_;
+  bodies_.solve(residual_, entries_, solution);
+}
+
+void ActiveSetContactSolver::moveBodies(double share) {
+  if (bodies_.empty()) return;
+  bodies_.go(share);
+  bodies_.place(entries_);
+}
+
 /// For the next stage, and for who asks what the contact did.
 void ActiveSetContactSolver::finish() {
+  moveBodies(1.0);
   left_smoothing_ = last_ ? smoothing_ : 0.0;
   phase_ = Phase::kFinished;
   for (Entry& entry : entries_) {
@@ -223,6 +297,7 @@ void ActiveSetContactSolver::finish() {
     ContactReaction& reaction = reactions_[entry.contact];
     reaction.force = entry.force;
     reaction.state = entry.state;
+    reaction.velocity = entry.body;
     memory_[entry.particle] = entry;
     memory_[entry.particle].stage = stages_;
   }
@@ -239,23 +314,27 @@ double ActiveSetContactSolver::potentialOf(const Entry& entry, const Vector3d& v
 double ActiveSetContactSolver::potential(const Velocities& velocities) const {
   double potential = 0.0;
   for (const Entry& entry : entries_) potential += potentialOf(entry, velocities[entry.particle]);
-  return potential;
+  return bodies_.empty() ? potential : potential + bodies_.potential();
 }
 
 double ActiveSetContactSolver::descent(const linear::BlockVector& solution) const {
   double descent = free_rhs_.cwiseProduct(solution).sum();
+  if (!bodies_.empty()) descent += bodies_.descent();
   for (const Entry& entry : entries_) {
-    const Vector3d velocity = guess_.col(entry.particle);
-    descent +=
-        potentialOf(entry, velocity) - potentialOf(entry, velocity + solution.col(entry.particle));
+    const Vector3d after = guess_.col(entry.particle) + solution.col(entry.particle);
+    Vector3d before = guess_.col(entry.particle);
+    if (entry.rigid >= 0) before += bodies_.way(entry);  // relative to the body as it goes now
+    descent += potentialOf(entry, before) - potentialOf(entry, after);
   }
   return descent;
 }
 
 void ActiveSetContactSolver::shorten(double share) {
+  moveBodies(share);
   for (Entry& entry : entries_) {
     entry.force = (1.0 - share) * entry.before + share * entry.force;
     reactions_[entry.contact].force = entry.force;
+    reactions_[entry.contact].velocity = entry.body;
     if (entry.force.isZero(0.0)) reactions_[entry.contact].state = State::kOpen;
   }
 }
@@ -278,8 +357,10 @@ bool ActiveSetContactSolver::enter(const Velocities& velocities, double depth) c
   });
 }
 
-void ActiveSetContactSolver::settle(Velocities& velocities) const {
+void ActiveSetContactSolver::settle(Velocities& velocities) {
+  if (!bodies_.empty()) bodies_.settle(entries_, reactions_, velocities);
   for (const Entry& entry : entries_) {
+    if (entry.rigid >= 0) continue;
     Vector3d& velocity = velocities[entry.particle];
     const State state = reactions_[entry.contact].state;
     if (state == State::kSticks) velocity = entry.body;

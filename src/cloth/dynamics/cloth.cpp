@@ -184,11 +184,36 @@ void Cloth::setPointLoads(const std::vector<PointLoad>& loads) {
 }
 
 void Cloth::setContacts(const std::vector<ParticleContact>& contacts) {
+  setContacts(contacts, bodies_);
+}
+
+void Cloth::setContacts(const std::vector<ParticleContact>& contacts, const RigidBodies& bodies) {
   if (!effects_.contacts) {
     throw std::invalid_argument("the cloth is modelled without contacts; none can be set");
   }
-  cloth::requireSound(contacts, touched_);
+  cloth::requireSound(contacts, touched_, bodies_.bodies.size());
+  if (bodies.bodies.size() != bodies_.bodies.size() ||
+      bodies.contacts.size() > bodies_.contacts.capacity()) {
+    std::ostringstream message;
+    message << bodies.bodies.size() << " bodies with " << bodies.contacts.size()
+            << " contacts cannot be set; reserved are " << bodies_.bodies.size() << " with "
+            << bodies_.contacts.capacity();
+    throw std::invalid_argument(message.str());
+  }
   contacts_.assign(contacts.begin(), contacts.end());
+  if (&bodies == &bodies_) return;
+  bodies_.bodies.assign(bodies.bodies.begin(), bodies.bodies.end());
+  bodies_.contacts.assign(bodies.contacts.begin(), bodies.contacts.end());
+}
+
+void Cloth::reserveBodies(std::size_t bodies, std::size_t contacts) {
+  if (!effects_.contacts || effects_.self_collision) {
+    throw std::invalid_argument(effects_.contacts
+                                    ? "a cloth that collides with itself knows no rigid bodies"
+                                    : "the cloth is modelled without contacts; it knows no bodies");
+  }
+  bodies_.bodies.resize(bodies);
+  bodies_.contacts.reserve(contacts);
 }
 
 void Cloth::setObstacles(std::vector<mesh::Obstacle> obstacles) {

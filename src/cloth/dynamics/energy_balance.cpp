@@ -27,12 +27,17 @@ double workOf(const Cloth& cloth, const std::vector<Vector3d>& forces, const Pos
   return work;
 }
 
-/// Of the contacts' forces (J) over the ways of the bodies, and out of what they had penetrated.
+/// Of the contacts' forces (J) over the ways of the bodies, and out of what they had penetrated;
+/// those of bodies with mass, which have no more energy for that, over their ways alone.
 double contactWork(const Cloth& cloth, const std::vector<ContactReaction>& reactions,
                    const Positions& begin, double h) {
   double work = 0.0;
   for (std::size_t c = 0; c < reactions.size(); ++c) {
     const ParticleContact& contact = cloth.contacts()[c];
+    if (contact.body >= 0) {
+      work += h * reactions[c].force.dot(reactions[c].velocity);
+      continue;
+    }
     const Vector3d way = h * contact.velocity;
     const double depth =
         -contact.gap - contact.normal.dot(begin[contact.particle] - (contact.place - way));

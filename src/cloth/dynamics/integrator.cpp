@@ -48,6 +48,25 @@ void requireSelfCollision(const Cloth& cloth, IntegrationMethod method) {
                               ", which the integrator " + nameOf(method) + " does not know");
 }
 
+void requireBodies(const Cloth& cloth, IntegrationMethod method) {
+  if (cloth.bodies().bodies.empty() || knowsBodies(method)) return;
+  throw std::invalid_argument(std::string("there are obstacles with mass, which the integrator ") +
+                              nameOf(method) +
+                              " does not know; allowed are backward_euler and explicit ones");
+}
+
+/// m/s, of the free particles' centre of mass. @param mass kg, theirs
+Vector3d meanVelocity(const Cloth& cloth, const Velocities& velocities, double& mass) {
+  Vector3d momentum = Vector3d::Zero();
+  mass = 0.0;
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (cloth.attachments()[i]) continue;
+    momentum += cloth.masses()[i] * velocities[i];
+    mass += cloth.masses()[i];
+  }
+  return mass > 0.0 ? Vector3d(momentum / mass) : momentum;
+}
+
 bool allFinite(const std::vector<Vector3d>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(),
                      [](const Vector3d& vector) { return vector.allFinite(); });
@@ -59,9 +78,11 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
     : settings_(requireSound(settings)),
       pattern_size_(cloth.patternSize()),
       held_size_(cloth.forces().heldSize()),
+      bodies_(cloth.bodies().bodies.size()),
       end_(cloth.initialState()) {
   const IntegrationMethod method = settings.method;
   requireSelfCollision(cloth, method);
+  requireBodies(cloth, method);
   if (!isImplicit(method)) {
     explicit_step_.emplace(cloth, method);
     return;
@@ -89,7 +110,7 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
   if (state.positions.size() != cloth.particleCount() ||
       state.velocities.size() != cloth.particleCount() ||
       end_.positions.size() != cloth.particleCount() || cloth.patternSize() != pattern_size_ ||
-      cloth.forces().heldSize() != held_size_ ||
+      cloth.forces().heldSize() != held_size_ || cloth.bodies().bodies.size() != bodies_ ||
       state.memory.size() != cloth.forces().memorySize() ||
       end_.memory.size() != cloth.forces().memorySize()) {
     throw std::invalid_argument("the state, the cloth and the integrator differ in size");
@@ -151,14 +172,26 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
   if (gained > 0.0) slowDown(cloth, gained, report);
 }
 
-/// Takes energy (J) out of the velocities at the end, as far as there is any.
+/// Takes energy (J) out of the velocities at the end, as far as there is any. With bodies, whose
+/// momentum and the cloth's stay together, only the motion beside the mean is slowed down.
 void Integrator::slowDown(const Cloth& cloth, double energy, StepReport& report) {
-  const double kinetic = balance_->kineticAtEnd();
+  double kinetic = balance_->kineticAtEnd();
+  Vector3d mean = Vector3d::Zero();
+  if (bodies_ > 0) {
+    double mass = 0.0;
+    mean = meanVelocity(cloth, end_.velocities, mass);
+    kinetic -= 0.5 * mass * mean.squaredNorm();
+  }
   if (!(kinetic > 0.0)) return;
   report.energy_taken = std::min(energy, kinetic);
   const double factor = std::sqrt(1.0 - report.energy_taken / kinetic);
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (!cloth.attachments()[i]) end_.velocities[i] *= factor;
+    if (cloth.attachments()[i]) continue;
+    if (bodies_ > 0) {
+      end_.velocities[i] = mean + factor * (end_.velocities[i] - mean);
+    } else {
+      end_.velocities[i] *= factor;
+    }
   }
   settle(end_.velocities);
 }
@@ -200,8 +233,14 @@ bool Integrator::touches() const {
   return stages_ && stages_->contacts() && stages_->contacts()->holding();
 }
 
-void Integrator::settle(Velocities& velocities) const {
-  if (touches()) stages_->contacts()->settle(velocities);
+/// Bodies touch each other, too, when the cloth does not.
+void Integrator::settle(Velocities& velocities) {
+  if (touches() || (stages_ && bodies_ > 0)) stages_->contacts()->settle(velocities);
+}
+
+const std::vector<BodyMotion>& Integrator::bodyMotions() {
+  static const std::vector<BodyMotion> none;
+  return stages_ && stages_->contacts() ? stages_->contacts()->bodyMotions() : none;
 }
 
 const std::vector<ContactReaction>& Integrator::contactReactions() const {

@@ -44,7 +44,12 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
                                     : linear::LinearSolver::Definiteness::kPositive;
     const bool solved = touching() ? solveTouching(result.velocities, report, definiteness)
                                    : solveLinear(report, definiteness);
-    if (touching()) potential = incrementalPotential(cloth, stage, result);  // of this friction
+    if (touching()) {
+      contacts_->moveBodies(0.0);
+      potential = incrementalPotential(cloth, stage, result);  // of this friction
+      contacts_->moveBodies(1.0);
+    }
+    if (touching() && exact && !solved) contacts_->moveBodies(0.0);
     const bool is_last = solved && isSmallError(norm / stage.a, decrease());
     if (!exact) report.linear_converged = report.linear_converged && solved;
     // Of the projected Hessian an inexact solution will do: the line search judges it.
@@ -99,6 +104,7 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
       trial_.positions[i] = result.positions[i] + stage.a * change;
     }
     const MotionCut cut = keepApart(cloth, stage, result.positions, trial_);
+    if (touching()) contacts_->moveBodies(step);
     const double trial = incrementalPotential(cloth, stage, trial_);
     // What was cut has not gone along the line: any decrease will do.
     const double sufficient = cut.particles > 0 ? 0.0 : kSufficientDecrease * step * descent;

@@ -53,7 +53,7 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
       prescribed_(linear::BlockVector::Zero(3, cloth.particleCount())),
       fixed_(cloth.particleCount(), 0) {
   if (cloth.effects().contacts && !cloth.effects().self_collision) {
-    contacts_.emplace(matrix_);
+    contacts_.emplace(matrix_, cloth.bodies());
     load_change_ = solution_;
   }
   if (const SelfContact* self = cloth.selfContact()) {
@@ -266,6 +266,7 @@ bool StageSolver::solveTouching(const Velocities& velocities, StepReport& report
     solved = solveLinear(report, definiteness);
     ++report.contact_rounds;
     if (!solved && definiteness == linear::LinearSolver::Definiteness::kUnknown) return false;
+    if (contacts_->modes() > 0) moveBodies(definiteness, report);
     contacts_->compareLoads(solution_);
     while (contacts_->prepareLoads(rhs_)) {
       const Clock::time_point start = Clock::now();
@@ -277,6 +278,20 @@ bool StageSolver::solveTouching(const Velocities& velocities, StepReport& report
     }
   } while (contacts_->update(solution_));
   return solved;
+}
+
+/// Lets the bodies that contacts hold to go with the solution of a round.
+void StageSolver::moveBodies(linear::LinearSolver::Definiteness definiteness, StepReport& report) {
+  const Clock::time_point start = Clock::now();
+  for (int mode = 0; mode < contacts_->modes(); ++mode) {
+    contacts_->prepareMode(mode, rhs_);
+    load_change_.setZero();
+    report.linear_iterations +=
+        solver_.solve(matrix_, rhs_, settings_.tolerance, load_change_, definiteness).iterations;
+    contacts_->setResponse(mode, load_change_);
+  }
+  contacts_->moveBodies(solution_);
+  report.solve_seconds += seconds(Clock::now() - start);
 }
 
 /// Solves matrix_ solution_ = rhs_ from the guess in solution_; false if that did not converge.

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
@@ -76,9 +77,12 @@ ClothMarkers::ClothMarkers(const mesh::ClothMesh& mesh, double full_scale,
   }
 }
 
-void ClothMarkers::updateObstacles(double time) {
+void ClothMarkers::updateObstacles(const simulation::SimulatedCloth& simulation) {
+  std::size_t bodies = 0;
   for (std::size_t i = 0; i < moving_.size(); ++i) {
-    setObstaclePose(moving_[i], time, markers_.markers[first_obstacle_ + i]);
+    markers_.markers[first_obstacle_ + i].pose =
+        poseMessage(moving_[i].body ? simulation.bodies()[bodies++].pose()
+                                    : moving_[i].poseAt(simulation.state().time));
   }
 }
 
@@ -128,7 +132,7 @@ const visualization_msgs::MarkerArray& ClothMarkers::update(
   computeNormals(simulation.state().positions);
   updateCloth(simulation);
   updateAttachments(simulation);
-  updateObstacles(simulation.state().time);
+  updateObstacles(simulation);
   for (visualization_msgs::Marker& marker : markers_.markers) marker.header.stamp = stamp;
   return markers_;
 }

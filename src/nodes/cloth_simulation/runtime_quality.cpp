@@ -78,24 +78,24 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
   if (!preset.empty()) preset = {presetFor(fabric_, request.preset_path, preset, studied_)};
   if (!scene_.any_cells) front = simulation::settingsAlone(front, meanCellSize(scene_.mesh));
   const auto measure = [&](const scene::Quality& quality, int substeps) {
-    return simulation::measureCycle(scene_path, fabric_,
-                                    simulation::knownTo(scene_.effects, quality), substeps);
+    return simulation::measureCycle(scene_path, fabric_, simulation::knownTo(scene_, quality),
+                                    substeps);
   };
   candidates_ = simulation::calibrate(
       front, cycle, measure,
       {reducible_ ? 0.0 : kAllowance, kLongestInBudgets * std::min(budget_, cycle)});
   for (simulation::Candidate& candidate : candidates_) {
-    candidate.quality = simulation::knownTo(scene_.effects, candidate.quality);
+    candidate.quality = simulation::knownTo(scene_, candidate.quality);
   }
   if (!scene_.any_cells) simulation::sortByTime(candidates_);
   if (reducible_) {
     reduce(scene_path,
-           preset.empty() ? qualityOfScene() : simulation::knownTo(scene_.effects, preset.front()));
+           preset.empty() ? qualityOfScene() : simulation::knownTo(scene_, preset.front()));
   } else if (preset.empty()) {
     choose(scene_path);
   } else {
     rungs_ = simulation::calibrate(preset, cycle, measure, {});
-    rungs_.front().quality = simulation::knownTo(scene_.effects, rungs_.front().quality);
+    rungs_.front().quality = simulation::knownTo(scene_, rungs_.front().quality);
   }
   if (!std::isfinite(rungs_[first_].seconds)) {
     throw std::invalid_argument("quality '" + rungs_[first_].quality.name +

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
 
 namespace haptex::nodes {
@@ -54,6 +55,10 @@ void fillStateMessage(const simulation::SimulatedCloth& simulation, const ros::T
   fillVectors(state.positions, message.positions);
   fillVectors(state.velocities, message.velocities);
   fillVectors(forces, message.forces);
+  message.bodies.clear();
+  for (const contact::FreeBody& body : simulation.bodies()) {
+    message.bodies.push_back(poseMessage(body.pose()));
+  }
   message.attached.clear();
   const auto& attachments = simulation.cloth().attachments();
   for (std::size_t i = 0; i < attachments.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
@@ -37,23 +38,33 @@ struct AppendShape {
   }
 };
 
-}  // namespace
-
-void setObstaclePose(const mesh::Obstacle& obstacle, double time, Marker& marker) {
-  const Eigen::Isometry3d pose = obstacle.poseAt(time);
-  marker.pose.position = pointMessage(pose.translation());
-  const Eigen::Quaterniond rotation = Eigen::Quaterniond(pose.rotation()).normalized();
-  marker.pose.orientation.x = rotation.x();
-  marker.pose.orientation.y = rotation.y();
-  marker.pose.orientation.z = rotation.z();
-  marker.pose.orientation.w = rotation.w();
+/// Darkens every other octant around the origin.
+void addStripes(Marker& marker) {
+  constexpr float kDark = 0.45F;
+  for (std::size_t i = 0; i + 2 < marker.points.size(); i += 3) {
+    double product = 1.0;
+    for (const auto coordinate :
+         {&geometry_msgs::Point::x, &geometry_msgs::Point::y, &geometry_msgs::Point::z}) {
+      product *= marker.points[i].*coordinate + marker.points[i + 1].*coordinate +
+                 marker.points[i + 2].*coordinate;
+    }
+    if (product >= 0.0) continue;
+    for (std::size_t corner = i; corner < i + 3; ++corner) {
+      marker.colors[corner].r *= kDark;
+      marker.colors[corner].g *= kDark;
+      marker.colors[corner].b *= kDark;
+    }
+  }
 }
+
+}  // namespace
 
 Marker obstacleMarker(const mesh::Obstacle& obstacle, int id) {
   Marker marker = makeMarker("obstacles", id, Marker::TRIANGLE_LIST);
-  setObstaclePose(obstacle, 0.0, marker);
+  marker.pose = poseMessage(obstacle.pose);
   std::visit(AppendShape{marker.points}, obstacle.shape);
   shadeTriangles(marker, kObstacleColour, 1.0F);
+  if (obstacle.body) addStripes(marker);
   return marker;
 }
 

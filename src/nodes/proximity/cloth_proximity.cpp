@@ -6,9 +6,11 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/common/transforms.h"
 
 namespace haptex::nodes {
 namespace {
@@ -49,7 +51,11 @@ ClothProximity::ClothProximity(double stale_after, Obstacles obstacles,
                                const std::vector<mesh::Obstacle>& moving)
     : stale_after_(stale_after), obstacles_(std::move(obstacles)) {
   for (const mesh::Obstacle& obstacle : moving) {
-    if (obstacle.moves()) moving_.emplace(obstacle.name, obstacle);
+    if (obstacle.body) {
+      bodies_.emplace(obstacle.name, bodies_.size());
+    } else if (obstacle.moves()) {
+      moving_.emplace(obstacle.name, obstacle);
+    }
   }
   status_.refit_seconds = status_.answer_seconds = kNaN;
 }
@@ -151,10 +157,19 @@ proximity::RigidObstacle ClothProximity::requireObstacle(const std::string& name
 }
 
 /// Copies of an obstacle share its shape, so each query may have a pose of its own.
-void ClothProximity::moveObstacle(const std::string& name, double time,
+/// @throws std::invalid_argument if it has mass and the state does not have it
+void ClothProximity::moveObstacle(const std::string& name, const haptex::ClothState& state,
                                   proximity::RigidObstacle& obstacle) const {
-  const auto found = moving_.find(name);
-  if (found != moving_.end()) obstacle.setPose(found->second.poseAt(time));
+  const auto moving = moving_.find(name);
+  if (moving != moving_.end()) obstacle.setPose(moving->second.poseAt(state.simulated_time));
+  const auto body = bodies_.find(name);
+  if (body == bodies_.end()) return;
+  if (body->second >= state.bodies.size()) {
+    throw std::invalid_argument("obstacle = '" + name + "': it has mass, and cloth/state has " +
+                                std::to_string(state.bodies.size()) + " of the " +
+                                std::to_string(bodies_.size()) + " bodies of the scene");
+  }
+  obstacle.setPose(fromMessage(state.bodies[body->second]));
 }
 
 haptex::QueryProximity::Response ClothProximity::answer(const Request& request,
@@ -193,7 +208,7 @@ haptex::QueryProximity::Response ClothProximity::compute(const Request& request,
   {
     const FittedCloth::View view = look(cloth);
     if (obstacle) {
-      moveObstacle(request.obstacle, view.state.simulated_time, *obstacle);
+      moveObstacle(request.obstacle, view.state, *obstacle);
       query(view.hierarchy, *obstacle, rangeOf(request), found);
     } else {
       view.hierarchy.query(*cursor, rangeOf(request), found);
@@ -213,8 +228,16 @@ std::vector<proximity::VolumeIndex> ClothProximity::tested(const AnsweredQuery& 
     return view.hierarchy.tested(cursorInWorld(request, query.world_from_frame), rangeOf(request));
   }
   proximity::RigidObstacle obstacle = requireObstacle(request.obstacle);
-  moveObstacle(request.obstacle, view.state.simulated_time, obstacle);
+  moveObstacle(request.obstacle, view.state, obstacle);
   return proximity::tested(view.hierarchy, obstacle, rangeOf(request));
+}
+
+/// None of a query that could be answered once, and not of this state.
+std::vector<proximity::VolumeIndex> ClothProximity::testedOrNone(
+    const AnsweredQuery& query, const FittedCloth::View& view) const try {
+  return tested(query, view);
+} catch (const std::invalid_argument&) {
+  return {};
 }
 
 std::optional<ProximityScene> ClothProximity::scene(const SceneRequest& request) {
@@ -241,7 +264,7 @@ std::optional<ProximityScene> ClothProximity::scene(const SceneRequest& request)
   }
   if (request.tested) {
     VolumeGroup group{"tested_volumes", {}, {}};
-    for (const proximity::VolumeIndex& volume : tested(*request.tested, view)) {
+    for (const proximity::VolumeIndex& volume : testedOrNone(*request.tested, view)) {
       group.volumes.push_back(hierarchy.volume(volume.level, volume.index));
       group.colours.push_back(volume.level);
     }

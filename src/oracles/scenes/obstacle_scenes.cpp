@@ -56,8 +56,8 @@ CollidingCloth::CollidingCloth(ClothMesh mesh, const material::Fabric& fabric, d
                                const cloth::StepSettings& settings, std::vector<Obstacle> obstacles)
     : cloth(std::move(mesh), fabric, effectsOf(fabric, gravity)),
       state(cloth.initialState()),
-      integrator(cloth, settings),
-      collision(cloth, std::move(obstacles)) {}
+      collision(cloth, std::move(obstacles)),
+      integrator(cloth, settings) {}
 
 cloth::StepReport CollidingCloth::step(double h) {
   const cloth::StepReport report = collision.step(cloth, integrator, state, h);

@@ -236,7 +236,7 @@ INSTANTIATE_TEST_SUITE_P(
                 ": the key 'position' is missing, required here: name, position"},
         Refusal{"UnknownKey", "name: a, cone: 1" + kAtOrigin,
                 ".cone: unknown key, allowed here: name, position, sphere, box, capsule, mesh, "
-                "rpy, orbit, velocity, friction"},
+                "rpy, orbit, velocity, friction, body"},
         Refusal{"NoShape", "name: a" + kAtOrigin,
                 ": must have exactly one of sphere, box, capsule, mesh"},
         Refusal{"TwoShapes", "name: a, sphere: 1, box: [1, 1, 1]" + kAtOrigin,
@@ -270,7 +270,7 @@ TEST_F(ObstacleList, MustBeAList) {
   EXPECT_EQ(refusalOf("obstacles: [ball]\n"),
             path() +
                 ": obstacles[0]: 'ball' must be a map with the keys name, position, sphere, "
-                "box, capsule, mesh, rpy, orbit, velocity, friction");
+                "box, capsule, mesh, rpy, orbit, velocity, friction, body");
 }
 
 // What is wrong in an OBJ file of a surface.

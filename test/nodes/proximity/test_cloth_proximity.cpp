@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cloth_proximity_fixtures.h"
+#include "haptex/nodes/common/transforms.h"
 
 namespace haptex::nodes::test_cloth_proximity {
 namespace {
@@ -160,6 +161,34 @@ TEST_F(ClothProximityTest, RefusesPlacesThatItsFrameTakesTooFar) {
       sphere(), [] { return Eigen::Isometry3d(Eigen::Translation3d(2e9, 0.0, 0.0)); }, kNow);
   EXPECT_FALSE(response.success);
   EXPECT_NE(response.message.find("e+09"), std::string::npos) << response.message;
+}
+
+TEST_F(ClothProximityTest, FindsAnObstacleWithMassWhereTheStateHasIt) {
+  mesh::Obstacle table{"table", mesh::ObstacleBox{{0.1, 0.1, 0.1}}, Eigen::Isometry3d::Identity()};
+  mesh::Obstacle ball{"ball", mesh::ObstacleSphere{0.02}, Eigen::Isometry3d::Identity()};
+  ball.body = mesh::ObstacleBody{0.1};
+  ClothProximity proximity(kStaleAfter, ballAndTable(), {table, ball});
+  Request request = testRequest(Request::OBSTACLE, {}, {}, 0.05);
+  request.obstacle = "ball";
+  request.header.frame_id = "";
+  proximity.setMesh(testMeshMessage(mesh_));
+  const auto state = boost::make_shared<haptex::ClothState>(*testState(7, positions_));
+  proximity.setState(state, kArrival);
+  EXPECT_NE(proximity.answer(request, worldFrame, kNow)
+                .message.find("cloth/state has 0 of the 1 bodies of the scene"),
+            std::string::npos);
+  const auto with_body = boost::make_shared<haptex::ClothState>(*state);
+  const Eigen::Vector3d place(0.03, 0.02, -0.05);
+  with_body->bodies = {poseMessage(Eigen::Isometry3d(Eigen::Translation3d(place)))};
+  proximity.setState(with_body, kArrival);
+  const auto near = proximity::nearElementsByBruteForce(
+      mesh_.triangles, positions_, proximity::Cursor::spheres({{place, 0.02}}), {0.05});
+  const Response response = proximity.answer(request, worldFrame, kNow);
+  ASSERT_TRUE(response.success) << response.message;
+  EXPECT_EQ(response.elements.size(), near.size());
+  EXPECT_FALSE(near.empty());
+  with_body->bodies[0].orientation.w = 3.0;
+  EXPECT_FALSE(proximity.answer(request, worldFrame, kNow).success);
 }
 
 TEST_F(ClothProximityTest, RefusesUnknownObstaclesAndNamesThoseThatThereAre) {

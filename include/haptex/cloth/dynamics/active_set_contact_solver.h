@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "haptex/cloth/dynamics/body_coupling.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/friction_loads.h"
 #include "haptex/cloth/dynamics/held_contact.h"
@@ -32,10 +33,13 @@ namespace haptex::cloth {
 /// most, until none of them pulls; and if one still does, the forces themselves act, without those
 /// that pull. What had not converged shows as slip, not as force.
 ///
+/// Rigid bodies that contacts push (Cloth::bodies()) are unknowns, too: BodyCoupling.
+///
 /// One contact per particle. Allocates nothing after construction.
 class ActiveSetContactSolver {
  public:
-  explicit ActiveSetContactSolver(const linear::SymmetricBlockMatrix& pattern);
+  explicit ActiveSetContactSolver(const linear::SymmetricBlockMatrix& pattern,
+                                  const RigidBodies& bodies = {});
 
   /// Takes over the contacts. Each starts from what its particle's did in the last stage.
   /// @param attached per particle; contacts of attached ones are left out
@@ -59,6 +63,15 @@ class ActiveSetContactSolver {
   void removeNormal(linear::BlockVector& solution) const;
   void putNormal(linear::BlockVector& solution) const;
 
+  /// Degrees of freedom of the bodies that this round's contacts hold to, and the right-hand side
+  /// whose solution is how the cloth responds to one.
+  int modes() const { return bodies_.modes(); }
+  void prepareMode(int mode, linear::BlockVector& rhs);
+  /// @param response that prepareMode() led to, overwritten
+  void setResponse(int mode, linear::BlockVector& response);
+  /// Moves the bodies, and the solution with them, once all responses are known.
+  void moveBodies(linear::BlockVector& solution);
+
   /// Reads the normal forces off the solution of a round.
   void compareLoads(const linear::BlockVector& solution);
   /// Writes the right-hand side of a change of the loads that friction is taken from.
@@ -77,6 +90,8 @@ class ActiveSetContactSolver {
   /// By how much the incremental potential falls along the solution of the last system (J), to
   /// the first order in its parts that are smooth.
   double descent(const linear::BlockVector& solution) const;
+  /// Bodies go this share of the way that the last system has found.
+  void moveBodies(double share);
   /// The change has gone only this share of the way: forces are those in between.
   void shorten(double share);
   /// |b + a f| of a system for the change from velocities at which the forces f act.
@@ -87,7 +102,8 @@ class ActiveSetContactSolver {
 
   /// What the last stage did: the velocities of particles whose contact holds become the body's,
   /// along the normal or altogether. Impacts are inelastic.
-  void settle(Velocities& velocities) const;
+  void settle(Velocities& velocities);
+  const std::vector<BodyMotion>& bodyMotions() { return bodies_.motions(); }
   /// Whether any contact held in the last stage.
   bool holding() const;
   /// One per contact of the cloth.
@@ -107,6 +123,7 @@ class ActiveSetContactSolver {
   double potentialOf(const Entry& entry, const Eigen::Vector3d& velocity) const;
   double meanSlip() const;
   double smoothingOfSlips() const;
+  void takeForces();
   double searchLine(const linear::BlockVector& solution);
   bool search(const linear::BlockVector& solution);
   bool goBack();
@@ -140,6 +157,8 @@ class ActiveSetContactSolver {
   Eigen::VectorXd loads_;    // N, that friction is taken from, by entry
   Eigen::VectorXd results_;  // N
   FrictionLoads friction_;
+  BodyCoupling bodies_;
+  linear::BlockVector mode_;           // m/s, how contacts move with a degree of freedom
   std::vector<ContactMemory> memory_;  // per particle
   std::vector<ContactReaction> reactions_;
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptex/cloth/dynamics/particle_contact.h"
+#include "haptex/cloth/dynamics/rigid_bodies.h"
 #include "haptex/cloth/forces/constant_forces.h"
 #include "haptex/cloth/forces/force_sum.h"
 #include "haptex/cloth/forces/modelled_effects.h"
@@ -103,7 +104,16 @@ class Cloth {
   /// @throws std::invalid_argument what requireSound() says, or if effects() are without contacts;
   ///   nothing has changed then
   void setContacts(const std::vector<ParticleContact>& contacts);
+  /// The same with rigid bodies, which the step moves (Integrator::bodyMotions()).
+  /// @param bodies as many as in reserveBodies(), with no more contacts than there
+  void setContacts(const std::vector<ParticleContact>& contacts, const RigidBodies& bodies);
   const std::vector<ParticleContact>& contacts() const { return contacts_; }
+  /// How many bodies and contacts of theirs there may be; none at first. An integrator has to be
+  /// made after.
+  /// @throws std::invalid_argument if effects() are without contacts, or the cloth collides with
+  ///   itself
+  void reserveBodies(std::size_t bodies, std::size_t contacts);
+  const RigidBodies& bodies() const { return bodies_; }
 
   /// Of a cloth that collides with itself: it collides with these, too, from where they are at time
   /// 0 on. Their friction is the fabric's if they have none. Allocates.
@@ -167,6 +177,7 @@ class Cloth {
   // Both are empty unless contacts are modelled, and have a capacity of one per particle then.
   std::vector<ParticleContact> contacts_;
   std::vector<char> touched_;  // of setContacts()
+  RigidBodies bodies_;         // likewise
 };
 
 }  // namespace haptex::cloth

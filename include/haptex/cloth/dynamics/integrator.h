@@ -42,7 +42,8 @@ class Integrator {
  public:
   /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1),
   ///   newton_iterations is less than 1, threads is not from 1 to kMaxThreads, or the cloth
-  ///   collides with itself and the method is not backward Euler
+  ///   collides with itself and the method is not backward Euler, or there are rigid bodies that
+  ///   the method does not know (knowsBodies())
   Integrator(const Cloth& cloth, const StepSettings& settings);
 
   /// Advances `state` by `time_step` seconds; steps need not be uniform.
@@ -56,6 +57,9 @@ class Integrator {
   /// forces are those at the end of the step but for the midpoint method. Empty with an explicit
   /// method or a cloth without contacts.
   const std::vector<ContactReaction>& contactReactions() const;
+  /// How the cloth's rigid bodies went through the last step, in their order. Empty with an
+  /// explicit method, or a cloth without contacts.
+  const std::vector<BodyMotion>& bodyMotions();
 
  private:
   /// What BDF-2 needs of the past.
@@ -78,12 +82,13 @@ class Integrator {
                double second, StepReport& report);
   bool continuesHistory(const ClothState& begin, double h) const;
   bool touches() const;
-  void settle(Velocities& velocities) const;
+  void settle(Velocities& velocities);
   void keep(const Cloth& cloth, ClothState& state, double h, bool anew, double energy_taken);
 
   StepSettings settings_;
   int pattern_size_;       // of the cloth's matrix
   std::size_t held_size_;  // of its forces
+  std::size_t bodies_;     // of the cloth
   ClothState end_;         // the step's result before it is accepted
   std::optional<StageSolver> stages_;
   std::optional<ExplicitStep> explicit_step_;

@@ -83,6 +83,7 @@ class StageSolver {
 
   /// Null if the cloth has been modelled without contacts.
   const ActiveSetContactSolver* contacts() const { return contacts_ ? &*contacts_ : nullptr; }
+  ActiveSetContactSolver* contacts() { return contacts_ ? &*contacts_ : nullptr; }
 
  private:
   enum class Descent { kFound, kBelowRounding, kNone };
@@ -106,6 +107,7 @@ class StageSolver {
   bool solveTouching(const Velocities& velocities, StepReport& report,
                      linear::LinearSolver::Definiteness definiteness =
                          linear::LinearSolver::Definiteness::kPositive);
+  void moveBodies(linear::LinearSolver::Definiteness definiteness, StepReport& report);
   bool touching() const { return contacts_ && !contacts_->empty(); }
   bool iterateNewton(const Cloth& cloth, const Stage& stage, double potential, int most_solves,
                      const std::function<bool()>& enough, ClothState& result, StepReport& report);

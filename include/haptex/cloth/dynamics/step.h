@@ -61,6 +61,12 @@ constexpr bool collidesWithItself(IntegrationMethod method, bool among_obstacles
          (method == IntegrationMethod::kBdf2 || method == IntegrationMethod::kTrBdf2);
 }
 
+/// Whether the method moves rigid bodies with the cloth (RigidBodies). Of explicit ones the bodies
+/// are pushed after the step.
+constexpr bool knowsBodies(IntegrationMethod method) {
+  return method == IntegrationMethod::kBackwardEuler || !isImplicit(method);
+}
+
 /// Threads that a step may have.
 constexpr int kMaxThreads = 64;
 

@@ -40,7 +40,7 @@ class ClothMarkers {
   void computeStrainColours(const simulation::SimulatedCloth& simulation);
   void computeNormals(const std::vector<Eigen::Vector3d>& positions);
   void updateCloth(const simulation::SimulatedCloth& simulation);
-  void updateObstacles(double time);
+  void updateObstacles(const simulation::SimulatedCloth& simulation);
   void updateAttachments(const simulation::SimulatedCloth& simulation);
 
   std::vector<std::array<int, 3>> triangles_;

@@ -7,11 +7,8 @@
 
 namespace haptex::nodes {
 
-/// In the namespace "obstacles", with the pose at time 0.
+/// In the namespace "obstacles", with the pose at time 0. One with mass is striped, which shows how
+/// it turns.
 visualization_msgs::Marker obstacleMarker(const mesh::Obstacle& obstacle, int id);
-
-/// Where the obstacle is at a simulated time (s).
-void setObstaclePose(const mesh::Obstacle& obstacle, double time,
-                     visualization_msgs::Marker& marker);
 
 }  // namespace haptex::nodes

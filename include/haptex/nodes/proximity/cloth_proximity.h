@@ -87,7 +87,8 @@ class ClothProximity {
 
   /// @param stale_after s, > 0: older states are not answered from
   /// @param moving those of the obstacles that move: they are asked about where they are at the
-  ///   simulated time of the state
+  ///   simulated time of the state, and those with mass where it has them; all of the scene, in
+  ///   its order
   ClothProximity(double stale_after, Obstacles obstacles,
                  const std::vector<mesh::Obstacle>& moving = {});
 
@@ -123,9 +124,12 @@ class ClothProximity {
   Cloth requireLive(Clock::time_point now) const;
   FittedCloth::View look(const Cloth& cloth);
   proximity::RigidObstacle requireObstacle(const std::string& name) const;
-  void moveObstacle(const std::string& name, double time, proximity::RigidObstacle& obstacle) const;
+  void moveObstacle(const std::string& name, const haptex::ClothState& state,
+                    proximity::RigidObstacle& obstacle) const;
   std::vector<proximity::VolumeIndex> tested(const AnsweredQuery& query,
                                              const FittedCloth::View& view) const;
+  std::vector<proximity::VolumeIndex> testedOrNone(const AnsweredQuery& query,
+                                                   const FittedCloth::View& view) const;
   haptex::QueryProximity::Response compute(const haptex::QueryProximity::Request& request,
                                            const FrameLookup& world_from_frame,
                                            Clock::time_point now);
@@ -133,6 +137,7 @@ class ClothProximity {
   const double stale_after_;  // s
   const Obstacles obstacles_;
   std::map<std::string, mesh::Obstacle> moving_;
+  std::map<std::string, std::size_t> bodies_;  // where those with mass are in ClothState::bodies
 
   mutable std::mutex mutex_;  // guards all below; never held while something is computed
   Cloth latest_;

@@ -37,6 +37,11 @@ void validateProximity(const std::string& config_directory, const Sink& sink);
 /// every state of cloth that folds, heaps, twists and is pulled tight.
 void validateSelfCollision(const std::string& config_directory, const Sink& sink);
 
+/// Obstacles with mass: free fall, inclines, impacts, momentum and energy with the cloth, weights,
+/// and the shipped scene net.
+/// @throws what loadScene() and loadFabric() throw
+void validateBody(const std::string& config_directory, const Sink& sink);
+
 /// Two fingertips on the wool sample, both layers in one loop without clocks: equilibrium, contact
 /// cases, friction, refinement, and what disturbs the feel. Takes minutes.
 void validateContact(const std::string& config_directory, const Sink& sink);

@@ -27,8 +27,8 @@ mesh::Obstacle floorAt(double height);
 struct CollidingCloth {
   cloth::Cloth cloth;
   cloth::ClothState state;
-  cloth::Integrator integrator;
   contact::ObstacleCollision collision;
+  cloth::Integrator integrator;
 
   /// @param gravity m/s^2, along -z
   CollidingCloth(mesh::ClothMesh mesh, const material::Fabric& fabric, double gravity,
