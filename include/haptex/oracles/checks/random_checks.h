@@ -66,6 +66,7 @@ void randomQueries(const std::string&, Random& random, const Sink& sink);
 void randomStack(const std::string&, Random& random, const Sink& sink);
 void randomPress(const std::string&, Random& random, const Sink& sink);
 void randomStick(const std::string&, Random& random, const Sink& sink);
+void randomRoll(const std::string&, Random& random, const Sink& sink);
 void randomIncline(const std::string&, Random& random, const Sink& sink);
 void randomCapstan(const std::string& config_directory, Random& random, const Sink& sink);
 void randomGrating(const std::string&, Random& random, const Sink& sink);

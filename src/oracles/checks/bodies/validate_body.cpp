@@ -9,6 +9,7 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/material/linear_fabric.h"
 #include "haptex/oracles/checks/validation.h"
+#include "haptex/oracles/scenes/body_scenes.h"
 #include "haptex/oracles/scenes/obstacle_scenes.h"
 #include "haptex/scene/scene.h"
 #include "haptex/simulation/simulated_cloth.h"
@@ -19,7 +20,6 @@ namespace {
 using cloth::IntegrationMethod;
 using contact::FreeBody;
 using contact::ObstacleCollision;
-using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using mesh::Obstacle;
 
@@ -35,28 +35,10 @@ cloth::StepSettings settingsOf(IntegrationMethod method, int solves) {
   return settings;
 }
 
-Obstacle ballOf(double mass, double radius, const Vector3d& place, const Vector3d& velocity,
-                double friction = 0.3) {
-  Obstacle ball{"ball", mesh::ObstacleSphere{radius}, placedAt(place)};
-  ball.body = mesh::ObstacleBody{mass, velocity, Vector3d::Zero(), friction};
-  ball.friction = 0.3;
-  return ball;
-}
-
-/// Obstacles alone, far from a small sheet.
-CollidingCloth withoutCloth(std::vector<Obstacle> obstacles, double gravity) {
-  for (Obstacle& obstacle : obstacles) obstacle.friction = obstacle.friction.value_or(0.0);
-  return {flatSheet({0.01, 0.01}, 1, 1, placedAt({0.0, 0.0, 50.0})),
-          material::linearFabric(100.0),
-          gravity,
-          {},
-          std::move(obstacles)};
-}
-
 void validateFlight(const Sink& sink) {
   Obstacle box{"box", mesh::ObstacleBox{{0.1, 0.2, 0.3}}, placedAt(Vector3d::Zero())};
   box.body = mesh::ObstacleBody{2.0, {1.0, 0.0, 3.0}, {7.0, 0.3, 0.2}};
-  CollidingCloth scene = withoutCloth({box}, kGravity);
+  CollidingCloth scene = bodiesAlone({box}, kGravity);
   const FreeBody& body = scene.collision.bodies()[0];
   const Vector3d turning = body.angularMomentum();
   const double energy = body.kineticEnergy() - 0.5 * body.momentum().squaredNorm() / body.mass();
@@ -78,20 +60,6 @@ void validateFlight(const Sink& sink) {
   // Of the Runge-Kutta steps of an unstable spin about the middle axis.
   sink({kPrefix + "free_fall/energy_of_turning", 0.0, off_energy / energy, off_energy / energy,
         1e-5});
-}
-
-/// Acceleration down an incline in the second quarter of a second.
-double accelerationDown(Obstacle body, double half_height, double angle) {
-  const Isometry3d pose(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
-  const Obstacle incline{"incline", mesh::ObstacleBox{{10.0, 1.0, 0.1}}, pose};
-  body.pose = pose;
-  body.pose.translation() = (0.05 + half_height) * pose.linear().col(2);
-  CollidingCloth scene = withoutCloth({incline, body}, kGravity);
-  const Vector3d down = pose.linear().col(0);
-  for (int i = 0; i < 20; ++i) scene.step(kTimeStep);
-  const double before = down.dot(scene.collision.bodies()[0].velocity().head<3>());
-  for (int i = 0; i < 20; ++i) scene.step(kTimeStep);
-  return (down.dot(scene.collision.bodies()[0].velocity().head<3>()) - before) / (20 * kTimeStep);
 }
 
 void validateIncline(const Sink& sink) {
@@ -123,7 +91,7 @@ void validateImpact(const Sink& sink) {
   Obstacle other = ballOf(0.5, 0.05, {0.3, 0.0, 0.0}, {-1.0, 0.0, 0.0});
   other.name = "other";
   CollidingCloth scene =
-      withoutCloth({ballOf(0.2, 0.03, Vector3d::Zero(), {2.0, 0.0, 0.0}), other}, 0.0);
+      bodiesAlone({ballOf(0.2, 0.03, Vector3d::Zero(), {2.0, 0.0, 0.0}), other}, 0.0);
   for (int i = 0; i < 40; ++i) scene.step(kTimeStep);
   const double exact = (0.2 * 2.0 - 0.5 * 1.0) / 0.7;
   for (const FreeBody& body : scene.collision.bodies()) {

@@ -36,6 +36,7 @@ const std::vector<RandomCheck>& randomChecks() {
       {"contact", "stick", randomStick},
       {"contact", "incline", randomIncline},
       {"contact", "capstan", randomCapstan},
+      {"body", "roll", randomRoll},
       {"exoskeleton", "pose", randomPose},
       {"exoskeleton", "static_force", randomStaticForce},
       {"tactile", "grating", randomGrating},
