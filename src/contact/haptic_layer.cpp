@@ -72,13 +72,15 @@ void requireTouchable(const material::Fabric& fabric, const HapticSettings& sett
 }
 
 HapticLayer::HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric,
-                         const cloth::ModelledEffects& effects, const HapticSettings& settings)
+                         const cloth::ModelledEffects& effects, const HapticSettings& settings,
+                         std::vector<mesh::Obstacle> obstacles)
     : settings_(settings),
       mesh_(requireSoundAndReturn(std::move(mesh))),
       fabric_(std::move(fabric)),
       effects_(effects),
       law_(requireBending(fabric_, settings), {},
            effects.self_collision ? LayersBetween::kMost : 1),
+      obstacles_(effects.contacts ? std::move(obstacles) : std::vector<mesh::Obstacle>(), fabric_),
       topology_(mesh_),
       motion_(mesh_.rest_coordinates.size()) {
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
@@ -109,15 +111,20 @@ std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangl
   }
   RefinedCut refined = cutAndRefine(mesh_, topology_, cut, attached, settings_.refinement);
   if (refined.free_count == 0) return nullptr;
-  return std::make_unique<Patch>(mesh_, std::move(refined), fabric_, effects_, law_);
+  return std::make_unique<Patch>(mesh_, std::move(refined), fabric_, effects_, law_, &obstacles_);
 }
 
 void HapticLayer::receive(const std::vector<Vector3d>& positions,
-                          const std::vector<Vector3d>& velocities, double period) {
+                          const std::vector<Vector3d>& velocities, double period, double time) {
   if (positions.size() != motion_.particleCount() || velocities.size() != positions.size()) {
     std::ostringstream message;
     message << "the state has " << positions.size() << " positions and " << velocities.size()
             << " velocities; the cloth has " << motion_.particleCount() << " particles";
+    throw std::invalid_argument(message.str());
+  }
+  if (!std::isfinite(time)) {
+    std::ostringstream message;
+    message << "the time of the state is " << time << " s; it must be finite";
     throw std::invalid_argument(message.str());
   }
   if (!std::isfinite(period) || period <= 0.0) {
@@ -129,7 +136,7 @@ void HapticLayer::receive(const std::vector<Vector3d>& positions,
     throw std::invalid_argument("the state has a number that is not finite");
   }
   const bool first = !motion_.hasState();
-  motion_.receive(positions, period);
+  motion_.receive(positions, period, time);
   if (whole_cloth_) whole_cloth_->receive(positions, velocities, period);
   if (first && patch_) patch_->start(motion_);
 }
@@ -175,6 +182,7 @@ void HapticLayer::step(const Fingertips& fingertips) {
 }
 
 void HapticLayer::stepPatch() {
+  obstacles_.moveTo(motion_.time());
   if (!patch_->advance(motion_, present_, settings_.time_step)) {
     startAgain();
     last_step_accepted_ = false;

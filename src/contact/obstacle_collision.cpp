@@ -17,13 +17,6 @@ using proximity::SurfaceDistance;
 constexpr double kOffset = ObstacleCollision::kOffset;
 constexpr double kUntouched = 0.5 * kOffset;  // m, from here on a path has hit the surface
 
-double frictionOf(const mesh::Obstacle& obstacle, const material::Fabric& fabric) {
-  if (obstacle.friction) return *obstacle.friction;
-  if (fabric.friction) return *fabric.friction;
-  throw std::invalid_argument("obstacle '" + obstacle.name + "' has no friction and fabric '" +
-                              fabric.name + "' has none: add the key friction to one of them");
-}
-
 /// Of a cloth that collides with itself.
 void requireApart(const mesh::ClothMesh& mesh, const std::string& name,
                   const RigidObstacle& shape) {
@@ -75,7 +68,7 @@ ObstacleCollision::ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obst
     shape.setPose(Eigen::Isometry3d::Identity());
     const double reach = shape.boundingRadius() + kOffset;
     bodies_.push_back({std::move(shape), reach, obstacle.pose, obstacle.pose,
-                       frictionOf(obstacle, cloth.fabric())});
+                       frictionOn(obstacle, cloth.fabric())});
   }
   if (cloth.selfContact() != nullptr) {
     cloth.setObstacles(obstacles_);
@@ -86,7 +79,7 @@ ObstacleCollision::ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obst
 }
 
 void ObstacleCollision::requireFriction(const material::Fabric& fabric) const {
-  for (const mesh::Obstacle& obstacle : obstacles_) frictionOf(obstacle, fabric);
+  for (const mesh::Obstacle& obstacle : obstacles_) frictionOn(obstacle, fabric);
 }
 
 cloth::StepReport ObstacleCollision::step(cloth::Cloth& cloth, cloth::Integrator& integrator,
@@ -108,7 +101,7 @@ void ObstacleCollision::placeBodies(const cloth::Cloth& cloth, double begin, dou
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     bodies_[i].begin = obstacles_[i].poseAt(begin);
     bodies_[i].end = obstacles_[i].poseAt(end);
-    bodies_[i].friction = frictionOf(obstacles_[i], cloth.fabric());
+    bodies_[i].friction = frictionOn(obstacles_[i], cloth.fabric());
   }
 }
 

@@ -155,7 +155,7 @@ void ForceLoop::receiveState(double period) {
     ++status_.other_sizes;
     return;
   }
-  layer_->receive(state.positions, state.velocities, period);
+  layer_->receive(state.positions, state.velocities, period, state.simulated_time);
 }
 
 void ForceLoop::takeFingers(Time now) {
