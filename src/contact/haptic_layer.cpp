@@ -216,12 +216,14 @@ void HapticLayer::stepPatch() {
 
 /// How far the fingertip will have taken its contact along when the large-scale layer has made its
 /// next step. A fingertip that withdraws takes no more than its force away, but for what the other
-/// one pushes after it.
+/// one pushes after it. Cloth that hangs overshoots less where only the period counts; cloth that
+/// slides on an obstacle, which stops it, would be felt to be held by more than friction.
 Vector3d HapticLayer::aheadOf(Finger finger, const Matrix3d& stiffness) const {
   if (!settings_.predict) return Vector3d::Zero();
   const FingertipContact& contact = contacts_[finger];
-  const Vector3d followed = -motion_.period() * followingSpeed(finger) * contact.normal;
-  const Vector3d ahead = motion_.period() * contact.velocity - followed;
+  const double seconds = motion_.period() + (patch_->touchesObstacle() ? motion_.remaining() : 0.0);
+  const Vector3d followed = -seconds * followingSpeed(finger) * contact.normal;
+  const Vector3d ahead = seconds * contact.velocity - followed;
   // Friction may pull a fingertip at rest along the mean normal.
   const double now = std::max(0.0, -contact.normal.dot(contact.force));
   const double change = contact.normal.dot(stiffness * ahead);

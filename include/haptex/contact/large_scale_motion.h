@@ -23,9 +23,11 @@ class LargeScaleMotion {
 
   bool hasState() const { return has_state_; }
   double period() const { return period_; }  ///< s, of the newest state
+  /// s, until the newest state is reached.
+  double remaining() const { return (1.0 - progress_) * period_; }
   /// s, simulated, at which the cloth was where it is now: one period before that of the newest
   /// state when it comes.
-  double time() const { return time_ - (1.0 - progress_) * period_; }
+  double time() const { return time_ - remaining(); }
   std::size_t particleCount() const { return target_.size(); }
   Eigen::Vector3d position(int particle) const {  ///< m
     return start_[particle] + progress_ * (target_[particle] - start_[particle]);

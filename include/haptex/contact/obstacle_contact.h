@@ -62,6 +62,8 @@ class ObstacleContact {
   const std::vector<TouchedParticle>& evaluate(const Particles& particles);
   /// The same, then moves the anchors and remembers on which side particles are.
   void commit(const Particles& particles);
+  /// Of the last evaluate().
+  const std::vector<TouchedParticle>& touched() const { return touched_; }
   /// Forgets all contacts.
   void clear();
   /// Takes over what another contact with the same obstacles knows of a particle.

@@ -82,6 +82,9 @@ class Patch {
   /// @returns 3 x freeCount(), until the next call
   const linear::BlockVector& respond(base::Finger finger, int direction);
 
+  /// Whether some particle touched an obstacle in the last step.
+  bool touchesObstacle() const { return obstacles_ && !obstacles_->touched().empty(); }
+
   /// Whether the last step took few iterations, so that there is time for a respond().
   bool stepWasShort() const { return solver_.wasShort(); }
 

@@ -8,10 +8,10 @@ namespace haptex::oracles {
 
 const std::vector<Validation>& validations() {
   static const std::vector<Validation> all = {
-      {"material", validateMaterial},   {"cloth", validateCloth},
-      {"proximity", validateProximity}, {"self_collision", validateSelfCollision},
-      {"contact", validateContact},     {"exoskeleton", validateExoskeleton},
-      {"tactile", validateTactile}};
+      {"material", validateMaterial},       {"cloth", validateCloth},
+      {"proximity", validateProximity},     {"self_collision", validateSelfCollision},
+      {"contact", validateContact},         {"table", validateTable},
+      {"exoskeleton", validateExoskeleton}, {"tactile", validateTactile}};
   return all;
 }
 

@@ -36,6 +36,8 @@ const std::vector<RandomCheck>& randomChecks() {
       {"contact", "stick", randomStick},
       {"contact", "incline", randomIncline},
       {"contact", "capstan", randomCapstan},
+      {"table", "press", randomTablePress},
+      {"table", "drag", randomTableDrag},
       {"exoskeleton", "pose", randomPose},
       {"exoskeleton", "static_force", randomStaticForce},
       {"tactile", "grating", randomGrating},
