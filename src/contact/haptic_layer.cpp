@@ -135,6 +135,12 @@ void HapticLayer::receive(const std::vector<Vector3d>& positions,
   if (!allFinite(positions) || !allFinite(velocities)) {
     throw std::invalid_argument("the state has a number that is not finite");
   }
+  for (const Finger finger : kFingers) {
+    auto& [earlier, last] = places_at_states_[finger];
+    earlier = last;
+    last.reset();
+    if (held_[finger].held()) last = held_[finger].held()->position;
+  }
   const bool first = !motion_.hasState();
   motion_.receive(positions, period, time);
   if (whole_cloth_) whole_cloth_->receive(positions, velocities, period);
@@ -149,6 +155,10 @@ std::unique_ptr<Patch> HapticLayer::exchange(std::unique_ptr<Patch> next) {
   }
   std::swap(patch_, next);
   if (!patch_) startAgain();
+  for (const Finger finger : kFingers) {
+    const bool touched = next && !next->contact(finger).touched().empty();
+    held_[finger].sweepFrom(touched ? std::nullopt : places_at_states_[finger][0]);
+  }
   return next;
 }
 
@@ -165,11 +175,7 @@ void HapticLayer::startAgain() {
 }
 
 void HapticLayer::step(const Fingertips& fingertips) {
-  fingertips_ = fingertips;
-  for (const Finger finger : kFingers) {
-    present_[finger] =
-        fingertips_[finger] && isSound(*fingertips_[finger]) ? &*fingertips_[finger] : nullptr;
-  }
+  hold(fingertips);
   loads_.clear();
   last_step_accepted_ = true;
   if (!motion_.hasState()) return;
@@ -178,6 +184,30 @@ void HapticLayer::step(const Fingertips& fingertips) {
     stepWholeCloth();
   } else if (patch_) {
     stepPatch();
+  }
+}
+
+void HapticLayer::hold(const Fingertips& fingertips) {
+  fingertips_ = fingertips;
+  for (const Finger finger : kFingers) {
+    const std::optional<Fingertip>& next = fingertips_[finger];
+    HeldFingertip& held = held_[finger];
+    present_[finger] = nullptr;
+    if (!next || !isSound(*next)) {
+      held.clear();
+      continue;
+    }
+    const double reach = next->radius + law_.halfThickness();
+    if (whole_cloth_) {
+      present_[finger] =
+          &held.move(*next, whole_cloth_->particles(), whole_cloth_->contact(finger).touched(),
+                     reach, law_.friction());
+    } else if (patch_) {
+      present_[finger] = &held.move(*next, patch_->particles(finger),
+                                    patch_->contact(finger).touched(), reach, law_.friction());
+    } else {
+      present_[finger] = &held.follow(*next);
+    }
   }
 }
 
@@ -196,7 +226,7 @@ void HapticLayer::stepPatch() {
     const std::vector<TouchedParticle>& touched = patch_->contact(finger).touched();
     FingertipContact& contact = contacts_[finger];
     if (!contact.touching) continue;
-    contact.stiffness = stiffness_.of(finger);
+    if (!held_[finger].isHeld()) contact.stiffness = stiffness_.of(finger);
     // Every point goes back with its own spring, although the patch behind it makes that softer: a
     // part of the cloth that hangs around the fingertip flutters from one large-scale step to the
     // next if less holds it. Equilibrium takes some more steps for it.
@@ -248,7 +278,9 @@ void HapticLayer::stepWholeCloth() {
     fillContact(finger, touched, whole_cloth_->particles());
     FingertipContact& contact = contacts_[finger];
     if (!contact.touching) continue;
-    contact.stiffness = whole_cloth_->stiffness(finger, settings_.time_step);
+    if (!held_[finger].isHeld()) {
+      contact.stiffness = whole_cloth_->stiffness(finger, settings_.time_step);
+    }
     sendBack(
         contact, touched, [this](int particle) { return whole_cloth_->restCoordinates(particle); },
         [this](const TouchedParticle& point) {
@@ -290,15 +322,15 @@ void HapticLayer::fillContact(Finger finger, const std::vector<TouchedParticle>&
   contact.touching = !touched.empty();
   if (!contact.touching) return;
   const Fingertip& fingertip = *present_[finger];
-  contact.position = fingertip.position;
-  contact.velocity = fingertip.velocity;
+  contact.position = fingertips_[finger]->position;
+  contact.velocity = fingertips_[finger]->velocity;
   double slipping = 0.0;
   for (const TouchedParticle& point : touched) contact.normal_force += point.normal_force;
   for (const TouchedParticle& point : touched) {
     const double share = shareOf(point, contact, touched.size());
     const Vector3d& place = particles.positions[point.particle];
     contact.force -= point.force();
-    contact.damping += point.damping;
+    if (!held_[finger].isHeld()) contact.damping += point.damping;
     contact.area += particles.areas[point.particle];
     contact.penetration = std::max(contact.penetration, point.depth);
     contact.centre += share * place;

@@ -223,6 +223,10 @@ void ForceLoop::step() {
       liveness_.restart();
     }
   }
+  for (const Finger finger : kFingers) {
+    // The patch is needed where the cloth holds the fingertip.
+    if (layer_ && layer_->held(finger)) view_.fingertips[finger] = layer_->held(finger);
+  }
   static const contact::FingertipContact no_contact;
   for (const Finger finger : kFingers) {
     Rendered& rendered = rendered_[finger];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "haptex/contact/contact_law.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/haptic_settings.h"
+#include "haptex/contact/held_fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
 #include "haptex/contact/obstacle_contact.h"
 #include "haptex/contact/patch.h"
@@ -112,11 +114,15 @@ class HapticLayer {
   std::size_t particleCount() const { return patch_ ? patch_->particleCount() : 0; }
   const Patch* patch() const { return patch_.get(); }
 
+  /// Where the fingertips of the last step are in contact; they differ from where the person has
+  /// them where the cloth holds them (HeldFingertip).
+  const std::optional<Fingertip>& held(base::Finger finger) const { return held_[finger].held(); }
   const base::PerFinger<FingertipContact>& contacts() const { return contacts_; }
   /// What acts on the large-scale cloth, see cloth::Cloth::setPointLoads().
   const std::vector<cloth::PointLoad>& loads() const { return loads_; }
 
  private:
+  void hold(const Fingertips& fingertips);
   void stepPatch();
   void stepWholeCloth();
   void startAgain();
@@ -139,8 +145,11 @@ class HapticLayer {
   std::unique_ptr<Patch> patch_;
   CondensedStiffness stiffness_;
   std::unique_ptr<WholeClothContact> whole_cloth_;  // null with patches
-  Fingertips fingertips_;
-  base::PerFinger<const Fingertip*> present_{};  // into fingertips_
+  Fingertips fingertips_;                           // where the person has them
+  base::PerFinger<HeldFingertip> held_;
+  base::PerFinger<const Fingertip*> present_{};  // into held_
+  // m, at the last two states of the large-scale layer.
+  base::PerFinger<std::array<std::optional<Eigen::Vector3d>, 2>> places_at_states_;
   base::PerFinger<FingertipContact> contacts_;
   std::vector<cloth::PointLoad> loads_;
   bool last_step_accepted_ = true;

@@ -70,6 +70,7 @@ void randomIncline(const std::string&, Random& random, const Sink& sink);
 void randomCapstan(const std::string& config_directory, Random& random, const Sink& sink);
 void randomTablePress(const std::string& config_directory, Random& random, const Sink& sink);
 void randomTableDrag(const std::string& config_directory, Random& random, const Sink& sink);
+void randomFastFinger(const std::string& config_directory, Random& random, const Sink& sink);
 void randomGrating(const std::string&, Random& random, const Sink& sink);
 void randomPose(const std::string& config_directory, Random& random, const Sink& sink);
 void randomStaticForce(const std::string& config_directory, Random& random, const Sink& sink);

@@ -38,6 +38,7 @@ const std::vector<RandomCheck>& randomChecks() {
       {"contact", "capstan", randomCapstan},
       {"table", "press", randomTablePress},
       {"table", "drag", randomTableDrag},
+      {"table", "fast", randomFastFinger},
       {"exoskeleton", "pose", randomPose},
       {"exoskeleton", "static_force", randomStaticForce},
       {"tactile", "grating", randomGrating},
