@@ -72,13 +72,15 @@ void requireTouchable(const material::Fabric& fabric, const HapticSettings& sett
 }
 
 HapticLayer::HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric,
-                         const cloth::ModelledEffects& effects, const HapticSettings& settings)
+                         const cloth::ModelledEffects& effects, const HapticSettings& settings,
+                         std::vector<mesh::Obstacle> obstacles)
     : settings_(settings),
       mesh_(requireSoundAndReturn(std::move(mesh))),
       fabric_(std::move(fabric)),
       effects_(effects),
       law_(requireBending(fabric_, settings), {},
            effects.self_collision ? LayersBetween::kMost : 1),
+      obstacles_(effects.contacts ? std::move(obstacles) : std::vector<mesh::Obstacle>(), fabric_),
       topology_(mesh_),
       motion_(mesh_.rest_coordinates.size()) {
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
@@ -109,15 +111,20 @@ std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangl
   }
   RefinedCut refined = cutAndRefine(mesh_, topology_, cut, attached, settings_.refinement);
   if (refined.free_count == 0) return nullptr;
-  return std::make_unique<Patch>(mesh_, std::move(refined), fabric_, effects_, law_);
+  return std::make_unique<Patch>(mesh_, std::move(refined), fabric_, effects_, law_, &obstacles_);
 }
 
 void HapticLayer::receive(const std::vector<Vector3d>& positions,
-                          const std::vector<Vector3d>& velocities, double period) {
+                          const std::vector<Vector3d>& velocities, double period, double time) {
   if (positions.size() != motion_.particleCount() || velocities.size() != positions.size()) {
     std::ostringstream message;
     message << "the state has " << positions.size() << " positions and " << velocities.size()
             << " velocities; the cloth has " << motion_.particleCount() << " particles";
+    throw std::invalid_argument(message.str());
+  }
+  if (!std::isfinite(time)) {
+    std::ostringstream message;
+    message << "the time of the state is " << time << " s; it must be finite";
     throw std::invalid_argument(message.str());
   }
   if (!std::isfinite(period) || period <= 0.0) {
@@ -128,8 +135,14 @@ void HapticLayer::receive(const std::vector<Vector3d>& positions,
   if (!allFinite(positions) || !allFinite(velocities)) {
     throw std::invalid_argument("the state has a number that is not finite");
   }
+  for (const Finger finger : kFingers) {
+    auto& [earlier, last] = places_at_states_[finger];
+    earlier = last;
+    last.reset();
+    if (held_[finger].held()) last = held_[finger].held()->position;
+  }
   const bool first = !motion_.hasState();
-  motion_.receive(positions, period);
+  motion_.receive(positions, period, time);
   if (whole_cloth_) whole_cloth_->receive(positions, velocities, period);
   if (first && patch_) patch_->start(motion_);
 }
@@ -142,6 +155,10 @@ std::unique_ptr<Patch> HapticLayer::exchange(std::unique_ptr<Patch> next) {
   }
   std::swap(patch_, next);
   if (!patch_) startAgain();
+  for (const Finger finger : kFingers) {
+    const bool touched = next && !next->contact(finger).touched().empty();
+    held_[finger].sweepFrom(touched ? std::nullopt : places_at_states_[finger][0]);
+  }
   return next;
 }
 
@@ -158,11 +175,7 @@ void HapticLayer::startAgain() {
 }
 
 void HapticLayer::step(const Fingertips& fingertips) {
-  fingertips_ = fingertips;
-  for (const Finger finger : kFingers) {
-    present_[finger] =
-        fingertips_[finger] && isSound(*fingertips_[finger]) ? &*fingertips_[finger] : nullptr;
-  }
+  hold(fingertips);
   loads_.clear();
   last_step_accepted_ = true;
   if (!motion_.hasState()) return;
@@ -174,7 +187,32 @@ void HapticLayer::step(const Fingertips& fingertips) {
   }
 }
 
+void HapticLayer::hold(const Fingertips& fingertips) {
+  fingertips_ = fingertips;
+  for (const Finger finger : kFingers) {
+    const std::optional<Fingertip>& next = fingertips_[finger];
+    HeldFingertip& held = held_[finger];
+    present_[finger] = nullptr;
+    if (!next || !isSound(*next)) {
+      held.clear();
+      continue;
+    }
+    const double reach = next->radius + law_.halfThickness();
+    if (whole_cloth_) {
+      present_[finger] =
+          &held.move(*next, whole_cloth_->particles(), whole_cloth_->contact(finger).touched(),
+                     reach, law_.friction());
+    } else if (patch_) {
+      present_[finger] = &held.move(*next, patch_->particles(finger),
+                                    patch_->contact(finger).touched(), reach, law_.friction());
+    } else {
+      present_[finger] = &held.follow(*next);
+    }
+  }
+}
+
 void HapticLayer::stepPatch() {
+  obstacles_.moveTo(motion_.time());
   if (!patch_->advance(motion_, present_, settings_.time_step)) {
     startAgain();
     last_step_accepted_ = false;
@@ -188,7 +226,7 @@ void HapticLayer::stepPatch() {
     const std::vector<TouchedParticle>& touched = patch_->contact(finger).touched();
     FingertipContact& contact = contacts_[finger];
     if (!contact.touching) continue;
-    contact.stiffness = stiffness_.of(finger);
+    if (!held_[finger].isHeld()) contact.stiffness = stiffness_.of(finger);
     // Every point goes back with its own spring, although the patch behind it makes that softer: a
     // part of the cloth that hangs around the fingertip flutters from one large-scale step to the
     // next if less holds it. Equilibrium takes some more steps for it.
@@ -208,12 +246,14 @@ void HapticLayer::stepPatch() {
 
 /// How far the fingertip will have taken its contact along when the large-scale layer has made its
 /// next step. A fingertip that withdraws takes no more than its force away, but for what the other
-/// one pushes after it.
+/// one pushes after it. Cloth that hangs overshoots less where only the period counts; cloth that
+/// slides on an obstacle, which stops it, would be felt to be held by more than friction.
 Vector3d HapticLayer::aheadOf(Finger finger, const Matrix3d& stiffness) const {
   if (!settings_.predict) return Vector3d::Zero();
   const FingertipContact& contact = contacts_[finger];
-  const Vector3d followed = -motion_.period() * followingSpeed(finger) * contact.normal;
-  const Vector3d ahead = motion_.period() * contact.velocity - followed;
+  const double seconds = motion_.period() + (patch_->touchesObstacle() ? motion_.remaining() : 0.0);
+  const Vector3d followed = -seconds * followingSpeed(finger) * contact.normal;
+  const Vector3d ahead = seconds * contact.velocity - followed;
   // Friction may pull a fingertip at rest along the mean normal.
   const double now = std::max(0.0, -contact.normal.dot(contact.force));
   const double change = contact.normal.dot(stiffness * ahead);
@@ -238,7 +278,9 @@ void HapticLayer::stepWholeCloth() {
     fillContact(finger, touched, whole_cloth_->particles());
     FingertipContact& contact = contacts_[finger];
     if (!contact.touching) continue;
-    contact.stiffness = whole_cloth_->stiffness(finger, settings_.time_step);
+    if (!held_[finger].isHeld()) {
+      contact.stiffness = whole_cloth_->stiffness(finger, settings_.time_step);
+    }
     sendBack(
         contact, touched, [this](int particle) { return whole_cloth_->restCoordinates(particle); },
         [this](const TouchedParticle& point) {
@@ -280,15 +322,15 @@ void HapticLayer::fillContact(Finger finger, const std::vector<TouchedParticle>&
   contact.touching = !touched.empty();
   if (!contact.touching) return;
   const Fingertip& fingertip = *present_[finger];
-  contact.position = fingertip.position;
-  contact.velocity = fingertip.velocity;
+  contact.position = fingertips_[finger]->position;
+  contact.velocity = fingertips_[finger]->velocity;
   double slipping = 0.0;
   for (const TouchedParticle& point : touched) contact.normal_force += point.normal_force;
   for (const TouchedParticle& point : touched) {
     const double share = shareOf(point, contact, touched.size());
     const Vector3d& place = particles.positions[point.particle];
     contact.force -= point.force();
-    contact.damping += point.damping;
+    if (!held_[finger].isHeld()) contact.damping += point.damping;
     contact.area += particles.areas[point.particle];
     contact.penetration = std::max(contact.penetration, point.depth);
     contact.centre += share * place;

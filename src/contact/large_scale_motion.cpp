@@ -7,7 +7,8 @@ namespace haptex::contact {
 LargeScaleMotion::LargeScaleMotion(std::size_t particles)
     : start_(particles, Eigen::Vector3d::Zero()), target_(particles, Eigen::Vector3d::Zero()) {}
 
-void LargeScaleMotion::receive(const std::vector<Eigen::Vector3d>& positions, double period) {
+void LargeScaleMotion::receive(const std::vector<Eigen::Vector3d>& positions, double period,
+                               double time) {
   if (has_state_) {
     for (std::size_t i = 0; i < start_.size(); ++i) start_[i] = position(static_cast<int>(i));
     progress_ = 0.0;
@@ -17,6 +18,7 @@ void LargeScaleMotion::receive(const std::vector<Eigen::Vector3d>& positions, do
   }
   std::copy(positions.begin(), positions.end(), target_.begin());
   period_ = period;
+  time_ = time;
   has_state_ = true;
 }
 

@@ -20,13 +20,6 @@ using proximity::SurfaceDistance;
 constexpr double kOffset = ObstacleCollision::kOffset;
 constexpr double kUntouched = 0.5 * kOffset;  // m, from here on a path has hit the surface
 
-double frictionOf(const mesh::Obstacle& obstacle, const material::Fabric& fabric) {
-  if (obstacle.friction) return *obstacle.friction;
-  if (fabric.friction) return *fabric.friction;
-  throw std::invalid_argument("obstacle '" + obstacle.name + "' has no friction and fabric '" +
-                              fabric.name + "' has none: add the key friction to one of them");
-}
-
 /// Of a cloth that collides with itself.
 void requireApart(const mesh::ClothMesh& mesh, const std::string& name,
                   const RigidObstacle& shape) {
@@ -59,7 +52,7 @@ void ObstacleCollision::addObstacle(const cloth::Cloth& cloth, const mesh::Obsta
   shape.setPose(Eigen::Isometry3d::Identity());
   const double reach = shape.boundingRadius() + kOffset;
   PlacedObstacle placed{std::move(shape), reach, obstacle.pose, obstacle.pose,
-                        frictionOf(obstacle, cloth.fabric())};
+                        frictionOn(obstacle, cloth.fabric())};
   if (obstacle.body) {
     placed.body = static_cast<int>(bodies_.size());
     bodies_.emplace_back(obstacle);
@@ -96,7 +89,7 @@ void ObstacleCollision::setPenalty(double stiffness) {
 }
 
 void ObstacleCollision::requireFriction(const material::Fabric& fabric) const {
-  for (const mesh::Obstacle& obstacle : obstacles_) frictionOf(obstacle, fabric);
+  for (const mesh::Obstacle& obstacle : obstacles_) frictionOn(obstacle, fabric);
 }
 
 cloth::StepReport ObstacleCollision::step(cloth::Cloth& cloth, cloth::Integrator& integrator,
@@ -127,7 +120,7 @@ cloth::StepReport ObstacleCollision::step(cloth::Cloth& cloth, cloth::Integrator
 
 void ObstacleCollision::placeObstacles(const cloth::Cloth& cloth, double begin, double end) {
   for (std::size_t i = 0; i < placed_.size(); ++i) {
-    placed_[i].friction = frictionOf(obstacles_[i], cloth.fabric());
+    placed_[i].friction = frictionOn(obstacles_[i], cloth.fabric());
     if (placed_[i].body >= 0) {
       placed_[i].begin = placed_[i].end = bodies_[placed_[i].body].pose();
       continue;

@@ -1,6 +1,7 @@
 #include "haptex/contact/obstacles.h"
 
 #include <cstddef>
+#include <stdexcept>
 #include <variant>
 
 namespace haptex::contact {
@@ -29,6 +30,13 @@ RigidObstacle makeObstacle(const mesh::Obstacle& obstacle, double time) {
   RigidObstacle made = std::visit(MakeShape{}, obstacle.shape);
   made.setPose(time == 0.0 ? obstacle.pose : obstacle.poseAt(time));
   return made;
+}
+
+double frictionOn(const mesh::Obstacle& obstacle, const material::Fabric& fabric) {
+  if (obstacle.friction) return *obstacle.friction;
+  if (fabric.friction) return *fabric.friction;
+  throw std::invalid_argument("obstacle '" + obstacle.name + "' has no friction and fabric '" +
+                              fabric.name + "' has none: add the key friction to one of them");
 }
 
 int firstTouching(const std::vector<std::array<int, 3>>& triangles,

@@ -58,7 +58,8 @@ linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& 
 }  // namespace
 
 Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
-             const cloth::ModelledEffects& effects, const ContactLaw& law)
+             const cloth::ModelledEffects& effects, const ContactLaw& law,
+             const PlacedObstacles* obstacles)
     : cut_(std::move(cut)),
       effects_(effects),
       forces_(forcesOn(cut_.mesh, fabric, effects)),
@@ -71,6 +72,9 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabr
       solution_(3, cut_.free_count) {
   forces_.bind(matrix_);
   if (effects.self_collision) layers_.emplace(coarse, cut_, 2.0 * law.halfThickness(), areas_);
+  if (obstacles != nullptr && !obstacles->bodies().empty()) {
+    obstacles_.emplace(*obstacles, *fabric.compression, law.tangentialStiffness(), cut_.free_count);
+  }
   const std::size_t count = cut_.supports.size();
   for (int owner : cut_.owners) corners_.push_back(coarse.triangles[owner]);
   state_.positions.assign(count, Vector3d::Zero());
@@ -98,6 +102,10 @@ Particles Patch::particlesAt(const std::vector<Vector3d>& positions, Finger fing
           single ? nullptr : &layers_->before(finger)};
 }
 
+Particles Patch::atObstacles(const std::vector<Vector3d>& positions) const {
+  return {positions, state_.velocities, areas_, cut_.free_count};
+}
+
 void Patch::start(const LargeScaleMotion& motion) {
   for (std::size_t i = 0; i < particleCount(); ++i) {
     state_.positions[i] = placeOnCloth(static_cast<int>(i), motion);
@@ -107,6 +115,10 @@ void Patch::start(const LargeScaleMotion& motion) {
     contact_forces_[i] = 0.0;
   }
   if (layers_) layers_->clear();
+  if (obstacles_) {
+    obstacles_->clear();
+    obstacles_->commit(atObstacles(state_.positions));
+  }
   for (const Finger finger : kFingers) {
     contacts_[finger].clear();
     linearised_[finger].clear();
@@ -137,6 +149,7 @@ void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
       detours_[i] = state_.positions[i] - placeOnCloth(i, motion);
     } else if (was_free) {
       if (layers_) layers_->adopt(i, *other.layers_, k);
+      if (obstacles_) obstacles_->adopt(i, *other.obstacles_, k);
       tethers_[i] = other.tethers_[k];
       for (const Finger finger : kFingers)
         contacts_[finger].adoptAnchor(i, other.contacts_[finger], k);
@@ -169,6 +182,11 @@ void Patch::assemble(const LargeScaleMotion& motion, double h) {
   forces_.assembleLinearised(state_.ofForces(), {h, h}, matrix_, rhs_);
 }
 
+void Patch::add(const TouchedParticle& touched, double h) {
+  rhs_.col(touched.particle) += h * touched.force();
+  matrix_.diagonal(touched.particle) += h * h * touched.stiffness + h * touched.damping;
+}
+
 void Patch::addContact(const base::PerFinger<const Fingertip*>& fingertips, double h) {
   for (int i = 0; i < cut_.free_count; ++i) {
     predicted_[i] = state_.positions[i] + h * state_.velocities[i];
@@ -179,9 +197,12 @@ void Patch::addContact(const base::PerFinger<const Fingertip*>& fingertips, doub
     for (const TouchedParticle& touched :
          contacts_[finger].evaluate(particlesAt(predicted_, finger), *fingertips[finger])) {
       linearised_[finger].push_back(touched);
-      rhs_.col(touched.particle) += h * touched.force();
-      matrix_.diagonal(touched.particle) += h * h * touched.stiffness + h * touched.damping;
+      add(touched, h);
     }
+  }
+  if (!obstacles_) return;
+  for (const TouchedParticle& touched : obstacles_->evaluate(atObstacles(predicted_))) {
+    add(touched, h);
   }
 }
 
@@ -204,6 +225,7 @@ bool Patch::advance(const LargeScaleMotion& motion,
     contact_forces_[i] = 0.0;
   }
   state_.time += h;
+  if (obstacles_) obstacles_->commit(atObstacles(state_.positions));
   for (const Finger finger : kFingers) {
     if (!fingertips[finger]) {
       contacts_[finger].clear();

@@ -13,6 +13,23 @@ constexpr double kNoDirection = 1e-9;  // m from the centre: no normal can be to
 
 }  // namespace
 
+void addFriction(const Vector3d& offset, double sticking, double coefficient,
+                 TouchedParticle& contact) {
+  const Matrix3d across = Matrix3d::Identity() - contact.normal * contact.normal.transpose();
+  const Vector3d anchored = across * offset;
+  const double limit = coefficient * contact.normal_force;
+  const double pull = sticking * anchored.norm();
+  contact.slips = pull > limit;
+  const double held = contact.slips ? sticking * limit / pull : sticking;
+  contact.friction = -held * anchored;
+  contact.tangent = contact.stiffness + held * across;
+  contact.stiffness = contact.tangent;
+  if (contact.slips) {
+    const Vector3d direction = anchored.normalized();
+    contact.tangent -= held * direction * direction.transpose();
+  }
+}
+
 SphereContact::SphereContact(const ContactLaw& law, std::size_t most_particles)
     : law_(law), anchors_(most_particles) {
   touched_.reserve(most_particles);
@@ -51,27 +68,14 @@ bool SphereContact::touch(int i, const Particles& particles, const Fingertip& fi
   result.depth = reach - distance;
   result.normal_force = std::max(0.0, area * pressure.stress + damping * approach);
   const Matrix3d along = normal * normal.transpose();
-  const Matrix3d across = Matrix3d::Identity() - along;
   const bool pushes = result.normal_force > 0.0;
   result.stiffness = (pushes ? area * pressure.slope : 0.0) * along;
   result.damping = (pushes ? damping : 0.0) * along;
 
-  const double sticking = law_.tangentialStiffness() * area;
-  const double limit = law_.friction() * result.normal_force;
   const Anchor& anchor = anchors_[i];
-  const Vector3d anchored = anchor.holds
-                                ? Vector3d(across * (offset - fingertip.orientation * anchor.place))
-                                : Vector3d(Vector3d::Zero());
-  const double pull = sticking * anchored.norm();
-  result.slips = pull > limit;
-  const double held = result.slips ? sticking * limit / pull : sticking;
-  result.friction = -held * anchored;
-  result.tangent = result.stiffness + held * across;
-  result.stiffness = result.tangent;
-  if (result.slips) {
-    const Vector3d direction = anchored.normalized();
-    result.tangent -= held * direction * direction.transpose();
-  }
+  const Vector3d anchored = anchor.holds ? Vector3d(offset - fingertip.orientation * anchor.place)
+                                         : Vector3d(Vector3d::Zero());
+  addFriction(anchored, law_.tangentialStiffness() * area, law_.friction(), result);
   return true;
 }
 

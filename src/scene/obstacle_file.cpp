@@ -19,23 +19,6 @@ constexpr double kLightest = 1e-6;        // kg
 constexpr double kHeaviest = 1e6;         // kg
 const std::vector<std::string> kShapes = {"sphere", "box", "capsule", "mesh"};
 
-Eigen::Vector3d readPosition(const YamlValue& value) {
-  const Eigen::Vector3d position = readVector(value);
-  for (int i = 0; i < 3; ++i) {
-    if (std::abs(position[i]) > kMaxSize) value.items(3)[i].refuse("must be from -100 to 100 m");
-  }
-  return position;
-}
-
-// As in URDF: rotations about the fixed axes x, y and z, in this order.
-Eigen::Matrix3d readRotation(const YamlValue& value) {
-  const Eigen::Vector3d rpy = readVector(value);
-  return (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
-}
-
 mesh::ObstacleBox readBox(const YamlValue& value) {
   const auto sides = value.items(3);
   return {{readSize(sides[0]), readSize(sides[1]), readSize(sides[2])}};
@@ -142,9 +125,7 @@ mesh::Obstacle readObstacle(const YamlValue& value) {
   mesh::Obstacle obstacle;
   obstacle.name = value.at("name").text();
   obstacle.shape = readShape(value);
-  obstacle.pose.setIdentity();
-  obstacle.pose.translation() = readPosition(value.at("position"));
-  if (value.has("rpy")) obstacle.pose.linear() = readRotation(value.at("rpy"));
+  obstacle.pose = readPose(value);
   obstacle.motion = readMotion(value);
   if (value.has("body")) {
     requireFree(value);

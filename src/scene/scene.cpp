@@ -42,7 +42,7 @@ int cellsOf(const YamlValue& sheet, double length, double cell_size) {
 
 /// @param cell_size m, of the longest edge along weft or warp; 0: the cells of the file
 mesh::ClothMesh readSheet(const YamlValue& value, double cell_size) {
-  value.requireKeys({"size", "cells", "diagonals"});
+  value.requireKeys({"size", "cells", "diagonals"}, {"position", "rpy"});
   const auto size = value.at("size").items(2);
   const auto cells = value.at("cells").items(2);
   const double width = readSize(size[0]), height = readSize(size[1]);
@@ -59,6 +59,10 @@ mesh::ClothMesh readSheet(const YamlValue& value, double cell_size) {
   mesh::ClothMesh mesh = mesh::makeRectangle(
       width, height, cells_u, cells_v,
       one_way ? mesh::Triangulation::kOneWay : mesh::Triangulation::kAlternating);
+  if (value.has("position") || value.has("rpy")) {
+    const Eigen::Isometry3d pose = readPose(value);
+    for (Eigen::Vector3d& position : mesh.initial_positions) position = pose * position;
+  }
   try {
     requireSound(mesh);
   } catch (const std::invalid_argument& defects) {

@@ -1,5 +1,6 @@
 #include "haptex/scene/scene_values.h"
 
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <vector>
@@ -22,6 +23,14 @@ std::string namesIn(const fs::path& directory, const std::string& extension) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   return names.empty() ? "none" : list;
+}
+
+Eigen::Matrix3d readRotation(const YamlValue& value) {
+  const Eigen::Vector3d rpy = readVector(value);
+  return (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
 }
 
 }  // namespace
@@ -60,6 +69,21 @@ void requireTriangleCount(const YamlValue& value, long long triangles) {
     value.refuseBecause(std::to_string(triangles) + " triangles, at most " +
                         std::to_string(kMaxTriangles) + " are allowed");
   }
+}
+
+Eigen::Vector3d readPosition(const YamlValue& value) {
+  const Eigen::Vector3d position = readVector(value);
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(position[i]) > kMaxSize) value.items(3)[i].refuse("must be from -100 to 100 m");
+  }
+  return position;
+}
+
+Eigen::Isometry3d readPose(const YamlValue& value) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (value.has("position")) pose.translation() = readPosition(value.at("position"));
+  if (value.has("rpy")) pose.linear() = readRotation(value.at("rpy"));
+  return pose;
 }
 
 }  // namespace haptex::scene

@@ -155,7 +155,7 @@ void ForceLoop::receiveState(double period) {
     ++status_.other_sizes;
     return;
   }
-  layer_->receive(state.positions, state.velocities, period);
+  layer_->receive(state.positions, state.velocities, period, state.simulated_time);
 }
 
 void ForceLoop::takeFingers(Time now) {
@@ -222,6 +222,10 @@ void ForceLoop::step() {
       ++status_.rejected_steps;
       liveness_.restart();
     }
+  }
+  for (const Finger finger : kFingers) {
+    // The patch is needed where the cloth holds the fingertip.
+    if (layer_ && layer_->held(finger)) view_.fingertips[finger] = layer_->held(finger);
   }
   static const contact::FingertipContact no_contact;
   for (const Finger finger : kFingers) {

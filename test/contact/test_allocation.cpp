@@ -21,7 +21,11 @@ TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
     const bool patches = kind == HapticSettings::Layer::kPatch;
     cloth::ModelledEffects effects{true, {0.0, 0.0, -9.81}};
     effects.self_collision = patches;
-    HapticLayer layer(mesh, wool(), effects, settings);
+    effects.contacts = patches;
+    const Eigen::Isometry3d behind(Eigen::Translation3d(-0.03, 0.0, -0.02));
+    mesh::Obstacle ball{"ball", mesh::ObstacleSphere{0.0298}, behind};
+    ball.motion = mesh::ObstacleDrift{{1e-4, 0.0, 0.0}};
+    HapticLayer layer(mesh, wool(), effects, settings, {ball});
     const auto prepare = [&](double u) {
       return layer.preparePatch(trianglesAround(mesh, {u, 0.02}, 0.01), nothingAttached(mesh));
     };

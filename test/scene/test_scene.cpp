@@ -34,6 +34,24 @@ TEST_F(SceneFile, ReadsOneWayDiagonals) {
             mesh::makeRectangle(0.3, 0.2, 3, 2, mesh::Triangulation::kOneWay).triangles);
 }
 
+TEST_F(SceneFile, LaysASheetWhereItsPoseSays) {
+  const Scene scene =
+      load(replaced(kValid, "alternating",
+                    "alternating, position: [0.1, 0, 0.5], rpy: [0, -1.5707963267948966, 0]"));
+  const mesh::ClothMesh upright =
+      mesh::makeRectangle(0.3, 0.2, 3, 2, mesh::Triangulation::kAlternating);
+  for (std::size_t i = 0; i < upright.initial_positions.size(); ++i) {
+    const Eigen::Vector3d& place =
+        upright.initial_positions[i];  // warp along z, in the plane x = 0
+    const Eigen::Vector3d lying(0.1 - place.z(), place.y(), 0.5 + place.x());
+    EXPECT_LT((scene.mesh.initial_positions[i] - lying).norm(), 1e-12);
+  }
+  EXPECT_EQ(scene.mesh.rest_coordinates, upright.rest_coordinates);
+  EXPECT_NE(refusalOf(replaced(kValid, "alternating", "alternating, position: [0, 0, 101]"))
+                .find("must be from -100 to 100 m"),
+            std::string::npos);
+}
+
 TEST_F(SceneFile, ModelsOnlyWhatIsListed) {
   const Scene both = load(kValid);
   EXPECT_TRUE(both.effects.viscosity);
@@ -301,8 +319,8 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{
                        "acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet", "linear_sheet",
-                       "net", "orbiting_sphere", "sphere_mass_spring", "wool_among_obstacles",
-                       "wool_in_wind", "wool_sample"}));
+                       "net", "orbiting_sphere", "sphere_mass_spring", "table",
+                       "wool_among_obstacles", "wool_in_wind", "wool_sample"}));
 }
 
 TEST(ShippedScenes, WoolSampleIsTheTwoHundredMillimetreSquare) {

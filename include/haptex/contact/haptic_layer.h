@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -11,7 +12,9 @@
 #include "haptex/contact/contact_law.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/haptic_settings.h"
+#include "haptex/contact/held_fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
+#include "haptex/contact/obstacle_contact.h"
 #include "haptex/contact/patch.h"
 #include "haptex/contact/patch_selection.h"
 #include "haptex/contact/whole_cloth_contact.h"
@@ -65,12 +68,12 @@ class HapticLayer {
   static constexpr std::size_t kMaxContactPoints = 1024;
 
   /// @param mesh, fabric, effects those of the large-scale layer
-  /// @throws std::invalid_argument what requireTouchable() or cloth::Cloth throws, or if the mesh
-  /// has
-  ///   several panels
+  /// @param obstacles of the scene; patches touch them if effects has contacts
+  /// @throws std::invalid_argument what requireTouchable(), cloth::Cloth or PlacedObstacles throws,
+  ///   or if the mesh has several panels
   HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric, const cloth::ModelledEffects& effects,
-              const HapticSettings& settings);
-  // Its patches refer to its contact law.
+              const HapticSettings& settings, std::vector<mesh::Obstacle> obstacles = {});
+  // Its patches refer to its contact law and its obstacles.
   HapticLayer(const HapticLayer&) = delete;
   HapticLayer& operator=(const HapticLayer&) = delete;
 
@@ -89,10 +92,11 @@ class HapticLayer {
   /// A state of the large-scale layer. From now on the layer moves from where it is to this state
   /// within `period`, so it follows one period behind, and never jumps.
   /// @param period s, of simulated time since the last state; > 0
+  /// @param time s, simulated, of the state: obstacles that move are where they were then
   /// @throws std::invalid_argument if the sizes differ from the mesh or a number is not finite;
   ///   nothing has changed then
   void receive(const std::vector<Eigen::Vector3d>& positions,
-               const std::vector<Eigen::Vector3d>& velocities, double period);
+               const std::vector<Eigen::Vector3d>& velocities, double period, double time = 0.0);
 
   /// Goes on with another patch: particles that both have keep their state, others come from the
   /// large-scale state; forces do not jump.
@@ -110,11 +114,15 @@ class HapticLayer {
   std::size_t particleCount() const { return patch_ ? patch_->particleCount() : 0; }
   const Patch* patch() const { return patch_.get(); }
 
+  /// Where the fingertips of the last step are in contact; they differ from where the person has
+  /// them where the cloth holds them (HeldFingertip).
+  const std::optional<Fingertip>& held(base::Finger finger) const { return held_[finger].held(); }
   const base::PerFinger<FingertipContact>& contacts() const { return contacts_; }
   /// What acts on the large-scale cloth, see cloth::Cloth::setPointLoads().
   const std::vector<cloth::PointLoad>& loads() const { return loads_; }
 
  private:
+  void hold(const Fingertips& fingertips);
   void stepPatch();
   void stepWholeCloth();
   void startAgain();
@@ -131,13 +139,17 @@ class HapticLayer {
   material::Fabric fabric_;
   cloth::ModelledEffects effects_;
   ContactLaw law_;
+  PlacedObstacles obstacles_;
   MeshTopology topology_;
   LargeScaleMotion motion_;
   std::unique_ptr<Patch> patch_;
   CondensedStiffness stiffness_;
   std::unique_ptr<WholeClothContact> whole_cloth_;  // null with patches
-  Fingertips fingertips_;
-  base::PerFinger<const Fingertip*> present_{};  // into fingertips_
+  Fingertips fingertips_;                           // where the person has them
+  base::PerFinger<HeldFingertip> held_;
+  base::PerFinger<const Fingertip*> present_{};  // into held_
+  // m, at the last two states of the large-scale layer.
+  base::PerFinger<std::array<std::optional<Eigen::Vector3d>, 2>> places_at_states_;
   base::PerFinger<FingertipContact> contacts_;
   std::vector<cloth::PointLoad> loads_;
   bool last_step_accepted_ = true;

@@ -16,12 +16,18 @@ class LargeScaleMotion {
 
   /// @param positions m, one per particle, finite
   /// @param period    s, > 0, until they are reached
-  void receive(const std::vector<Eigen::Vector3d>& positions, double period);
+  /// @param time      s, simulated, of the positions
+  void receive(const std::vector<Eigen::Vector3d>& positions, double period, double time = 0.0);
   /// @param seconds > 0
   void advance(double seconds);
 
   bool hasState() const { return has_state_; }
   double period() const { return period_; }  ///< s, of the newest state
+  /// s, until the newest state is reached.
+  double remaining() const { return (1.0 - progress_) * period_; }
+  /// s, simulated, at which the cloth was where it is now: one period before that of the newest
+  /// state when it comes.
+  double time() const { return time_ - remaining(); }
   std::size_t particleCount() const { return target_.size(); }
   Eigen::Vector3d position(int particle) const {  ///< m
     return start_[particle] + progress_ * (target_[particle] - start_[particle]);
@@ -31,6 +37,7 @@ class LargeScaleMotion {
   std::vector<Eigen::Vector3d> start_;
   std::vector<Eigen::Vector3d> target_;
   double period_ = 1.0;    // s
+  double time_ = 0.0;      // s, of the target
   double progress_ = 1.0;  // from start to target, 0 to 1
   bool has_state_ = false;
 };

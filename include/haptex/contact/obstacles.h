@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "haptex/material/fabric.h"
 #include "haptex/mesh/obstacle.h"
 #include "haptex/proximity/rigid_obstacle.h"
 
@@ -14,6 +15,10 @@ namespace haptex::contact {
 /// frame.
 /// @throws std::invalid_argument what the factories of RigidObstacle and setPose() say
 proximity::RigidObstacle makeObstacle(const mesh::Obstacle& obstacle, double time = 0.0);
+
+/// The coefficient of friction of a fabric on an obstacle: the obstacle's own, or the fabric's.
+/// @throws std::invalid_argument if neither has one
+double frictionOn(const mesh::Obstacle& obstacle, const material::Fabric& fabric);
 
 /// The first of a cloth's triangles that touches an obstacle, or is inside of a solid one; -1:
 /// none.

@@ -11,6 +11,7 @@
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
 #include "haptex/contact/layers_between.h"
+#include "haptex/contact/obstacle_contact.h"
 #include "haptex/contact/patch_solver.h"
 #include "haptex/contact/refined_cut.h"
 #include "haptex/contact/sphere_contact.h"
@@ -18,10 +19,10 @@
 
 namespace haptex::contact {
 
-/// Membrane with the fabric's curves, bending, gravity and contact on the triangles of a refined
-/// cut. The rim follows the large-scale cloth; the rest is stepped by linearised backward Euler.
-/// The matrix is that of the step; the factor that helps to solve with it is kept over several
-/// (PatchSolver).
+/// Membrane with the fabric's curves, bending, gravity, and contact with fingertips and obstacles
+/// on the triangles of a refined cut. The rim follows the large-scale cloth; the rest is stepped by
+/// linearised backward Euler. The matrix is that of the step; the factor that helps to solve with
+/// it is kept over several (PatchSolver).
 ///
 /// The constructor does all that needs memory; the other functions allocate nothing.
 class Patch {
@@ -29,8 +30,10 @@ class Patch {
   /// @param coarse  the mesh that was cut
   /// @param fabric  with bending
   /// @param law     for LayersBetween::kMost layers if effects are with self_collision
+  /// @param obstacles where they are at the end of each step; null: none
   Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
-        const cloth::ModelledEffects& effects, const ContactLaw& law);
+        const cloth::ModelledEffects& effects, const ContactLaw& law,
+        const PlacedObstacles* obstacles = nullptr);
 
   std::size_t particleCount() const { return state_.positions.size(); }
   int freeCount() const { return cut_.free_count; }
@@ -79,13 +82,18 @@ class Patch {
   /// @returns 3 x freeCount(), until the next call
   const linear::BlockVector& respond(base::Finger finger, int direction);
 
+  /// Whether some particle touched an obstacle in the last step.
+  bool touchesObstacle() const { return obstacles_ && !obstacles_->touched().empty(); }
+
   /// Whether the last step took few iterations, so that there is time for a respond().
   bool stepWasShort() const { return solver_.wasShort(); }
 
  private:
   Particles particlesAt(const std::vector<Eigen::Vector3d>& positions, base::Finger finger) const;
+  Particles atObstacles(const std::vector<Eigen::Vector3d>& positions) const;
   void assemble(const LargeScaleMotion& motion, double h);
   bool solve(double h);
+  void add(const TouchedParticle& touched, double h);
   void addContact(const base::PerFinger<const Fingertip*>& fingertips, double h);
 
   RefinedCut cut_;
@@ -95,6 +103,7 @@ class Patch {
   std::vector<double> areas_;            // m^2, per particle
   std::vector<double> masses_;           // kg
   std::optional<LayersBetween> layers_;  // of cloth that collides with itself
+  std::optional<ObstacleContact> obstacles_;
   linear::SymmetricBlockMatrix matrix_;
   PatchSolver solver_;
 

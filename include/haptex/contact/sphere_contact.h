@@ -38,11 +38,18 @@ struct TouchedParticle {
   Eigen::Vector3d force() const { return normal_force * normal + friction; }  ///< N
 };
 
+/// Completes a contact that has all but friction: holds it by a spring to its anchor, that gives
+/// way where it would pull with more than the coefficient times the normal force (Coulomb friction
+/// by return mapping: Simo and Hughes 1998, chapter 1).
+/// @param offset   m, of the particle from its anchor, of which the part along the surface counts
+/// @param sticking N/m, > 0
+void addFriction(const Eigen::Vector3d& offset, double sticking, double coefficient,
+                 TouchedParticle& contact);
+
 /// Every particle deeper than zero is pushed out along the line from the fingertip's centre with
 /// the pressure of the contact law times its area, and held by friction: a spring to an anchor on
-/// the turning fingertip, that is dragged along when it pulls with more than the coefficient of
-/// friction times the normal force (Coulomb friction by return mapping: Simo and Hughes 1998,
-/// chapter 1). Nothing allocates after the constructor.
+/// the turning fingertip, that is dragged along when it slips (addFriction()). Nothing allocates
+/// after the constructor.
 class SphereContact {
  public:
   /// @param most_particles that will ever be asked about

@@ -1,7 +1,7 @@
 // Values that several parts of a scene file have in common.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string>
 
 #include "haptex/base/yaml_reader.h"
@@ -24,6 +24,15 @@ Eigen::Vector3d readVector(const base::YamlValue& value);
 /// A length (m), > 0 and at most kMaxSize.
 /// @throws std::invalid_argument naming file, key, value and what is allowed
 double readSize(const base::YamlValue& value);
+
+/// A place (m), each coordinate at most kMaxSize from 0.
+/// @throws std::invalid_argument naming file, key, value and what is allowed
+Eigen::Vector3d readPosition(const base::YamlValue& value);
+
+/// The pose that the keys `position` (m) and `rpy` (rad) of a map give, each zero if not given. As
+/// in URDF: rotations about the fixed axes x, y and z, in this order.
+/// @throws std::invalid_argument naming file, key, value and what is allowed
+Eigen::Isometry3d readPose(const base::YamlValue& value);
 
 /// @throws std::invalid_argument naming file, key, number and the most that are allowed
 void requireTriangleCount(const base::YamlValue& value, long long triangles);

@@ -42,7 +42,8 @@ struct LoopView {
   std::uint64_t states = 0;    ///< of the cloth, taken so far
   std::uint64_t loadings = 0;  ///< times that the loads were due to be sent, so far
   double state_period = 0.0;   ///< s, of simulated time, between the last two
-  /// Where they were last, also of one that is silent: its patch stays for when it is back.
+  /// Where they were last, or the cloth holds them; also of one that is silent: its patch stays for
+  /// when it is back.
   contact::Fingertips fingertips;
   std::vector<cloth::PointLoad> loads;
   double load_gain = 0.0;  ///< share of them that is to act

@@ -12,6 +12,7 @@ LayerBuilder::LayerBuilder(const std::string& scene_path)
     : settings_(contact::loadHapticSettings(scene_path)) {
   const scene::Scene scene = scene::loadScene(scene_path);
   effects_ = scene.effects;
+  obstacles_ = scene.obstacles;
   fabric_path_ = scene.fabric_path;
 }
 
@@ -19,7 +20,8 @@ std::unique_ptr<contact::HapticLayer> LayerBuilder::build(const haptex::ClothMes
   mesh::ClothMesh mesh = clothMesh(message);
   try {
     return std::make_unique<contact::HapticLayer>(
-        std::move(mesh), fabricOfCloth(message.fabric, fabric_path_).fabric, effects_, settings_);
+        std::move(mesh), fabricOfCloth(message.fabric, fabric_path_).fabric, effects_, settings_,
+        obstacles_);
   } catch (const std::exception& error) {
     throw std::invalid_argument("fabric '" + message.fabric + "': " + error.what());
   }

@@ -30,7 +30,7 @@ cloth::StepSettings settingsOf(IntegrationMethod method) {
   return settings;
 }
 
-void validateTable(const NamedIntegrationMethod& method, const Sink& sink) {
+void validateRestOnTable(const NamedIntegrationMethod& method, const Sink& sink) {
   const Obstacle table{"table", mesh::ObstacleBox{{0.3, 0.3, 0.02}}, placedAt({0.0, 0.0, -0.01})};
   CollidingCloth scene(flatSheet({0.1, 0.1}, 10, 10, placedAt({0.0, 0.0, 0.02})),
                        material::linearFabric(100.0, 0.1), base::kStandardGravity,
@@ -151,7 +151,7 @@ void validateEnergy(const NamedIntegrationMethod& method, const Sink& sink) {
 void validateContactObstacles(const Sink& sink) {
   for (const NamedIntegrationMethod& method : cloth::kIntegrationMethods) {
     if (!isImplicit(method.method)) continue;
-    validateTable(method, sink);
+    validateRestOnTable(method, sink);
     validateIncline(method, sink);
     validateEnergy(method, sink);
   }

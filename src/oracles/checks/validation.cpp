@@ -8,10 +8,11 @@ namespace haptex::oracles {
 
 const std::vector<Validation>& validations() {
   static const std::vector<Validation> all = {
-      {"material", validateMaterial},       {"cloth", validateCloth},
-      {"proximity", validateProximity},     {"self_collision", validateSelfCollision},
-      {"contact", validateContact},         {"body", validateBody},
-      {"exoskeleton", validateExoskeleton}, {"tactile", validateTactile}};
+      {"material", validateMaterial},   {"cloth", validateCloth},
+      {"proximity", validateProximity}, {"self_collision", validateSelfCollision},
+      {"contact", validateContact},     {"table", validateTable},
+      {"body", validateBody},           {"exoskeleton", validateExoskeleton},
+      {"tactile", validateTactile}};
   return all;
 }
 

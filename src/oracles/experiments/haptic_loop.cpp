@@ -32,6 +32,7 @@ scene::Scene sceneOf(const HapticLoopSettings& settings) {
   scene.effects = settings.effects;
   scene.effects.point_loads = true;
   scene.attached_particles = settings.attached_particles;
+  scene.obstacles = settings.obstacles;
   scene.time_step = settings.large_scale_step;
   scene.step = settings.step;
   return scene;
@@ -60,8 +61,8 @@ Time HapticLoop::now() const { return kStart + timeOf(time()); }
 
 void HapticLoop::offerLayer() {
   auto update = std::make_unique<simulation::LayerUpdate>();
-  update->layer = std::make_unique<contact::HapticLayer>(settings_.mesh, settings_.fabric,
-                                                         settings_.effects, settings_.haptics);
+  update->layer = std::make_unique<contact::HapticLayer>(
+      settings_.mesh, settings_.fabric, settings_.effects, settings_.haptics, settings_.obstacles);
   update->replaces_layer = true;
   update->particles = settings_.mesh.rest_coordinates.size();
   force_loop_.offer(std::move(update));

@@ -5,10 +5,12 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/contact/haptic_layer.h"
 #include "haptex/contact/haptic_settings.h"
+#include "haptex/mesh/obstacle.h"
 
 namespace haptex::nodes {
 
@@ -28,6 +30,7 @@ class LayerBuilder {
  private:
   contact::HapticSettings settings_;
   cloth::ModelledEffects effects_;
+  std::vector<mesh::Obstacle> obstacles_;
   std::string fabric_path_;
 };
 

@@ -46,6 +46,10 @@ void validateBody(const std::string& config_directory, const Sink& sink);
 /// cases, friction, refinement, and what disturbs the feel. Takes minutes.
 void validateContact(const std::string& config_directory, const Sink& sink);
 
+/// Fabric on a plate under one finger, both layers in one loop without clocks: force of a press,
+/// drag of fabric that slips, and fast fingers, which must not get through.
+void validateTable(const std::string& config_directory, const Sink& sink);
+
 /// Kinematics of the fingers of urdf/hand_exoskeleton.urdf: against differences, closed forms and
 /// what its comment says, and whether the fingertips meet.
 /// @throws std::invalid_argument naming the file if it cannot be read, and as FingerKinematics

@@ -23,7 +23,8 @@ struct HapticLoopSettings {
   material::Fabric fabric;
   cloth::ModelledEffects effects;
   std::vector<int> attached_particles;
-  double large_scale_step = 0.0125;  ///< s
+  std::vector<mesh::Obstacle> obstacles;  ///< that the cloth collides with if effects has contacts
+  double large_scale_step = 0.0125;       ///< s
   cloth::StepSettings step;
   contact::HapticSettings haptics;
   base::PerFinger<double> radii{{kIndexRadius, kThumbRadius}};  ///< m
