@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(EmulatorFaultNames, AreAllTried) {
   // Else a fault that is new in the room would not be tried above.
-  EXPECT_EQ(lineFaults().size(), 11u);
+  EXPECT_EQ(serial::lineFaults().size(), 11u);
 }
 
 TEST_F(EmulatorLine, FaultsOfTheOtherDirectionReachTheDevice) {
@@ -129,7 +129,7 @@ TEST_F(EmulatorLine, AClosedPortIsGoneAndOpensAnewBehindTheSameLink) {
   run(milliseconds(20));
   EXPECT_TRUE(port->closed());
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(link_name)));
-  EXPECT_THROW(SerialPort{link_name}, std::runtime_error);
+  EXPECT_THROW(serial::SerialPort{link_name}, std::runtime_error);
   EXPECT_FALSE(emulator.status().port_open);
   run(milliseconds(170));
   EXPECT_FALSE(emulator.status().port_open);

@@ -43,9 +43,14 @@ std::string inWords(const EmulatorFault& fault, Time left) {
 
 }  // namespace
 
+EmulatorFault parseFault(const std::string& fault, const std::string& direction, double probability,
+                         double duration) {
+  return EmulatorFault::parse(fault, direction, probability, duration, {kSaturatedSensor});
+}
+
 Emulator::Emulator(const std::string& urdf, const std::string& link, Observer observer)
     : observer_(std::move(observer)),
-      line_(link),
+      line_(link, kFrameLayout),
       device_(urdf, kDeviceSeed),
       firmware_(identity()) {
   active_faults_.reserve(kMaxFaults);
@@ -99,7 +104,7 @@ void Emulator::report(Time now) {
   const Bytes bytes = firmware_->report(stateSinceSwitchedOn(), now + kPeriod);
   line_.send(bytes, now);
   // What the firmware says of itself is to be read there only.
-  const auto state = decodeState(inspect(bytes, LineEnd::kDriver).frame);
+  const auto state = decodeState(serial::inspect(bytes, LineEnd::kDriver, kFrameLayout).frame);
   if (!state) return;
   if (state->watchdog_tripped && !last_report_.watchdog_tripped) ++watchdog_trips_;
   last_report_ = *state;
@@ -155,7 +160,7 @@ void Emulator::saturateSensors(bool saturated) {
 }
 
 void Emulator::apply(const EmulatorFault& fault, Time now) {
-  if (fault.kind == Kind::kSaturatedSensor) {
+  if (fault.kind == Kind::kDevice) {
     sensor_saturated_until_ = now + fault.duration;
     saturateSensors(fault.probability > 0.0);
   } else {

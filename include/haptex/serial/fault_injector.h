@@ -7,11 +7,13 @@
 #include <random>
 #include <vector>
 
-#include "haptex/exoskeleton/finger.h"
-#include "haptex/exoskeleton/protocol/bytes.h"
-#include "haptex/exoskeleton/protocol/serial_frame.h"
+#include "haptex/base/clock.h"
+#include "haptex/serial/bytes.h"
+#include "haptex/serial/frame.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
+
+using base::Time;
 
 /// What can happen to the frames of one direction.
 enum class LineFault {
@@ -37,7 +39,8 @@ const char* name(LineFault fault);
 /// Reproducible: what happens comes from a seeded generator. Several faults may be on at once.
 class FaultInjector {
  public:
-  explicit FaultInjector(unsigned seed);
+  /// @param layout of the frames, for faults that make others of them
+  FaultInjector(unsigned seed, const FrameLayout& layout);
 
   /// Until `end` each frame meets the fault with this probability (0 switches it off). A stall is
   /// there for all frames or for none: with this probability, decided now.
@@ -69,6 +72,7 @@ class FaultInjector {
   void enqueue(std::vector<std::uint8_t> bytes, Time now);
 
   std::mt19937 generator_;
+  FrameLayout layout_;
   std::array<Setting, kLineFaults> settings_{};
   std::deque<InTransit> line_;
   std::vector<std::uint8_t> held_back_;  // by kReorder, until the next
@@ -77,4 +81,4 @@ class FaultInjector {
   std::vector<std::uint8_t> arrived_;
 };
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

@@ -7,12 +7,14 @@
 #include <string>
 #include <thread>
 
-#include "haptex/exoskeleton/driver/port_access.h"
-#include "haptex/exoskeleton/finger.h"
-#include "haptex/exoskeleton/protocol/serial_port.h"
+#include "haptex/base/clock.h"
 #include "haptex/realtime/semaphore.h"
+#include "haptex/serial/port_access.h"
+#include "haptex/serial/serial_port.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
+
+using base::Time;
 
 /// Opens the port, and again every kRetryPeriod after it was found closed or absent. Opening and
 /// closing a port may take long, so its user, the loop, does neither.
@@ -58,4 +60,4 @@ class PortKeeper final : public PortAccess {
   std::thread thread_;
 };
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

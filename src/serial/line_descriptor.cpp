@@ -1,4 +1,4 @@
-#include "haptex/exoskeleton/protocol/line_descriptor.h"
+#include "haptex/serial/line_descriptor.h"
 
 #include <termios.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 
 LineDescriptor::~LineDescriptor() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -76,4 +76,4 @@ void throwSystemError(const std::string& path, const std::string& what) {
   throw std::runtime_error(path + ": " + what + ": " + std::strerror(errno));
 }
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 
 struct Bytes {
   const std::uint8_t* data = nullptr;
@@ -13,4 +13,4 @@ struct Bytes {
   bool empty() const { return size == 0; }
 };
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <string>
 
-#include "haptex/exoskeleton/protocol/bytes.h"
+#include "haptex/serial/bytes.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 
 /// Of a serial line to a device, see docs/serial_protocol.md. A pseudo-terminal ignores it.
 constexpr int kBaudRate = 921600;
@@ -60,4 +60,4 @@ void makeRaw(int descriptor, const std::string& path);
 /// @throws std::runtime_error "path: what: " and what errno means
 [[noreturn]] void throwSystemError(const std::string& path, const std::string& what);
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

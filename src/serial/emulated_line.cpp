@@ -1,10 +1,10 @@
-#include "haptex/exoskeleton/emulator/emulated_line.h"
+#include "haptex/serial/emulated_line.h"
 
 #include <exception>
 
-#include "haptex/exoskeleton/protocol/serial_frame.h"
+#include "haptex/serial/frame.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 namespace {
 
 constexpr std::size_t kBufferSize = 4096;  // bytes, many periods' worth
@@ -13,11 +13,12 @@ constexpr unsigned kFromDeviceSeed = 2;
 
 }  // namespace
 
-EmulatedLine::EmulatedLine(const std::string& link)
+EmulatedLine::EmulatedLine(const std::string& link, const FrameLayout& layout)
     : link_(link),
+      layout_(layout),
       terminal_(std::make_unique<PseudoTerminal>(link)),
-      to_device_(kToDeviceSeed),
-      from_device_(kFromDeviceSeed),
+      to_device_(kToDeviceSeed, layout),
+      from_device_(kFromDeviceSeed, layout),
       buffer_(kBufferSize) {
   statistics_.ports = 1;
 }
@@ -56,7 +57,7 @@ void EmulatedLine::sendSingly(Bytes bytes, Time now) {
   std::size_t between = 0;
   while (between < bytes.size) {
     const Inspection found =
-        inspect({bytes.data + between, bytes.size - between}, LineEnd::kDevice);
+        inspect({bytes.data + between, bytes.size - between}, LineEnd::kDevice, layout_);
     if (found.verdict != FrameVerdict::kGood) {
       ++between;
       continue;
@@ -90,4 +91,4 @@ void EmulatedLine::reopen(Time now) {
   }
 }
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

@@ -1,4 +1,4 @@
-// The serial line of the emulated exoskeleton: a pseudo-terminal with faults in both directions.
+// The serial line of an emulated device: a pseudo-terminal with faults in both directions.
 #pragma once
 
 #include <cstdint>
@@ -6,13 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "haptex/exoskeleton/emulator/emulator_fault.h"
-#include "haptex/exoskeleton/emulator/fault_injector.h"
-#include "haptex/exoskeleton/finger.h"
-#include "haptex/exoskeleton/protocol/bytes.h"
-#include "haptex/exoskeleton/protocol/pseudo_terminal.h"
+#include "haptex/base/clock.h"
+#include "haptex/serial/bytes.h"
+#include "haptex/serial/emulator_fault.h"
+#include "haptex/serial/fault_injector.h"
+#include "haptex/serial/frame.h"
+#include "haptex/serial/pseudo_terminal.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
+
+using base::Time;
 
 /// Counts since the construction, no units.
 struct LineStatistics {
@@ -28,9 +31,9 @@ class EmulatedLine {
   /// How long to wait before trying again to open a port that could not be opened.
   static constexpr Time kRetryPeriod = std::chrono::milliseconds(100);
 
-  /// @param link symbolic link to the port, see PseudoTerminal
+  /// @param link symbolic link to the port, see PseudoTerminal @param layout of the frames
   /// @throws std::runtime_error as PseudoTerminal
-  explicit EmulatedLine(const std::string& link);
+  EmulatedLine(const std::string& link, const FrameLayout& layout);
 
   /// A fault of kind kLine or kClosedPort.
   void inject(const EmulatorFault& fault, Time now);
@@ -57,6 +60,7 @@ class EmulatedLine {
   void reopen(Time now);
 
   std::string link_;
+  FrameLayout layout_;
   std::unique_ptr<PseudoTerminal> terminal_;  // none while the port is closed
   Time reopen_at_{0};
   std::string trouble_;
@@ -66,4 +70,4 @@ class EmulatedLine {
   LineStatistics statistics_;
 };
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

@@ -1,4 +1,4 @@
-#include "haptex/exoskeleton/protocol/pseudo_terminal.h"
+#include "haptex/serial/pseudo_terminal.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 namespace {
 
 int open() {
@@ -86,4 +86,4 @@ bool PseudoTerminal::write(Bytes bytes) {
   return line_.write(bytes).accepted;
 }
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

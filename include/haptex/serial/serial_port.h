@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
-#include "haptex/exoskeleton/protocol/bytes.h"
-#include "haptex/exoskeleton/protocol/line_descriptor.h"
+#include "haptex/serial/bytes.h"
+#include "haptex/serial/line_descriptor.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 
 /// Closed when destroyed. read() and write() do not allocate.
 class SerialPort {
@@ -38,4 +38,4 @@ class SerialPort {
   bool closed_ = false;
 };
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

@@ -16,11 +16,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/exoskeleton/protocol/pseudo_terminal.h"
-#include "haptex/exoskeleton/protocol/serial_port.h"
-#include "serial_fixtures.h"
+#include "byte_fixtures.h"
+#include "haptex/serial/pseudo_terminal.h"
+#include "haptex/serial/serial_port.h"
 
-namespace haptex::exoskeleton::test_serial_port {
+namespace haptex::serial::test_serial_port {
 namespace {
 
 constexpr int kLongEnough = 10000;  // ms, for the system to bring bytes that were written
@@ -209,10 +209,11 @@ TEST(SerialPort, DropsWhatCameBeforeItWasOpened) {
 TEST(SerialPort, WritesAllOrNothingOnALineThatIsFull) {
   PseudoTerminal device;
   SerialPort driver(device.path());
+  constexpr std::size_t kPiece = 20;  // bytes
   ByteVector accepted;
   int refused = 0;
   for (int i = 0; i < 20000 && refused < 3; ++i) {
-    const ByteVector frame = frameOf(commandOf(DriveMode::kForce, i), static_cast<std::uint8_t>(i));
+    const ByteVector frame = ByteVector(kPiece, static_cast<std::uint8_t>(i));
     if (driver.write(view(frame))) {
       EXPECT_EQ(refused, 0) << "nobody has read since";
       append(accepted, frame);
@@ -223,8 +224,8 @@ TEST(SerialPort, WritesAllOrNothingOnALineThatIsFull) {
   ASSERT_EQ(refused, 3);
   EXPECT_FALSE(driver.closed());
   // The end of the last one may still have to be written; it goes before the next.
-  ByteVector arrived = readFrom(device, accepted.size() - kLongestFrame);
-  const ByteVector last = frameOf(DeviceCommand{}, 99);
+  ByteVector arrived = readFrom(device, accepted.size() - kPiece);
+  const ByteVector last = ByteVector(kPiece, 99);
   ASSERT_TRUE(driver.write(view(last)));
   append(accepted, last);
   append(arrived, readFrom(device, accepted.size() - arrived.size()));
@@ -338,4 +339,4 @@ TEST(PseudoTerminal, SaysWhyALinkCannotBeMade) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton::test_serial_port
+}  // namespace haptex::serial::test_serial_port

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "haptex/exoskeleton/protocol/serial_frame.h"
+#include "haptex/serial/frame.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 
 /// Counts since the construction, no units. A corrupt frame, an impossible length and an unknown
 /// type are also what garbage looks like that contains the sync bytes.
@@ -19,11 +19,11 @@ struct ParserStatistics {
 };
 
 /// After anything that is not a good frame the search goes on with the byte behind its first, so
-/// no good frame is lost to a damaged one before it. Holds at most kLongestFrame bytes, never
-/// allocates.
+/// no good frame is lost to a damaged one before it. Holds at most the protocol's longest
+/// frame, never allocates.
 class FrameParser {
  public:
-  explicit FrameParser(LineEnd end) : end_(end) {}
+  FrameParser(LineEnd end, const FrameLayout& layout) : end_(end), layout_(layout) {}
 
   /// Takes bytes from the front of `bytes` until a frame is complete. @returns the frame, valid
   /// until the next call, or nullptr once all bytes are taken:
@@ -43,6 +43,7 @@ class FrameParser {
   void dropGarbage(FrameVerdict verdict);
 
   LineEnd end_;
+  FrameLayout layout_;
   FrameBuffer buffer_{};
   std::size_t size_ = 0;
   std::size_t finished_ = 0;  // bytes at the front of the buffer that were handed out as a frame
@@ -50,4 +51,4 @@ class FrameParser {
   ParserStatistics statistics_;
 };
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

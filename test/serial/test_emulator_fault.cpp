@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/exoskeleton/emulator/emulator_fault.h"
+#include "haptex/serial/emulator_fault.h"
 
-namespace haptex::exoskeleton::test_emulator_fault {
+namespace haptex::serial::test_emulator_fault {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 std::string refusal(const std::string& fault, const std::string& direction, double probability,
                     double duration) {
   try {
-    EmulatorFault::parse(fault, direction, probability, duration);
+    EmulatorFault::parse(fault, direction, probability, duration, {"saturated_sensor"});
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -25,7 +25,7 @@ std::string refusal(const std::string& fault, const std::string& direction, doub
 
 TEST(EmulatorFault, KnowsEveryFaultOfTheLineByItsName) {
   for (const LineFault fault : lineFaults()) {
-    const EmulatorFault parsed = EmulatorFault::parse(exoskeleton::name(fault), "both", 0.25, 1.5);
+    const EmulatorFault parsed = EmulatorFault::parse(serial::name(fault), "both", 0.25, 1.5);
     EXPECT_EQ(parsed.kind, EmulatorFault::Kind::kLine);
     EXPECT_EQ(parsed.line_fault, fault);
     EXPECT_EQ(parsed.probability, 0.25);
@@ -36,8 +36,11 @@ TEST(EmulatorFault, KnowsEveryFaultOfTheLineByItsName) {
 TEST(EmulatorFault, KnowsTheFaultsOfTheDevice) {
   EXPECT_EQ(EmulatorFault::parse("closed_port", "both", 1.0, 1.0).kind,
             EmulatorFault::Kind::kClosedPort);
-  EXPECT_EQ(EmulatorFault::parse("saturated_sensor", "both", 1.0, 1.0).kind,
-            EmulatorFault::Kind::kSaturatedSensor);
+  const EmulatorFault own =
+      EmulatorFault::parse("saturated_sensor", "both", 1.0, 1.0, {"saturated_sensor"});
+  EXPECT_EQ(own.kind, EmulatorFault::Kind::kDevice);
+  EXPECT_STREQ(own.device_fault, "saturated_sensor");
+  EXPECT_THROW(EmulatorFault::parse("saturated_sensor", "both", 1.0, 1.0), std::invalid_argument);
 }
 
 TEST(EmulatorFault, TakesTheDirectionsByName) {
@@ -53,7 +56,7 @@ TEST(EmulatorFault, RefusesAnUnknownNameWithAllThatAreAllowed) {
   const std::string refused = refusal("explode", "both", 1.0, 1.0);
   EXPECT_NE(refused.find("'explode'"), std::string::npos) << refused;
   for (const LineFault fault : lineFaults()) {
-    EXPECT_NE(refused.find(exoskeleton::name(fault)), std::string::npos) << refused;
+    EXPECT_NE(refused.find(serial::name(fault)), std::string::npos) << refused;
   }
   EXPECT_NE(refused.find("closed_port and saturated_sensor"), std::string::npos) << refused;
   EXPECT_NE(refusal("", "both", 1.0, 1.0), "");
@@ -88,4 +91,4 @@ TEST(EmulatorFault, IsDescribedByNameAndDirection) {
 }
 
 }  // namespace
-}  // namespace haptex::exoskeleton::test_emulator_fault
+}  // namespace haptex::serial::test_emulator_fault

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <string>
 
-#include "haptex/exoskeleton/finger.h"
-#include "haptex/exoskeleton/protocol/bytes.h"
+#include "haptex/base/clock.h"
+#include "haptex/serial/bytes.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
+
+using base::Time;
 
 /// A port of the operating system (PortKeeper), or one that is simulated. By the loop only, unless
 /// said otherwise; nothing waits but awaitBytes().
@@ -38,4 +40,4 @@ class PortAccess {
   virtual const std::string& path() const = 0;
 };
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

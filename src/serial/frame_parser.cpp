@@ -1,14 +1,14 @@
-#include "haptex/exoskeleton/protocol/frame_parser.h"
+#include "haptex/serial/frame_parser.h"
 
 #include <algorithm>
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 
 const Frame* FrameParser::next(Bytes& bytes) {
   drop(finished_);
   finished_ = 0;
   while (true) {
-    const Inspection found = inspect({buffer_.data(), size_}, end_);
+    const Inspection found = inspect({buffer_.data(), size_}, end_, layout_);
     if (found.verdict == FrameVerdict::kGood) {
       ++statistics_.good_frames;
       finished_ = found.size;
@@ -48,4 +48,4 @@ void FrameParser::dropGarbage(FrameVerdict verdict) {
   drop(1);
 }
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <string>
 
-#include "haptex/exoskeleton/protocol/bytes.h"
-#include "haptex/exoskeleton/protocol/line_descriptor.h"
+#include "haptex/serial/bytes.h"
+#include "haptex/serial/line_descriptor.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 
 class PseudoTerminal {
  public:
@@ -41,4 +41,4 @@ class PseudoTerminal {
   std::string link_;
 };
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

@@ -1,4 +1,4 @@
-#include "haptex/exoskeleton/emulator/fault_injector.h"
+#include "haptex/serial/fault_injector.h"
 
 #include <algorithm>
 #include <chrono>
@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 namespace {
 
 constexpr std::size_t kMaxDroppedBytes = 4, kMaxFlippedBits = 8, kMaxGarbage = 64;
@@ -50,7 +50,8 @@ const char* name(LineFault fault) {
   return "unknown";
 }
 
-FaultInjector::FaultInjector(unsigned seed) : generator_(seed) {}
+FaultInjector::FaultInjector(unsigned seed, const FrameLayout& layout)
+    : generator_(seed), layout_(layout) {}
 
 void FaultInjector::set(LineFault fault, double probability, Time end) {
   if (!(probability >= 0.0 && probability <= 1.0)) {
@@ -83,7 +84,8 @@ std::uint8_t FaultInjector::drawByte() { return static_cast<std::uint8_t>(draw(0
 void FaultInjector::damage(std::vector<std::uint8_t>& bytes, Time now) {
   if (meets(LineFault::kWrongVersion, now)) {
     FrameBuffer buffer;
-    const Bytes other = inVersion({bytes.data(), bytes.size()}, kProtocolVersion + 1, buffer);
+    const Bytes other =
+        inVersion({bytes.data(), bytes.size()}, layout_.version + 1, layout_, buffer);
     bytes.assign(other.data, other.data + other.size);
   }
   if (meets(LineFault::kFlip, now)) {
@@ -108,7 +110,8 @@ std::vector<std::uint8_t> FaultInjector::noiseBefore(Time now) {
   }
   if (meets(LineFault::kOversize, now)) {
     FrameBuffer buffer;
-    const auto length = static_cast<std::uint8_t>(draw(kLongestFrame + 1, 255));
+    const std::size_t longest = kFrameOverhead + layout_.longestPayload();
+    const auto length = static_cast<std::uint8_t>(draw(longest + 1, 255));
     const Bytes start = oversizeStart(length, drawByte(), buffer);
     noise.insert(noise.end(), start.data, start.data + start.size);
   }
@@ -156,4 +159,4 @@ Bytes FaultInjector::arrived(Time now) {
   return {arrived_.data(), arrived_.size()};
 }
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

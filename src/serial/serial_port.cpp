@@ -1,4 +1,4 @@
-#include "haptex/exoskeleton/protocol/serial_port.h"
+#include "haptex/serial/serial_port.h"
 
 #include <fcntl.h>
 #include <linux/serial.h>
@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <stdexcept>
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 namespace {
 
 // Documentation/admin-guide/devices.txt of Linux: the slaves of Unix98 pseudo-terminals.
@@ -75,4 +75,4 @@ bool SerialPort::write(Bytes bytes) {
   return written.accepted;
 }
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

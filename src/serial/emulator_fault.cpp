@@ -1,38 +1,44 @@
-#include "haptex/exoskeleton/emulator/emulator_fault.h"
+#include "haptex/serial/emulator_fault.h"
 
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 namespace {
 
 using Kind = EmulatorFault::Kind;
 
 constexpr char kClosedPort[] = "closed_port";
-constexpr char kSaturatedSensor[] = "saturated_sensor";
 constexpr char kToDevice[] = "to_device";
 constexpr char kFromDevice[] = "from_device";
 constexpr char kBoth[] = "both";
 
-void parseName(const std::string& name, EmulatorFault& fault) {
+void parseName(const std::string& name, const std::vector<const char*>& of_device,
+               EmulatorFault& fault) {
   std::string allowed;
   for (const LineFault line_fault : lineFaults()) {
-    if (name == exoskeleton::name(line_fault)) {
+    if (name == serial::name(line_fault)) {
       fault.kind = Kind::kLine;
       fault.line_fault = line_fault;
       return;
     }
-    allowed += std::string(exoskeleton::name(line_fault)) + ", ";
+    allowed += std::string(serial::name(line_fault)) + ", ";
   }
   if (name == kClosedPort) {
     fault.kind = Kind::kClosedPort;
-  } else if (name == kSaturatedSensor) {
-    fault.kind = Kind::kSaturatedSensor;
-  } else {
-    throw std::invalid_argument("fault = '" + name + "': allowed are " + allowed + kClosedPort +
-                                " and " + kSaturatedSensor);
+    return;
   }
+  allowed += kClosedPort;
+  for (const char* device_fault : of_device) {
+    if (name == device_fault) {
+      fault.kind = Kind::kDevice;
+      fault.device_fault = device_fault;
+      return;
+    }
+    allowed += std::string(" and ") + device_fault;
+  }
+  throw std::invalid_argument("fault = '" + name + "': allowed are " + allowed);
 }
 
 void parseDirection(const std::string& direction, EmulatorFault& fault) {
@@ -53,9 +59,10 @@ void parseDirection(const std::string& direction, EmulatorFault& fault) {
 }  // namespace
 
 EmulatorFault EmulatorFault::parse(const std::string& fault, const std::string& direction,
-                                   double probability, double duration) {
+                                   double probability, double duration,
+                                   const std::vector<const char*>& of_device) {
   EmulatorFault parsed;
-  parseName(fault, parsed);
+  parseName(fault, of_device, parsed);
   parseDirection(direction, parsed);
   if (!std::isfinite(probability) || probability < 0.0 || probability > 1.0) {
     refuse("probability", probability, "numbers from 0 to 1");
@@ -72,11 +79,11 @@ EmulatorFault EmulatorFault::parse(const std::string& fault, const std::string& 
 
 std::string describe(const EmulatorFault& fault) {
   if (fault.kind == Kind::kClosedPort) return kClosedPort;
-  if (fault.kind == Kind::kSaturatedSensor) return kSaturatedSensor;
+  if (fault.kind == Kind::kDevice) return fault.device_fault;
   const char* direction = fault.to_device && fault.from_device ? kBoth
                           : fault.to_device                    ? kToDevice
                                                                : kFromDevice;
-  return std::string(exoskeleton::name(fault.line_fault)) + " " + direction;
+  return std::string(serial::name(fault.line_fault)) + " " + direction;
 }
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial

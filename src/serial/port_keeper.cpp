@@ -1,4 +1,4 @@
-#include "haptex/exoskeleton/driver/port_keeper.h"
+#include "haptex/serial/port_keeper.h"
 
 #include <poll.h>
 
@@ -7,7 +7,7 @@
 
 #include "haptex/realtime/steady_clock.h"
 
-namespace haptex::exoskeleton {
+namespace haptex::serial {
 
 PortKeeper::PortKeeper(const std::string& path)
     : path_(path), trouble_(path + " has not been opened yet"), thread_([this] { run(); }) {}
@@ -67,4 +67,4 @@ void PortKeeper::setTrouble(const std::string& trouble) {
   trouble_ = trouble;
 }
 
-}  // namespace haptex::exoskeleton
+}  // namespace haptex::serial
