@@ -11,7 +11,7 @@ const std::vector<Validation>& validations() {
       {"material", validateMaterial},   {"cloth", validateCloth},
       {"proximity", validateProximity}, {"self_collision", validateSelfCollision},
       {"contact", validateContact},     {"exoskeleton", validateExoskeleton},
-      {"tactile", validateTactile}};
+      {"tactile", validateTactile},     {"tactile_driver", validateTactileDriver}};
   return all;
 }
 
