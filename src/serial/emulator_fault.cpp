@@ -36,7 +36,7 @@ void parseName(const std::string& name, const std::vector<const char*>& of_devic
       fault.device_fault = device_fault;
       return;
     }
-    allowed += std::string(" and ") + device_fault;
+    allowed += std::string(", ") + device_fault;
   }
   throw std::invalid_argument("fault = '" + name + "': allowed are " + allowed);
 }

@@ -58,7 +58,7 @@ TEST(EmulatorFault, RefusesAnUnknownNameWithAllThatAreAllowed) {
   for (const LineFault fault : lineFaults()) {
     EXPECT_NE(refused.find(serial::name(fault)), std::string::npos) << refused;
   }
-  EXPECT_NE(refused.find("closed_port and saturated_sensor"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("closed_port, saturated_sensor"), std::string::npos) << refused;
   EXPECT_NE(refusal("", "both", 1.0, 1.0), "");
 }
 

@@ -24,9 +24,10 @@ using serial::EmulatedLine;
 using serial::EmulatorFault;
 using serial::LineStatistics;
 
-/// A fault of the emulated exoskeleton beside those of its line: the force sensors of both fingers
-/// read the end of their range.
+/// Faults of the emulated exoskeleton beside those of its line: the force sensors of both fingers
+/// read the end of their range, or are shaken by the contactors of the tactile arrays.
 constexpr char kSaturatedSensor[] = "saturated_sensor";
+constexpr char kShakenSensor[] = "shaken_sensor";
 
 /// As EmulatorFault::parse().
 EmulatorFault parseFault(const std::string& fault, const std::string& direction, double probability,
@@ -115,6 +116,7 @@ class Emulator {
   std::uint32_t first_time_ = 0;  // us
   bool sensor_saturated_ = false;
   Time sensor_saturated_until_{0};
+  Time sensor_shaken_until_{0};
   bool started_ = false;
   Time due_{0};  // begin of the next period
   Time skipped_{0};
