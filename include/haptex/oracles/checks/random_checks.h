@@ -69,6 +69,7 @@ void randomStick(const std::string&, Random& random, const Sink& sink);
 void randomIncline(const std::string&, Random& random, const Sink& sink);
 void randomCapstan(const std::string& config_directory, Random& random, const Sink& sink);
 void randomGrating(const std::string&, Random& random, const Sink& sink);
+void randomContactors(const std::string&, Random& random, const Sink& sink);
 void randomPose(const std::string& config_directory, Random& random, const Sink& sink);
 void randomStaticForce(const std::string& config_directory, Random& random, const Sink& sink);
 
