@@ -1,10 +1,7 @@
 #include "haptex/tactile/contactor_sound.h"
 
-#include <sndfile.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <sstream>
 #include <stdexcept>
 
@@ -13,11 +10,10 @@
 namespace haptex::tactile {
 namespace {
 
-constexpr double kMaxSpeed = 1.0;    // m/s
-constexpr double kMaxForce = 20.0;   // N
-constexpr double kWay = 1.0;         // s, to or fro
-constexpr double kTurning = 0.1;     // s, from speed to rest or from rest to speed
-constexpr int kMiddleContactor = 8;  // second row, third column
+constexpr double kMaxSpeed = 1.0;   // m/s
+constexpr double kMaxForce = 20.0;  // N
+constexpr double kWay = 1.0;        // s, to or fro
+constexpr double kTurning = 0.1;    // s, from speed to rest or from rest to speed
 
 [[noreturn]] void refuse(const std::string& what, double value, const std::string& allowed) {
   std::ostringstream message;
@@ -45,40 +41,6 @@ double progress(double time) {
   const double share = std::min({1.0, since_turn / kTurning, (kWay - since_turn) / kTurning});
   return std::fmod(time, 2.0 * kWay) < kWay ? share : -share;
 }
-
-struct CloseSound {
-  void operator()(SNDFILE* file) const { sf_close(file); }
-};
-
-/// A file that is written sample by sample.
-class SoundFile {
- public:
-  explicit SoundFile(const std::string& path) : path_(path) {
-    SF_INFO info{};
-    info.samplerate = kSoundRate;
-    info.channels = 1;
-    info.format = SF_FORMAT_WAV | SF_FORMAT_PCM_16;
-    file_.reset(sf_open(path.c_str(), SFM_WRITE, &info));
-    if (!file_) fail();
-  }
-  void write(const std::vector<short>& samples) {
-    const auto count = static_cast<sf_count_t>(samples.size());
-    if (sf_write_short(file_.get(), samples.data(), count) != count) fail();
-  }
-  void close() {
-    sf_write_sync(file_.get());
-    if (sf_error(file_.get()) != SF_ERR_NO_ERROR) fail();
-    if (sf_close(file_.release()) != 0) fail();
-  }
-
- private:
-  [[noreturn]] void fail() const {
-    throw std::runtime_error(path_ + ": cannot be written: " + sf_strerror(file_.get()));
-  }
-
-  std::string path_;
-  std::unique_ptr<SNDFILE, CloseSound> file_;
-};
 
 void requireSound(const ContactorSteps& steps) {
   const double seconds = static_cast<double>(steps.size()) * kTactileStep;
@@ -112,29 +74,18 @@ ContactorSteps rubbedSteps(const tactile::Surface& surface, const Rubbing& rubbi
 
 WrittenSound writeSound(const std::string& path, const ContactorSteps& steps) {
   requireSound(steps);
-  constexpr double kMaxSample = 32767.0;
   SoundFile file(path);
   tactile::DriveWaveform waveform(kSoundRate);
-  WrittenSound written;
-  std::vector<short> samples;
   const auto add = [&](const tactile::PerChannel<double>& step) {
     tactile::ArrayAmplitudes amplitudes{};
     amplitudes[0] = step;
-    samples.clear();
-    for (const auto& displacements : waveform.step(amplitudes)) {
-      const double displacement = displacements[0];
-      written.largest = std::max(written.largest, std::abs(displacement));
-      if (std::abs(displacement) > kFullScale) ++written.clipped;
-      const double share = std::clamp(displacement / kFullScale, -1.0, 1.0);
-      samples.push_back(static_cast<short>(std::lround(kMaxSample * share)));
-    }
-    written.samples += samples.size();
-    file.write(samples);
+    for (const auto& displacements : waveform.step(amplitudes)) file.add(displacements[0]);
+    file.write();
   };
   for (const tactile::PerChannel<double>& step : steps) add(step);
   add({});
   file.close();
-  return written;
+  return file.written();
 }
 
 }  // namespace haptex::tactile

@@ -18,7 +18,7 @@
 
 #include "haptex/exoskeleton/emulator/emulator.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
-#include "haptex/exoskeleton/protocol/serial_port.h"
+#include "haptex/serial/serial_port.h"
 
 namespace haptex::exoskeleton {
 
@@ -56,21 +56,21 @@ class EmulatorLine : public ::testing::Test {
 
   /// Until the driver has states. @returns whether it got them within a second
   bool connect() {
-    if (!port) port = std::make_unique<SerialPort>(link_name);
+    if (!port) port = std::make_unique<serial::SerialPort>(link_name);
     for (int i = 0; i < 1000 && driver.status() != LinkStatus::kConnected; ++i)
       run(std::chrono::milliseconds(1));
     return driver.status() == LinkStatus::kConnected;
   }
 
   void inject(const char* fault, const char* direction, double probability, double duration) {
-    emulator.inject(EmulatorFault::parse(fault, direction, probability, duration));
+    emulator.inject(parseFault(fault, direction, probability, duration));
   }
 
   Time now = kStart;
   std::string link_name;
   std::vector<EmulatorSample> samples;
   Emulator emulator;
-  std::unique_ptr<SerialPort> port;
+  std::unique_ptr<serial::SerialPort> port;
   DeviceLink driver;
   bool commanding = false;  // by the driver, once a period
   DeviceCommand command;

@@ -12,8 +12,8 @@
 #include "../exoskeleton/shipped_urdf.h"
 #include "haptex/exoskeleton/emulator/emulated_device.h"
 #include "haptex/exoskeleton/protocol/firmware_model.h"
-#include "haptex/exoskeleton/protocol/pseudo_terminal.h"
 #include "haptex/realtime/periodic_thread.h"
+#include "haptex/serial/pseudo_terminal.h"
 
 namespace haptex::exoskeleton {
 
@@ -66,7 +66,7 @@ class DeviceOnALine {
   }
 
  private:
-  PseudoTerminal terminal_;
+  serial::PseudoTerminal terminal_;
   FirmwareModel firmware_;
 };
 

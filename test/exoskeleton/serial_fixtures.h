@@ -7,16 +7,27 @@
 #include <random>
 #include <vector>
 
+#include "byte_fixtures.h"
 #include "haptex/exoskeleton/finger.h"
-#include "haptex/exoskeleton/protocol/frame_parser.h"
 #include "haptex/exoskeleton/protocol/serial_frame.h"
+#include "haptex/serial/fault_injector.h"
+#include "haptex/serial/frame_parser.h"
 
 namespace haptex::exoskeleton {
 
-using ByteVector = std::vector<std::uint8_t>;
-
-inline ByteVector copy(Bytes bytes) { return ByteVector(bytes.data, bytes.data + bytes.size); }
-inline Bytes view(const ByteVector& bytes) { return {bytes.data(), bytes.size()}; }
+using serial::append;
+using serial::ByteVector;
+using serial::checksum;
+using serial::copy;
+using serial::decodeHello;
+using serial::FaultInjector;
+using serial::FrameParser;
+using serial::inspect;
+using serial::kLineFaults;
+using serial::LineFault;
+using serial::lineFaults;
+using serial::ParserStatistics;
+using serial::view;
 
 template <typename Message>
 ByteVector frameOf(const Message& message, std::uint8_t sequence = 0) {
@@ -26,11 +37,7 @@ ByteVector frameOf(const Message& message, std::uint8_t sequence = 0) {
 
 /// The frame that the bytes are, which have to outlive it.
 inline Frame frameIn(const ByteVector& bytes, LineEnd end) {
-  return inspect(view(bytes), end).frame;
-}
-
-inline void append(ByteVector& to, const ByteVector& bytes) {
-  to.insert(to.end(), bytes.begin(), bytes.end());
+  return inspect(view(bytes), end, kFrameLayout).frame;
 }
 
 /// Puts the checksum of its version behind bytes that were changed.

@@ -11,13 +11,13 @@
 
 #include "exoskeleton_fixtures.h"
 #include "haptex/exoskeleton/driver/driver_loop.h"
-#include "haptex/exoskeleton/driver/port_keeper.h"
 #include "haptex/exoskeleton/driver/request_box.h"
 #include "haptex/realtime/duration_histogram.h"
 #include "haptex/realtime/periodic_thread.h"
 #include "haptex/realtime/ring.h"
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/realtime/triple_buffer.h"
+#include "haptex/serial/port_keeper.h"
 
 namespace haptex::exoskeleton::test_exoskeleton_threads {
 namespace {
@@ -133,7 +133,7 @@ TEST(ExoskeletonThreads, ThePortIsOpenedWhileTheLoopLooksAndOthersAsk) {
     while (!stop) texts += static_cast<int>(ports.trouble().size() < 1000);
   });
   for (int round = 0; round < 2; ++round) {
-    auto terminal = std::make_unique<PseudoTerminal>(path);
+    auto terminal = std::make_unique<serial::PseudoTerminal>(path);
     while (!ports.takeNew()) std::this_thread::yield();
     terminal.reset();
     std::uint8_t byte = 0;

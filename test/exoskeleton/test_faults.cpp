@@ -138,8 +138,8 @@ TEST_P(FaultsOfTheLine, NeitherJerkNorOverloadAFinger) {
   FaultyLoop faulty;
   oracles::SimulatedLine& line = GetParam() ? faulty.loop.toDevice() : faulty.loop.toDriver();
   double largest_change = 0.0, largest_force = 0.0;
-  for (const LineFault fault : lineFaults()) {
-    const double probability = fault == LineFault::kStall ? 1.0 : 0.3;
+  for (const serial::LineFault fault : serial::lineFaults()) {
+    const double probability = fault == serial::LineFault::kStall ? 1.0 : 0.3;
     line.faults().set(fault, probability, faulty.loop.now() + milliseconds(400));
     const Worst worst = faulty.watch(milliseconds(600));
     expectSafe(worst, name(fault));
@@ -159,8 +159,8 @@ INSTANTIATE_TEST_SUITE_P(EachDirection, FaultsOfTheLine, testing::Bool(), [](con
 TEST(Faults, MixedInBothDirectionsAreAsHarmless) {
   FaultyLoop faulty(2);
   for (const double probability : {0.01, 0.05, 0.2}) {
-    for (const LineFault fault : lineFaults()) {
-      const double share = fault == LineFault::kStall ? 0.0 : probability;
+    for (const serial::LineFault fault : serial::lineFaults()) {
+      const double share = fault == serial::LineFault::kStall ? 0.0 : probability;
       faulty.loop.toDevice().faults().set(fault, share, faulty.loop.now() + milliseconds(1000));
       faulty.loop.toDriver().faults().set(fault, share, faulty.loop.now() + milliseconds(1000));
     }

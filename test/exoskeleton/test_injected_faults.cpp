@@ -1,4 +1,5 @@
 // What the faults that are injected into the emulator do to its line, its port and its sensors.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -86,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(EmulatorFaultNames, AreAllTried) {
   // Else a fault that is new in the room would not be tried above.
-  EXPECT_EQ(lineFaults().size(), 11u);
+  EXPECT_EQ(serial::lineFaults().size(), 11u);
 }
 
 TEST_F(EmulatorLine, FaultsOfTheOtherDirectionReachTheDevice) {
@@ -129,7 +130,7 @@ TEST_F(EmulatorLine, AClosedPortIsGoneAndOpensAnewBehindTheSameLink) {
   run(milliseconds(20));
   EXPECT_TRUE(port->closed());
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(link_name)));
-  EXPECT_THROW(SerialPort{link_name}, std::runtime_error);
+  EXPECT_THROW(serial::SerialPort{link_name}, std::runtime_error);
   EXPECT_FALSE(emulator.status().port_open);
   run(milliseconds(170));
   EXPECT_FALSE(emulator.status().port_open);
@@ -166,6 +167,32 @@ TEST_F(EmulatorLine, SaturatedSensorsReadTheEndOfTheirRange) {
   for (const Finger finger : kFingers) {
     EXPECT_FALSE(states.back().fingers[finger].force_saturated);
   }
+}
+
+TEST_F(EmulatorLine, ShakenSensorsReadTheVibrationOfTheContactorsWhileAskedTo) {
+  ASSERT_TRUE(connect());
+  const auto spread = [&] {
+    states.clear();
+    run(milliseconds(100));
+    double sum = 0.0, squares = 0.0;
+    for (const DeviceState& state : states) {
+      const double force = state.fingers[Finger::kThumb].force.z();
+      sum += force;
+      squares += force * force;
+    }
+    const double mean = sum / static_cast<double>(states.size());
+    return std::sqrt(squares / static_cast<double>(states.size()) - mean * mean);
+  };
+  // Of two sines: root of half the sum of the squares.
+  const double shaken =
+      std::hypot(EmulatedDevice::kSlowVibration, EmulatedDevice::kFastVibration) / std::sqrt(2.0);
+  run(milliseconds(500));
+  const double still = spread();
+  inject("shaken_sensor", "both", 1.0, 0.2);
+  EXPECT_NEAR(spread(), std::hypot(shaken, still), 0.1 * shaken);
+  inject("shaken_sensor", "both", 0.0, 1.0);
+  EXPECT_LT(spread(), 0.3 * shaken);
+  EXPECT_TRUE(emulator.status().faults.empty());
 }
 
 }  // namespace

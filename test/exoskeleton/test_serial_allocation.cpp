@@ -6,8 +6,8 @@
 #include "../malloc_counter.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
 #include "haptex/exoskeleton/protocol/firmware_model.h"
-#include "haptex/exoskeleton/protocol/pseudo_terminal.h"
-#include "haptex/exoskeleton/protocol/serial_port.h"
+#include "haptex/serial/pseudo_terminal.h"
+#include "haptex/serial/serial_port.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton::test_serial_allocation {
@@ -57,8 +57,8 @@ TEST(SerialAllocation, NeitherReadingNorWritingALineAllocates) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer brings its own malloc";
 #endif
-  auto device = std::make_unique<PseudoTerminal>();
-  SerialPort driver(device->path());
+  auto device = std::make_unique<serial::PseudoTerminal>();
+  serial::SerialPort driver(device->path());
   const ByteVector frame = frameOf(DeviceCommand{});
   FrameBuffer buffer;
   const long before = allocations;

@@ -158,6 +158,32 @@ class RefusedParameters(unittest.TestCase):
         self.refused('_lowest_frequency:=300', '_highest_frequency:=100', node='tactile_renderer',
                      says=['~highest_frequency', '100', 'above the lowest'])
 
+    def test_ports_of_the_contactors(self):
+        for port in ('_port:=', '_port:=3', '_rate:=1'):
+            self.refused(port, node='tactile_driver',
+                         says=['~port', 'is not set to a string', '/dev/ttyUSB1'])
+        self.refused('_link:=', node='tactile_emulator', says=['~link', 'is not set to a string'])
+        self.refused('_link:=/no/such/folder/link', node='tactile_emulator',
+                     says=['/no/such/folder/link'])
+
+    def test_calibrations_of_the_contactors(self):
+        for node, port in (('tactile_driver', '_port:=/dev/null'), ('tactile_emulator', LINK)):
+            self.refused(port, '_calibration:=perfect', node=node,
+                         says=["there is no 'perfect'", 'representative'])
+            with tempfile.NamedTemporaryFile('w', suffix='.yaml') as file:
+                file.write('source: a test\nindex: 3\nthumb: 4\n')
+                file.flush()
+                self.refused(port, f'_calibration:={file.name}', node=node,
+                             says=[file.name, 'index'])
+
+    def test_sounds_of_the_contactors_that_there_cannot_be(self):
+        for parameters, says in ((['_sound:=/no/such/folder/a.wav'], ['/no/such/folder/a.wav']),
+                                 (['_sound:=/tmp/a.wav', '_sound_finger:=ring'],
+                                  ['~sound_finger', 'allowed are index and thumb']),
+                                 (['_sound:=/tmp/a.wav', '_sound_contactor:=24'],
+                                  ['~sound_contactor', 'whole numbers from 0 to 23'])):
+            self.refused(LINK, *parameters, node='tactile_emulator', says=says)
+
 
 if __name__ == '__main__':
     rostest.rosrun('haptex', 'refused_parameters', RefusedParameters)

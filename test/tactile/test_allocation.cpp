@@ -1,8 +1,15 @@
 // An executable of its own, because it counts every call of malloc in the process.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+
 #include "../malloc_counter.h"
 #include "fixtures.h"
+#include "haptex/tactile/drive/array_driver.h"
+#include "haptex/tactile/drive/drive_firmware.h"
 #include "haptex/tactile/drive_waveform.h"
 
 namespace haptex::tactile::test_allocation {
@@ -33,6 +40,58 @@ TEST(TactileAllocation, AStepAllocatesNothing) {
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(before, 0) << "the count does not work";
   EXPECT_GT(largest, 0.0);
+}
+
+TEST(TactileAllocation, NeitherDriverNorElectronicsAllocate) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  Calibration calibration;
+  for (ArrayCalibration& array : calibration.values) array.fill({{1e-4, 1e-4}, 1e-4});
+  DriveFirmware electronics(DriveIdentity{});
+  // Both ends in one process: what one writes the other reads.
+  class Loop final : public serial::PortAccess {
+   public:
+    explicit Loop(DriveFirmware& electronics) : electronics_(electronics) {}
+    bool takeNew() override { return !std::exchange(there_, true); }
+    bool isThere() const override { return there_; }
+    bool isClosed() const override { return false; }
+    void discard() override { there_ = false; }
+    std::size_t read(std::uint8_t* buffer, std::size_t capacity) override {
+      serial::Bytes bytes = electronics_.answer();
+      if (bytes.empty()) bytes = electronics_.report(now);
+      std::copy_n(bytes.data, std::min(capacity, bytes.size), buffer);
+      return bytes.size;
+    }
+    bool write(serial::Bytes bytes) override {
+      electronics_.receive(bytes.data, bytes.size, now);
+      return true;
+    }
+    bool awaitBytes(base::Time) override { return false; }
+    std::string trouble() const override { return ""; }
+    const std::string& path() const override { return path_; }
+
+    base::Time now{0};
+
+   private:
+    DriveFirmware& electronics_;
+    bool there_ = false;
+    std::string path_;
+  };
+  auto owned = std::make_unique<Loop>(electronics);
+  Loop& loop = *owned;
+  ArrayDriver driver(std::move(owned), calibration);
+  ArrayAmplitudes amplitudes;
+  amplitudes.fill({2e-5, 1e-5});
+  const long before = allocations;
+  for (int i = 0; i < 1000; ++i) {
+    loop.now += kDrivePeriod;
+    if (i % 5 == 0) driver.receive(base::Finger::kIndex, amplitudes, loop.now);
+    driver.tick(loop.now);
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(electronics.obeyed(), 900u);
+  EXPECT_GT(electronics.drive(base::Finger::kIndex, 0, loop.now + kDrivePeriod)[k40], 0.19);
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ class YamlValue {
   const std::string& keyPath() const { return key_path_; }
 
   bool isMap() const { return node_.IsMap(); }
+  bool isList() const { return node_.IsSequence(); }
 
   /// Refuses anything but a map with all the required keys and no others than the optional ones,
   /// each once. Call it before at() and has().

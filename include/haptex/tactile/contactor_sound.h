@@ -1,18 +1,13 @@
 // What one contactor of the tactile array drives, as a sound.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "haptex/tactile/contactor_array.h"
+#include "haptex/tactile/sound_file.h"
 
 namespace haptex::tactile {
-
-/// Full scale of a sound: fabrics under an ordinary stroke stay below, and smooth ones are heard.
-constexpr double kFullScale = 5e-5;       ///< m
-constexpr int kSoundRate = 44100;         ///< Hz
-constexpr double kLongestSound = 3600.0;  ///< s
 
 /// Amplitudes (m) of a contactor, one pair per step of tactile::kTactileStep.
 using ContactorSteps = std::vector<tactile::PerChannel<double>>;
@@ -30,13 +25,6 @@ struct Rubbing {
 /// @throws std::invalid_argument naming what of the rubbing is not allowed: speeds and forces > 0
 ///   up to 1 m/s and 20 N, finite angles, more than no time up to kLongestSound
 ContactorSteps rubbedSteps(const tactile::Surface& surface, const Rubbing& rubbing);
-
-/// What became of a sound.
-struct WrittenSound {
-  std::size_t samples = 0;
-  std::size_t clipped = 0;  ///< samples beyond full scale, written as full scale
-  double largest = 0.0;     ///< m, displacement
-};
 
 /// Writes a WAV file of 16 bits, one channel, kSoundRate. It begins and ends with silence.
 /// @throws std::invalid_argument naming the step and its amplitude unless it is finite and >= 0, or

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "haptex/tactile/channel_sines.h"
 #include "haptex/tactile/contactor_array.h"
 
 namespace haptex::tactile {
@@ -11,8 +12,6 @@ namespace haptex::tactile {
 constexpr double kTactileRate = 40.0;                ///< Hz
 constexpr double kTactileStep = 1.0 / kTactileRate;  ///< s
 
-constexpr double kHighestSampleRate = 1e6;  ///< Hz
-
 /// Displacements of the contactors of one array,
 ///   z_i(t) = a40_i(t) sin(2 pi 40 t) + a320_i(t) sin(2 pi 320 t),
 /// at any sample rate. Phases run on from step to step and from start to end, and amplitudes go to
@@ -20,8 +19,7 @@ constexpr double kHighestSampleRate = 1e6;  ///< Hz
 class DriveWaveform {
  public:
   /// @param sample_rate Hz
-  /// @throws std::invalid_argument naming the rate unless it is more than twice the highest
-  ///   channel's frequency and at most kHighestSampleRate
+  /// @throws std::invalid_argument what requireSampleRate() throws
   explicit DriveWaveform(double sample_rate);
 
   /// The samples until the next step, in which the amplitudes reach `next`. The number of samples

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "haptex/exoskeleton/driver/port_keeper.h"
 #include "haptex/realtime/steady_clock.h"
+#include "haptex/serial/port_keeper.h"
 
 namespace haptex::exoskeleton {
 

@@ -12,6 +12,12 @@ constexpr double kCountsPerRadian = kCountsPerRevolution / (2.0 * kPi);
 constexpr std::uint64_t kMicrosecondsPerStep = 125;
 static_assert(kMicrosecondsPerStep * EmulatedDevice::kRate == 1e6);
 
+/// N, at a time (s) of the device.
+double shake(double time) {
+  return EmulatedDevice::kSlowVibration * std::sin(2.0 * M_PI * 40.0 * time) +
+         EmulatedDevice::kFastVibration * std::sin(2.0 * M_PI * 320.0 * time);
+}
+
 }  // namespace
 
 EmulatedDevice::EmulatedDevice(const std::string& urdf, unsigned seed,
@@ -85,6 +91,7 @@ FingerReading EmulatedDevice::reading(const EmulatedSide& side) {
   const Vector3d force = side.dynamics.thimble().linear().transpose() * side.truth.contact_force;
   for (int i = 0; i < 3; ++i) {
     double measured = force[i] + noise_(generator_);
+    if (sensors_shaken_ && i == 2) measured += shake(static_cast<double>(steps_) / kRate);
     if (side.sensor_saturated && i == 2) measured = kForceRange;
     if (std::abs(measured) >= kForceRange) {
       measured = std::copysign(kForceRange, measured);

@@ -1,6 +1,7 @@
 #include "haptex/exoskeleton/emulator/emulator.h"
 
 #include <algorithm>
+#include <cstring>
 #include <sstream>
 
 namespace haptex::exoskeleton {
@@ -28,6 +29,9 @@ EmulatorFault oneWay(EmulatorFault fault, bool to_device) {
 
 bool isSame(const EmulatorFault& first, const EmulatorFault& second) {
   if (first.kind != second.kind) return false;
+  if (first.kind == Kind::kDevice) {
+    return std::strcmp(first.device_fault, second.device_fault) == 0;
+  }
   return first.kind != Kind::kLine ||
          (first.line_fault == second.line_fault && first.to_device == second.to_device);
 }
@@ -43,9 +47,15 @@ std::string inWords(const EmulatorFault& fault, Time left) {
 
 }  // namespace
 
+EmulatorFault parseFault(const std::string& fault, const std::string& direction, double probability,
+                         double duration) {
+  return EmulatorFault::parse(fault, direction, probability, duration,
+                              {kSaturatedSensor, kShakenSensor});
+}
+
 Emulator::Emulator(const std::string& urdf, const std::string& link, Observer observer)
     : observer_(std::move(observer)),
-      line_(link),
+      line_(link, kFrameLayout),
       device_(urdf, kDeviceSeed),
       firmware_(identity()) {
   active_faults_.reserve(kMaxFaults);
@@ -99,7 +109,7 @@ void Emulator::report(Time now) {
   const Bytes bytes = firmware_->report(stateSinceSwitchedOn(), now + kPeriod);
   line_.send(bytes, now);
   // What the firmware says of itself is to be read there only.
-  const auto state = decodeState(inspect(bytes, LineEnd::kDriver).frame);
+  const auto state = decodeState(serial::inspect(bytes, LineEnd::kDriver, kFrameLayout).frame);
   if (!state) return;
   if (state->watchdog_tripped && !last_report_.watchdog_tripped) ++watchdog_trips_;
   last_report_ = *state;
@@ -147,6 +157,7 @@ void Emulator::takeRequests(Time now) {
     }
   }
   if (sensor_saturated_ && now >= sensor_saturated_until_) saturateSensors(false);
+  device_.shakeSensors(now < sensor_shaken_until_);
 }
 
 void Emulator::saturateSensors(bool saturated) {
@@ -155,11 +166,13 @@ void Emulator::saturateSensors(bool saturated) {
 }
 
 void Emulator::apply(const EmulatorFault& fault, Time now) {
-  if (fault.kind == Kind::kSaturatedSensor) {
+  if (fault.kind != Kind::kDevice) {
+    line_.inject(fault, now);
+  } else if (std::strcmp(fault.device_fault, kShakenSensor) == 0) {
+    sensor_shaken_until_ = fault.probability > 0.0 ? now + fault.duration : now;
+  } else {
     sensor_saturated_until_ = now + fault.duration;
     saturateSensors(fault.probability > 0.0);
-  } else {
-    line_.inject(fault, now);
   }
   for (const bool to_device : {true, false}) {
     if (to_device ? fault.to_device : fault.from_device) note(oneWay(fault, to_device), now);

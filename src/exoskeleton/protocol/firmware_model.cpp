@@ -26,7 +26,7 @@ void FirmwareModel::receive(const std::uint8_t* bytes, std::size_t count, Time n
 }
 
 void FirmwareModel::handleHello(const Frame& frame) {
-  const auto hello = decodeHello(frame);
+  const auto hello = serial::decodeHello(frame);
   if (!hello) return;
   to_answer_ = true;
   if (hello->version != identity_.version) return;
@@ -35,7 +35,7 @@ void FirmwareModel::handleHello(const Frame& frame) {
 }
 
 void FirmwareModel::handleCommand(const Frame& frame, Time now) {
-  const int ahead = numbersAhead(frame.sequence, command_number_);
+  const int ahead = serial::numbersAhead(frame.sequence, command_number_);
   if (!greeted_ || ahead == 0) return;
   // After a Hello the command of a dead driver may still come twice, with a number that looks new.
   if (last_command_ && frame.sequence == obeyed_number_) return;

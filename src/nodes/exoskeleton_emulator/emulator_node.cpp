@@ -174,7 +174,7 @@ void EmulatorNode::publishHand() {
 bool EmulatorNode::injectFault(haptex::InjectFault::Request& request,
                                haptex::InjectFault::Response& response) {
   try {
-    const exoskeleton::EmulatorFault fault = exoskeleton::EmulatorFault::parse(
+    const serial::EmulatorFault fault = exoskeleton::parseFault(
         request.fault, request.direction, request.probability, request.duration);
     emulator_.inject(fault);
     response.success = true;

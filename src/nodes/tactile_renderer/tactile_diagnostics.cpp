@@ -85,6 +85,7 @@ void TactileNode::diagnoseSteps(Status& status) {
   status.add("highest frequency (Hz)", loop_.limits().highest_frequency);
   status.add("largest displacement (um)", 1e6 * loop_.limits().largest_displacement);
   status.add("silent channels", silent);
+  status.add("driver of the contactors", array_message_);
   diagnosed_steps_ = loop_.steps();
   diagnosed_times_ = times;
 }

@@ -89,6 +89,9 @@ void TactileNode::subscribe() {
   const boost::function<void(const haptex::ClothMesh&)> take_mesh =
       [this](const haptex::ClothMesh& message) { receiveMesh(message); };
   mesh_subscriber_ = node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh);
+  const boost::function<void(const haptex::ArrayState&)> take_array =
+      [this](const haptex::ArrayState& message) { array_message_ = message.message; };
+  array_subscriber_ = node_.subscribe<haptex::ArrayState>("tactile/array_state", 1, take_array);
 }
 
 void TactileNode::receiveMesh(const haptex::ClothMesh& message) {

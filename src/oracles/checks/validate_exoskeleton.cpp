@@ -15,6 +15,7 @@
 #include "haptex/exoskeleton/emulator/hand_path.h"
 #include "haptex/oracles/checks/validation.h"
 #include "haptex/oracles/exact/finger_geometry.h"
+#include "haptex/oracles/experiments/exoskeleton_loop.h"
 #include "haptex/oracles/experiments/pinch.h"
 #include "haptex/oracles/experiments/stalled_hold.h"
 #include "haptex/oracles/experiments/static_force.h"
@@ -242,6 +243,55 @@ void validateDeaths(const std::string& urdf, const base::PerFinger<Vector3d>& op
   death("silent_driver", DyingPart::kSilentDriver, kSilentDeath);
 }
 
+/// N, the part of a force at a frequency (Hz): projected on sine and cosine over a second.
+class FourierPart {
+ public:
+  explicit FourierPart(double frequency) : frequency_(frequency) {}
+
+  void add(double time, double force) {
+    const double phase = 2.0 * M_PI * frequency_ * time;
+    sum_ += force * Eigen::Vector2d(std::cos(phase), std::sin(phase));
+    ++samples_;
+  }
+  double amplitude() const { return 2.0 * sum_.norm() / samples_; }
+
+ private:
+  double frequency_;
+  Eigen::Vector2d sum_ = Eigen::Vector2d::Zero();
+  int samples_ = 0;
+};
+
+/// What the contactors shake the sensors by, by what they shake the force that is felt: 3 N, pushed
+/// on the fingers. The sensor's resolution is allowed; without a notch.
+void validateVibration(const std::string& urdf, const base::PerFinger<Vector3d>& open,
+                       const Sink& sink) {
+  ExoskeletonLoop loop(urdf, 1);
+  for (const Finger finger : kFingers) loop.device().setTarget(finger, open[finger]);
+  loop.makeReady();
+  loop.commandForce(Vector3d(0.0, 0.0, kDeathForce));
+  loop.run(std::chrono::seconds(2));
+  for (const bool shaken : {false, true}) {
+    loop.device().shakeSensors(shaken);
+    loop.run(std::chrono::seconds(1));
+    base::PerFinger<std::vector<FourierPart>> parts;
+    for (const Finger finger : kFingers) parts[finger] = {FourierPart(40.0), FourierPart(320.0)};
+    loop.run(std::chrono::seconds(1), [&](const ExoskeletonLoop& now) {
+      for (const Finger finger : kFingers) {
+        for (FourierPart& part : parts[finger]) {
+          part.add(base::seconds(now.now()), now.sample(finger).contact_force.norm());
+        }
+      }
+    });
+    for (const int i : {0, 1}) {
+      const double felt = base::largerOrNaN(parts[Finger::kIndex][i].amplitude(),
+                                            parts[Finger::kThumb][i].amplitude());
+      sink({std::string("exoskeleton/vibration/") + (shaken ? "shaken" : "still") + "_felt_at_" +
+                (i == 0 ? "40" : "320") + "_Hz_N",
+            0.0, felt, felt, kForceResolution});
+    }
+  }
+}
+
 }  // namespace
 
 void validateExoskeleton(const std::string& config_directory, const Sink& sink) {
@@ -253,6 +303,7 @@ void validateExoskeleton(const std::string& config_directory, const Sink& sink) 
       exoskeleton::loadHandPath(config_directory + "/paths/pinch.yaml").at(kOpenFor).fingertips;
   validateStalls(urdf, open, sink);
   validateDeaths(urdf, open, sink);
+  validateVibration(urdf, open, sink);
 }
 
 }  // namespace haptex::oracles

@@ -12,7 +12,7 @@ const std::vector<Validation>& validations() {
       {"proximity", validateProximity}, {"self_collision", validateSelfCollision},
       {"contact", validateContact},     {"table", validateTable},
       {"body", validateBody},           {"exoskeleton", validateExoskeleton},
-      {"tactile", validateTactile}};
+      {"tactile", validateTactile},     {"tactile_driver", validateTactileDriver}};
   return all;
 }
 

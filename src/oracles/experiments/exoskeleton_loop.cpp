@@ -1,10 +1,9 @@
 #include "haptex/oracles/experiments/exoskeleton_loop.h"
 
-#include <algorithm>
 #include <memory>
 #include <stdexcept>
 
-#include "haptex/exoskeleton/protocol/serial_port.h"
+#include "haptex/serial/serial_port.h"
 
 namespace haptex::oracles {
 
@@ -13,83 +12,12 @@ using Eigen::Vector3d;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-namespace {
-
-constexpr int kBitsPerByte = 10;  // start, eight data, stop
-
-/// The driver's end of the lines.
-class SimulatedPort final : public PortAccess {
- public:
-  SimulatedPort(SimulatedLine& to_device, SimulatedLine& to_driver, const Time& now,
-                const bool& open)
-      : to_device_(to_device), to_driver_(to_driver), now_(now), open_(open) {}
-
-  bool takeNew() override {
-    if (is_there_ || !open_) return false;
-    return is_there_ = true;
-  }
-  bool isThere() const override { return is_there_; }
-  bool isClosed() const override { return !open_; }
-  void discard() override {
-    is_there_ = false;
-    buffer_.clear();
-  }
-  std::size_t read(std::uint8_t* buffer, std::size_t capacity) override {
-    const std::vector<std::uint8_t>& bytes = to_driver_.arrived(now_);
-    const std::size_t kept = std::min(bytes.size(), kBuffer - std::min(kBuffer, buffer_.size()));
-    buffer_.insert(buffer_.end(), bytes.begin(), bytes.begin() + kept);
-    const std::size_t count = std::min(buffer_.size(), capacity);
-    std::copy_n(buffer_.begin(), count, buffer);
-    buffer_.erase(buffer_.begin(), buffer_.begin() + count);
-    return count;
-  }
-  bool write(Bytes bytes) override {
-    if (open_) to_device_.send(bytes, now_);
-    return open_;
-  }
-  bool awaitBytes(Time) override { return false; }
-  std::string trouble() const override { return is_there_ ? "" : "the simulated port is closed"; }
-  const std::string& path() const override { return path_; }
-
- private:
-  static constexpr std::size_t kBuffer = 65536;  // bytes that Linux keeps; what comes then is lost
-
-  SimulatedLine& to_device_;
-  SimulatedLine& to_driver_;
-  const Time& now_;
-  const bool& open_;
-  const std::string path_ = "simulated";
-  std::vector<std::uint8_t> buffer_;
-  bool is_there_ = false;
-};
-
-}  // namespace
-
-void SimulatedLine::advance(Time now) {
-  const Time byte_time =
-      std::chrono::nanoseconds(std::chrono::nanoseconds::period::den * kBitsPerByte / baud_rate_);
-  const Bytes bytes = faults_.arrived(now);
-  for (std::size_t i = 0; i < bytes.size; ++i) {
-    free_at_ = std::max(free_at_, now) + byte_time;
-    on_its_way_.emplace_back(free_at_, bytes.data[i]);
-  }
-}
-
-const std::vector<std::uint8_t>& SimulatedLine::arrived(Time now) {
-  arrived_.clear();
-  while (!on_its_way_.empty() && on_its_way_.front().first <= now) {
-    arrived_.push_back(on_its_way_.front().second);
-    on_its_way_.pop_front();
-  }
-  return arrived_;
-}
-
 ExoskeletonLoop::ExoskeletonLoop(const std::string& urdf, unsigned seed,
                                  const FingerMechanics& mechanics)
     : device_(urdf, seed, mechanics),
       firmware_(Identity{}),
-      to_device_(seed + 1, exoskeleton::kBaudRate),
-      to_driver_(seed + 2, exoskeleton::kBaudRate),
+      to_device_(seed + 1, kFrameLayout, serial::kBaudRate),
+      to_driver_(seed + 2, kFrameLayout, serial::kBaudRate),
       driver_(std::make_unique<SimulatedPort>(to_device_, to_driver_, now_, port_open_), urdf,
               [this](const DriverSnapshot& snapshot) { state_time_ = snapshot.state_time; }) {
   commandForce(Vector3d::Zero());

@@ -17,7 +17,7 @@ TEST_F(EmulatorLine, AnswersTheHandshake) {
 }
 
 TEST_F(EmulatorLine, SaysNothingBeforeTheHandshake) {
-  port = std::make_unique<SerialPort>(link_name);
+  port = std::make_unique<serial::SerialPort>(link_name);
   for (int i = 0; i < 20; ++i) emulator.advanceTo(now += milliseconds(1));
   std::array<std::uint8_t, 100> bytes;
   EXPECT_EQ(port->read(bytes.data(), bytes.size()), 0u);

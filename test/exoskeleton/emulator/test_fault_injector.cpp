@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/exoskeleton/emulator/fault_injector.h"
+#include "haptex/serial/fault_injector.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton::test_fault_injector {
@@ -29,7 +29,7 @@ std::vector<ByteVector> through(FaultInjector& line, int count, int first = 0) {
 }
 
 FaultInjector with(LineFault fault, double probability = 1.0) {
-  FaultInjector line(7);
+  FaultInjector line(7, kFrameLayout);
   line.set(fault, probability, kForever);
   return line;
 }
@@ -39,7 +39,7 @@ bool endsWith(const ByteVector& bytes, const ByteVector& end) {
 }
 
 TEST(FaultInjector, WithoutFaultsEveryByteArrivesAtOnce) {
-  FaultInjector line(1);
+  FaultInjector line(1, kFrameLayout);
   const auto pieces = through(line, 100);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(pieces[i], numbered(i));
   EXPECT_TRUE(line.arrived(milliseconds(1000)).empty());
@@ -56,7 +56,7 @@ TEST(FaultInjector, HasANameForEveryFault) {
 
 TEST(FaultInjector, RefusesWhatIsNoProbability) {
   for (const double bad : {-0.01, 1.01, std::numeric_limits<double>::quiet_NaN()}) {
-    FaultInjector line(1);
+    FaultInjector line(1, kFrameLayout);
     try {
       line.set(LineFault::kFlip, bad, kForever);
       ADD_FAILURE() << bad;
@@ -70,7 +70,7 @@ TEST(FaultInjector, RefusesWhatIsNoProbability) {
 
 TEST(FaultInjector, AFaultEndsWhenItIsSaidToAndWhenItIsSwitchedOff) {
   for (const LineFault fault : lineFaults()) {
-    FaultInjector line(2);
+    FaultInjector line(2, kFrameLayout);
     line.set(fault, 1.0, milliseconds(50));
     through(line, 50);
     const auto after = through(line, 100, 70);  // what was delayed has come by then
@@ -173,7 +173,7 @@ TEST(FaultInjector, ReordersNeighbours) {
 }
 
 TEST(FaultInjector, AFrameThatWaitsForItsSuccessorTooLongIsLost) {
-  FaultInjector line(1);
+  FaultInjector line(1, kFrameLayout);
   line.set(LineFault::kReorder, 1.0, milliseconds(1));
   through(line, 1);
   EXPECT_EQ(through(line, 1, 21)[0], numbered(21));
@@ -198,7 +198,7 @@ TEST(FaultInjector, PutsGarbageBeforeFrames) {
 
 TEST(FaultInjector, PutsTheStartOfAnOversizeFrameBeforeFrames) {
   FaultInjector line = with(LineFault::kOversize);
-  FrameParser parser(LineEnd::kDevice);
+  FrameParser parser(LineEnd::kDevice, kFrameLayout);
   const auto pieces = through(line, 200);
   for (int i = 0; i < 200; ++i) {
     ASSERT_TRUE(endsWith(pieces[i], numbered(i)));
@@ -209,20 +209,20 @@ TEST(FaultInjector, PutsTheStartOfAnOversizeFrameBeforeFrames) {
 
 TEST(FaultInjector, SpeaksAnotherVersion) {
   FaultInjector line = with(LineFault::kWrongVersion);
-  FrameParser parser(LineEnd::kDevice);
+  FrameParser parser(LineEnd::kDevice, kFrameLayout);
   for (const ByteVector& piece : through(line, 50)) {
     EXPECT_EQ(piece.size(), numbered(0).size());
     EXPECT_TRUE(framesFoundBy(parser, piece).empty());
   }
   EXPECT_EQ(parser.statistics().corrupt_frames, 50u);
-  const ByteVector hello = frameOf(Hello{});
+  const ByteVector hello = frameOf(Hello{kProtocolVersion});
   line.send(view(hello), milliseconds(50));
   const ByteVector other = copy(line.arrived(milliseconds(50)));
   EXPECT_EQ(decodeHello(frameIn(other, LineEnd::kDevice))->version, kProtocolVersion + 1);
 }
 
 TEST(FaultInjector, WhileItStallsNothingArrivesAndWhatIsSentIsLost) {
-  FaultInjector line(1);
+  FaultInjector line(1, kFrameLayout);
   line.set(LineFault::kDelay, 1.0, milliseconds(1));
   through(line, 1);  // comes within 20 ms
   line.set(LineFault::kDelay, 0.0, kForever);
@@ -234,7 +234,7 @@ TEST(FaultInjector, WhileItStallsNothingArrivesAndWhatIsSentIsLost) {
 }
 
 TEST(FaultInjector, AStallIsThereForAllFramesOrForNone) {
-  FaultInjector line(1);
+  FaultInjector line(1, kFrameLayout);
   int stalls = 0;
   for (int i = 0; i < 400; ++i) {
     line.set(LineFault::kStall, 0.5, kForever);

@@ -23,10 +23,10 @@ DeviceLink connectedAt(Time now) {
 TEST(DeviceLink, GreetsUntilTheDeviceAnswers) {
   DeviceLink link;
   EXPECT_EQ(link.status(), LinkStatus::kConnecting);
-  EXPECT_EQ(copy(link.poll(milliseconds(7))), frameOf(Hello{}));
+  EXPECT_EQ(copy(link.poll(milliseconds(7))), frameOf(Hello{kProtocolVersion}));
   EXPECT_TRUE(link.poll(milliseconds(8)).empty());
   EXPECT_TRUE(link.poll(milliseconds(106)).empty());
-  EXPECT_EQ(copy(link.poll(milliseconds(107))), frameOf(Hello{}));
+  EXPECT_EQ(copy(link.poll(milliseconds(107))), frameOf(Hello{kProtocolVersion}));
   receive(link, frameOf(kDevice), milliseconds(108));
   EXPECT_EQ(link.status(), LinkStatus::kConnected);
   EXPECT_EQ(link.identity().firmware, 3);
@@ -97,7 +97,7 @@ TEST(DeviceLink, TimesOutAfterTwentyMillisecondsWithoutANewState) {
   link.poll(milliseconds(219));
   EXPECT_EQ(link.status(), LinkStatus::kConnected);
   receive(link, frameOf(stateAt(1), 1), milliseconds(219));  // the same again is no life sign
-  EXPECT_EQ(copy(link.poll(milliseconds(220))), frameOf(Hello{}));
+  EXPECT_EQ(copy(link.poll(milliseconds(220))), frameOf(Hello{kProtocolVersion}));
   EXPECT_EQ(link.status(), LinkStatus::kTimedOut);
   EXPECT_EQ(link.statistics().timeouts, 1u);
   EXPECT_TRUE(link.send(commandOf(DriveMode::kForce, 1)).empty());
@@ -109,7 +109,7 @@ TEST(DeviceLink, TimesOutAfterTwentyMillisecondsWithoutANewState) {
 TEST(DeviceLink, RecoversByItselfAfterATimeout) {
   DeviceLink link = connectedAt(milliseconds(0));
   link.send(commandOf(DriveMode::kForce, 1));
-  EXPECT_EQ(copy(link.poll(milliseconds(150))), frameOf(Hello{}, 1));
+  EXPECT_EQ(copy(link.poll(milliseconds(150))), frameOf(Hello{kProtocolVersion}, 1));
   receive(link, frameOf(stateAt(5), 5), milliseconds(151));  // not before the handshake
   EXPECT_EQ(link.status(), LinkStatus::kTimedOut);
   EXPECT_EQ(link.takeState(), nullptr);
@@ -131,7 +131,7 @@ TEST(DeviceLink, TellsTheVersionOfADeviceThatSpeaksAnother) {
   EXPECT_EQ(link.statistics().version_mismatches, 1u);
   EXPECT_TRUE(link.send(DeviceCommand{}).empty());
   EXPECT_TRUE(link.poll(milliseconds(99)).empty());
-  EXPECT_EQ(copy(link.poll(milliseconds(100))), frameOf(Hello{}));
+  EXPECT_EQ(copy(link.poll(milliseconds(100))), frameOf(Hello{kProtocolVersion}));
   receive(link, frameOf(kDevice), milliseconds(101));  // its firmware was exchanged
   EXPECT_EQ(link.status(), LinkStatus::kConnected);
   EXPECT_EQ(link.identity().version, kProtocolVersion);
@@ -184,7 +184,7 @@ TEST(DeviceLink, StartsOverWhenThePortIsOpenedAnew) {
   EXPECT_EQ(link.status(), LinkStatus::kConnecting);
   EXPECT_EQ(link.takeState(), nullptr);
   EXPECT_TRUE(link.send(DeviceCommand{}).empty());
-  EXPECT_EQ(copy(link.poll(milliseconds(3))), frameOf(Hello{}));
+  EXPECT_EQ(copy(link.poll(milliseconds(3))), frameOf(Hello{kProtocolVersion}));
   EXPECT_EQ(link.statistics().timeouts, 0u);
 }
 

@@ -22,7 +22,7 @@ void obey(FirmwareModel& device, int number, Time now, DriveMode mode = DriveMod
 /// A device that has obeyed commands 1 to 20 once a millisecond, the last at `end`.
 FirmwareModel drivenUntil(Time end) {
   FirmwareModel device(Identity{});
-  receive(device, frameOf(Hello{}), end - milliseconds(20));
+  receive(device, frameOf(Hello{kProtocolVersion}), end - milliseconds(20));
   for (int i = 1; i <= 20; ++i) obey(device, i, end - milliseconds(20 - i));
   return device;
 }
@@ -40,18 +40,18 @@ TEST(FirmwareModel, AnswersEveryHelloOnceWithItsIdentity) {
   const Identity identity{kProtocolVersion, 5, 6, 7};
   FirmwareModel device(identity);
   EXPECT_TRUE(device.answer().empty());
-  receive(device, frameOf(Hello{}), milliseconds(0));
+  receive(device, frameOf(Hello{kProtocolVersion}), milliseconds(0));
   EXPECT_EQ(copy(device.answer()), frameOf(identity));
   EXPECT_TRUE(device.answer().empty());
   device.report({}, milliseconds(1));
-  receive(device, frameOf(Hello{}), milliseconds(1));
+  receive(device, frameOf(Hello{kProtocolVersion}), milliseconds(1));
   EXPECT_EQ(copy(device.answer()), frameOf(identity, 1)) << "carries the number of the last state";
 }
 
 TEST(FirmwareModel, ReportsNothingBeforeTheHandshakeAndNumbersItsStates) {
   FirmwareModel device(Identity{});
   EXPECT_TRUE(device.report({}, milliseconds(0)).empty());
-  receive(device, frameOf(Hello{}), milliseconds(0));
+  receive(device, frameOf(Hello{kProtocolVersion}), milliseconds(0));
   for (const std::uint8_t number : {1, 2, 3}) {
     const ByteVector bytes = copy(device.report(stateAt(5), milliseconds(number)));
     EXPECT_EQ(frameIn(bytes, LineEnd::kDriver).sequence, number);
@@ -63,7 +63,7 @@ TEST(FirmwareModel, IgnoresCommandsBeforeTheHandshake) {
   FirmwareModel device(Identity{});
   obey(device, 1, milliseconds(0));
   EXPECT_TRUE(equal(device.command(milliseconds(3)), DeviceCommand{}));
-  receive(device, frameOf(Hello{}), milliseconds(4));
+  receive(device, frameOf(Hello{kProtocolVersion}), milliseconds(4));
   EXPECT_TRUE(equal(device.command(milliseconds(4)), DeviceCommand{}));
   obey(device, 1, milliseconds(5));
   EXPECT_EQ(device.command(milliseconds(9)).mode, DriveMode::kForce);
@@ -131,7 +131,7 @@ TEST(FirmwareModel, HasTrippedFromTheEndOfTheRampUntilTheNextCommand) {
   EXPECT_FALSE(reported(device, microseconds(118999)).watchdog_tripped);
   EXPECT_TRUE(reported(device, microseconds(119000)).watchdog_tripped);
   EXPECT_EQ(reported(device, microseconds(119000)).mode, DriveMode::kOff);
-  receive(device, frameOf(Hello{}, 20), milliseconds(5000));
+  receive(device, frameOf(Hello{kProtocolVersion}, 20), milliseconds(5000));
   EXPECT_TRUE(reported(device, milliseconds(5000)).watchdog_tripped);
   obey(device, 21, milliseconds(5001));
   EXPECT_FALSE(reported(device, milliseconds(5001)).watchdog_tripped);
@@ -216,14 +216,14 @@ TEST(FirmwareModel, GarbageAndCorruptCommandsDoNotFeedTheWatchdog) {
         frameOf(commandOf(DriveMode::kForce, kSteps), static_cast<std::uint8_t>(number++));
     bad[2 + generator() % 18] ^= static_cast<std::uint8_t>(1 << generator() % 8);
     append(bytes, bad);
-    append(bytes, frameOf(Hello{}, static_cast<std::uint8_t>(number)));
+    append(bytes, frameOf(Hello{kProtocolVersion}, static_cast<std::uint8_t>(number)));
     DeviceCommand meaningless = commandOf(DriveMode::kForce, kSteps);
     meaningless.mode = static_cast<DriveMode>(7);
     append(bytes, frameOf(meaningless, static_cast<std::uint8_t>(number + 1)));
     FrameBuffer buffer;
     const ByteVector good =
         frameOf(commandOf(DriveMode::kForce, kSteps), static_cast<std::uint8_t>(number + 2));
-    append(bytes, copy(inVersion(view(good), kProtocolVersion + 1, buffer)));
+    append(bytes, copy(serial::inVersion(view(good), kProtocolVersion + 1, kFrameLayout, buffer)));
     receive(device, bytes, microseconds(us));
     EXPECT_NEAR(shareAt(device, microseconds(us)),
                 std::min(1.0, static_cast<double>(119000 - us) / 5000.0), 1e-12);
@@ -234,7 +234,7 @@ TEST(FirmwareModel, GarbageAndCorruptCommandsDoNotFeedTheWatchdog) {
 
 TEST(FirmwareModel, AHelloChangesNothingAboutTheRamp) {
   FirmwareModel device = drivenUntil(milliseconds(100));
-  receive(device, frameOf(Hello{}), milliseconds(102));
+  receive(device, frameOf(Hello{kProtocolVersion}), milliseconds(102));
   EXPECT_DOUBLE_EQ(shareAt(device, milliseconds(102)), 1.0);
   EXPECT_NEAR(shareAt(device, microseconds(116500)), 0.5, 1e-12);
   EXPECT_TRUE(equal(device.command(milliseconds(119)), DeviceCommand{}));
@@ -242,7 +242,7 @@ TEST(FirmwareModel, AHelloChangesNothingAboutTheRamp) {
 
 TEST(FirmwareModel, ObeysANewDriverThatCountsAnew) {
   FirmwareModel device = drivenUntil(milliseconds(100));  // up to number 20
-  receive(device, frameOf(Hello{}, 0), milliseconds(300));
+  receive(device, frameOf(Hello{kProtocolVersion}, 0), milliseconds(300));
   obey(device, 1, milliseconds(301), DriveMode::kHoming);
   EXPECT_EQ(device.command(milliseconds(301)).mode, DriveMode::kHoming);
   EXPECT_EQ(reported(device, milliseconds(301)).last_command, 1);
@@ -250,7 +250,7 @@ TEST(FirmwareModel, ObeysANewDriverThatCountsAnew) {
 
 TEST(FirmwareModel, TheLastCommandOfADeadDriverIsNotObeyedAgainAfterAHello) {
   FirmwareModel device = drivenUntil(milliseconds(100));
-  receive(device, frameOf(Hello{}, 0), milliseconds(300));
+  receive(device, frameOf(Hello{kProtocolVersion}, 0), milliseconds(300));
   obey(device, 20, milliseconds(301));
   EXPECT_TRUE(equal(device.command(milliseconds(301)), DeviceCommand{}));
   EXPECT_TRUE(reported(device, milliseconds(301)).watchdog_tripped);
@@ -277,7 +277,7 @@ TEST(FirmwareModel, ObeysAgainAfterALineThatWasSilentForAnyTime) {
     };
     for (obey(device, 20 + lost + ms, again + milliseconds(ms)); !obeyed(20 + lost + ms);) {
       ++ms;
-      ASSERT_LE(ms, kOldNumbers + 2) << lost;
+      ASSERT_LE(ms, serial::kOldNumbers + 2) << lost;
       obey(device, 20 + lost + ms, again + milliseconds(ms));
     }
   }

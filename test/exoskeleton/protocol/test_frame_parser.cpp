@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "haptex/exoskeleton/protocol/frame_parser.h"
+#include "haptex/serial/frame_parser.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton::test_frame_parser {
@@ -25,7 +25,7 @@ TEST(FrameParser, FindsTheSameFramesHoweverTheBytesAreSplit) {
   const auto frames = someStates(50);
   const ByteVector bytes = joined(frames);
   for (std::size_t piece = 1; piece <= 2 * kLongestFrame + 1; ++piece) {
-    FrameParser parser(LineEnd::kDriver);
+    FrameParser parser(LineEnd::kDriver, kFrameLayout);
     EXPECT_EQ(framesFoundBy(parser, bytes, piece), frames) << piece;
     EXPECT_EQ(parser.statistics().good_frames, frames.size());
     EXPECT_EQ(parser.statistics().garbage_bytes, 0u);
@@ -35,7 +35,7 @@ TEST(FrameParser, FindsTheSameFramesHoweverTheBytesAreSplit) {
 
 TEST(FrameParser, ReadsTypeNumberAndPayload) {
   const ByteVector bytes = frameOf(commandOf(DriveMode::kForce, 77), 12);
-  FrameParser parser(LineEnd::kDevice);
+  FrameParser parser(LineEnd::kDevice, kFrameLayout);
   Bytes rest = view(bytes);
   const Frame* frame = parser.next(rest);
   ASSERT_NE(frame, nullptr);
@@ -51,7 +51,7 @@ TEST(FrameParser, FindsTheFrameBehindATruncatedOneWhereverItEnds) {
   for (std::size_t kept = 0; kept < frames[0].size(); ++kept) {
     ByteVector bytes(frames[0].begin(), frames[0].begin() + static_cast<long>(kept));
     append(bytes, frames[1]);
-    FrameParser parser(LineEnd::kDriver);
+    FrameParser parser(LineEnd::kDriver, kFrameLayout);
     const auto found = framesFoundBy(parser, bytes);
     ASSERT_EQ(found.size(), 1u) << kept;
     EXPECT_EQ(found[0], frames[1]);
@@ -64,7 +64,7 @@ TEST(FrameParser, FindsAFrameInsideOfWhatLookedLikeOne) {
   // Starts of commands that never come, one inside of the other, and a lone sync byte.
   ByteVector bytes = {0xA5, 0x5A, 13, 4, 0, 0xA5, 0x5A, 13, 4, 1, 2, 0xA5};
   append(bytes, command);
-  FrameParser parser(LineEnd::kDevice);
+  FrameParser parser(LineEnd::kDevice, kFrameLayout);
   EXPECT_EQ(framesFoundBy(parser, bytes), std::vector<ByteVector>{command});
   EXPECT_EQ(parser.statistics().corrupt_frames, 2u);
   EXPECT_EQ(parser.statistics().garbage_bytes, 12u);
@@ -74,14 +74,14 @@ TEST(FrameParser, CountsWhatWentWrong) {
   ByteVector corrupt = frameOf(DeviceState{});
   corrupt[20] ^= 1;
   FrameBuffer buffer;
-  const ByteVector oversize = copy(oversizeStart(200, 0, buffer));
+  const ByteVector oversize = copy(serial::oversizeStart(200, 0, buffer));
   ByteVector short_state = frameOf(DeviceState{});
   short_state[2] = 42;
   ByteVector unknown = frameOf(DeviceState{});
   unknown[3] = 77;
   const ByteVector echo = frameOf(DeviceCommand{});
 
-  FrameParser parser(LineEnd::kDriver);
+  FrameParser parser(LineEnd::kDriver, kFrameLayout);
   framesFoundBy(parser, corrupt);
   EXPECT_EQ(parser.statistics().corrupt_frames, 1u);
   framesFoundBy(parser, oversize);
@@ -102,7 +102,7 @@ TEST(FrameParser, ForgetsAnUnfinishedFrameIfAsked) {
   const auto frames = someStates(2);
   ByteVector start = frames[0];
   start.pop_back();
-  FrameParser parser(LineEnd::kDriver);
+  FrameParser parser(LineEnd::kDriver, kFrameLayout);
   EXPECT_TRUE(framesFoundBy(parser, start).empty());
   EXPECT_EQ(parser.pending(), start.size());
   parser.discard();

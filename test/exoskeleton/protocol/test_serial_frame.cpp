@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "haptex/exoskeleton/protocol/serial_port.h"
+#include "haptex/serial/serial_port.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton::test_serial_frame {
@@ -52,7 +52,7 @@ ByteVector documented(const std::string& name) {
 }
 
 TEST(SerialFrame, TheExamplesOfTheDocumentAreTheBytes) {
-  EXPECT_EQ(documented("Hello"), frameOf(Hello{}, 0));
+  EXPECT_EQ(documented("Hello"), frameOf(Hello{kProtocolVersion}, 0));
   EXPECT_EQ(documented("Identity"), frameOf(Identity{kProtocolVersion, 0x0102, 1234567, 2048}, 0));
   DeviceState state;
   state.time = 1000000;
@@ -69,13 +69,13 @@ TEST(SerialFrame, TheExamplesOfTheDocumentAreTheBytes) {
 }
 
 TEST(SerialFrame, AMillisecondHoldsAStateAt921600BaudAndNotAtHalfOfIt) {
-  EXPECT_EQ(frameOf(Hello{}).size(), 8u);
+  EXPECT_EQ(frameOf(Hello{kProtocolVersion}).size(), 8u);
   EXPECT_EQ(frameOf(Identity{}).size(), 16u);
   EXPECT_EQ(frameOf(DeviceState{}).size(), kLongestFrame);
   EXPECT_EQ(frameOf(DeviceCommand{}).size(), 20u);
   const double bits = 10.0 * kLongestFrame;  // a start and a stop bit each
-  EXPECT_LT(bits / kBaudRate, 0.6e-3);
-  EXPECT_GT(bits / (0.5 * kBaudRate), 1e-3);
+  EXPECT_LT(bits / serial::kBaudRate, 0.6e-3);
+  EXPECT_GT(bits / (0.5 * serial::kBaudRate), 1e-3);
 }
 
 TEST(SerialFrame, EveryMessageComesBackAsItWasSent) {
@@ -165,7 +165,7 @@ TEST(SerialFrame, AForceBeyondTheRangeOrNotFiniteIsMarkedSaturated) {
 }
 
 TEST(SerialFrame, DecodersRefuseOtherTypesAndLengths) {
-  const ByteVector hello = frameOf(Hello{}), identity = frameOf(Identity{});
+  const ByteVector hello = frameOf(Hello{kProtocolVersion}), identity = frameOf(Identity{});
   const ByteVector state = frameOf(DeviceState{}), command = frameOf(DeviceCommand{});
   for (const ByteVector* bytes : {&hello, &identity, &state, &command}) {
     const bool to_device = bytes == &hello || bytes == &command;
@@ -184,13 +184,15 @@ TEST(SerialFrame, DecodersRefuseFieldsWithoutMeaning) {
   ByteVector command = frameOf(DeviceCommand{});
   command[5] = 3;  // mode
   seal(command);
-  EXPECT_EQ(inspect(view(command), LineEnd::kDevice).verdict, FrameVerdict::kGood);
+  EXPECT_EQ(inspect(view(command), LineEnd::kDevice, kFrameLayout).verdict,
+            serial::FrameVerdict::kGood);
   EXPECT_FALSE(decodeCommand(frameIn(command, LineEnd::kDevice)));
 
   ByteVector state = frameOf(DeviceState{});
   state[10] = 255;  // mode
   seal(state);
-  EXPECT_EQ(inspect(view(state), LineEnd::kDriver).verdict, FrameVerdict::kGood);
+  EXPECT_EQ(inspect(view(state), LineEnd::kDriver, kFrameLayout).verdict,
+            serial::FrameVerdict::kGood);
   EXPECT_FALSE(decodeState(frameIn(state, LineEnd::kDriver)));
 
   for (int bit = 0; bit < 8; ++bit) {
@@ -200,7 +202,8 @@ TEST(SerialFrame, DecodersRefuseFieldsWithoutMeaning) {
     EXPECT_EQ(decodeState(frameIn(state, LineEnd::kDriver)).has_value(), bit < 3) << bit;
   }
   const ByteVector identity = frameOf(Identity{kProtocolVersion, 1, 1, 0});
-  EXPECT_EQ(inspect(view(identity), LineEnd::kDriver).verdict, FrameVerdict::kGood);
+  EXPECT_EQ(inspect(view(identity), LineEnd::kDriver, kFrameLayout).verdict,
+            serial::FrameVerdict::kGood);
   EXPECT_FALSE(decodeIdentity(frameIn(identity, LineEnd::kDriver)));
 }
 
@@ -210,9 +213,10 @@ TEST(SerialFrame, AHandshakeOfAnotherVersionTellsTheVersionWhateverItsLength) {
   EXPECT_EQ(decodeHello(frameIn(hello, LineEnd::kDevice))->version, 7);
   for (const std::uint8_t payload : {1, 5, 9, 30, 43}) {
     ByteVector identity = {0xA5, 0x5A, payload, 2, 0, 7};
-    identity.resize(kFrameOverhead + payload, 0xEE);
+    identity.resize(serial::kFrameOverhead + payload, 0xEE);
     seal(identity, 0);
-    ASSERT_EQ(inspect(view(identity), LineEnd::kDriver).verdict, FrameVerdict::kGood);
+    ASSERT_EQ(inspect(view(identity), LineEnd::kDriver, kFrameLayout).verdict,
+              serial::FrameVerdict::kGood);
     const auto decoded = decodeIdentity(frameIn(identity, LineEnd::kDriver));
     ASSERT_TRUE(decoded);
     EXPECT_EQ(decoded->version, 7);
@@ -226,23 +230,30 @@ TEST(SerialFrame, NoFrameOfAnotherVersionIsTakenForOurs) {
   FrameBuffer buffer;
   for (int version = 0; version < 256; ++version) {
     const bool ours = version == kProtocolVersion;
-    const auto expected = ours ? FrameVerdict::kGood : FrameVerdict::kCorrupt;
+    const auto expected = ours ? serial::FrameVerdict::kGood : serial::FrameVerdict::kCorrupt;
     const ByteVector state = frameOf(randomState(generator));
     const ByteVector command = frameOf(randomCommand(generator));
     const auto other = static_cast<std::uint8_t>(version);
-    EXPECT_EQ(inspect(inVersion(view(state), other, buffer), LineEnd::kDriver).verdict, expected);
-    EXPECT_EQ(inspect(inVersion(view(command), other, buffer), LineEnd::kDevice).verdict, expected);
+    EXPECT_EQ(inspect(serial::inVersion(view(state), other, kFrameLayout, buffer), LineEnd::kDriver,
+                      kFrameLayout)
+                  .verdict,
+              expected);
+    EXPECT_EQ(inspect(serial::inVersion(view(command), other, kFrameLayout, buffer),
+                      LineEnd::kDevice, kFrameLayout)
+                  .verdict,
+              expected);
   }
   const ByteVector identity = frameOf(Identity{});
-  const Inspection other = inspect(inVersion(view(identity), 9, buffer), LineEnd::kDriver);
-  ASSERT_EQ(other.verdict, FrameVerdict::kGood);
+  const serial::Inspection other = inspect(
+      serial::inVersion(view(identity), 9, kFrameLayout, buffer), LineEnd::kDriver, kFrameLayout);
+  ASSERT_EQ(other.verdict, serial::FrameVerdict::kGood);
   EXPECT_EQ(decodeIdentity(other.frame)->version, 9);
 }
 
 TEST(SerialFrame, BytesThatAreNoFrameHaveNoOtherVersion) {
   const ByteVector bytes = {1, 2, 3};
   FrameBuffer buffer;
-  EXPECT_EQ(copy(inVersion(view(bytes), 9, buffer)), bytes);
+  EXPECT_EQ(copy(serial::inVersion(view(bytes), 9, kFrameLayout, buffer)), bytes);
 }
 
 // Of a polynomial with 0x1021 over less than 32752 bits, whatever the data: Koopman and
@@ -255,7 +266,8 @@ TEST(SerialFrame, EveryDamageOfUpToThreeBitsIsFound) {
     damaged[bit / 8] ^= static_cast<std::uint8_t>(1 << bit % 8);
   };
   const auto taken = [&] {
-    return inspect(view(damaged), LineEnd::kDevice).verdict == FrameVerdict::kGood;
+    return inspect(view(damaged), LineEnd::kDevice, kFrameLayout).verdict ==
+           serial::FrameVerdict::kGood;
   };
   long wrong = 0;
   for (std::size_t i = 0; i < bits; ++i) {
@@ -279,39 +291,40 @@ TEST(SerialFrame, EveryDamageOfUpToThreeBitsIsFound) {
 
 TEST(SerialFrame, DecidesAsEarlyAsTheBytesAllow) {
   const auto verdict = [](const ByteVector& bytes) {
-    return inspect(view(bytes), LineEnd::kDriver).verdict;
+    return inspect(view(bytes), LineEnd::kDriver, kFrameLayout).verdict;
   };
-  EXPECT_EQ(verdict({}), FrameVerdict::kUnfinished);
-  EXPECT_EQ(verdict({0x5A}), FrameVerdict::kNoSync);
-  EXPECT_EQ(verdict({0xA5}), FrameVerdict::kUnfinished);
-  EXPECT_EQ(verdict({0xA5, 0xA5}), FrameVerdict::kNoSync);
-  EXPECT_EQ(verdict({0xA5, 0x5A, 44}), FrameVerdict::kImpossibleLength);
-  EXPECT_EQ(verdict({0xA5, 0x5A, 43}), FrameVerdict::kUnfinished);
-  EXPECT_EQ(verdict({0xA5, 0x5A, 43, 3}), FrameVerdict::kUnfinished);
-  EXPECT_EQ(verdict({0xA5, 0x5A, 42, 3}), FrameVerdict::kImpossibleLength);
-  EXPECT_EQ(verdict({0xA5, 0x5A, 0, 2}), FrameVerdict::kImpossibleLength);
-  EXPECT_EQ(verdict({0xA5, 0x5A, 43, 5}), FrameVerdict::kUnknownType);
-  EXPECT_EQ(verdict({0xA5, 0x5A, 1, 1}), FrameVerdict::kUnknownType);   // Hello to a driver
-  EXPECT_EQ(verdict({0xA5, 0x5A, 13, 4}), FrameVerdict::kUnknownType);  // Command to a driver
+  EXPECT_EQ(verdict({}), serial::FrameVerdict::kUnfinished);
+  EXPECT_EQ(verdict({0x5A}), serial::FrameVerdict::kNoSync);
+  EXPECT_EQ(verdict({0xA5}), serial::FrameVerdict::kUnfinished);
+  EXPECT_EQ(verdict({0xA5, 0xA5}), serial::FrameVerdict::kNoSync);
+  EXPECT_EQ(verdict({0xA5, 0x5A, 44}), serial::FrameVerdict::kImpossibleLength);
+  EXPECT_EQ(verdict({0xA5, 0x5A, 43}), serial::FrameVerdict::kUnfinished);
+  EXPECT_EQ(verdict({0xA5, 0x5A, 43, 3}), serial::FrameVerdict::kUnfinished);
+  EXPECT_EQ(verdict({0xA5, 0x5A, 42, 3}), serial::FrameVerdict::kImpossibleLength);
+  EXPECT_EQ(verdict({0xA5, 0x5A, 0, 2}), serial::FrameVerdict::kImpossibleLength);
+  EXPECT_EQ(verdict({0xA5, 0x5A, 43, 5}), serial::FrameVerdict::kUnknownType);
+  EXPECT_EQ(verdict({0xA5, 0x5A, 1, 1}), serial::FrameVerdict::kUnknownType);  // Hello to a driver
+  EXPECT_EQ(verdict({0xA5, 0x5A, 13, 4}),
+            serial::FrameVerdict::kUnknownType);  // Command to a driver
   const auto to_device = [](const ByteVector& bytes) {
-    return inspect(view(bytes), LineEnd::kDevice).verdict;
+    return inspect(view(bytes), LineEnd::kDevice, kFrameLayout).verdict;
   };
-  EXPECT_EQ(to_device({0xA5, 0x5A, 43, 3}), FrameVerdict::kUnknownType);
-  EXPECT_EQ(to_device({0xA5, 0x5A, 9, 2}), FrameVerdict::kUnknownType);
-  EXPECT_EQ(to_device({0xA5, 0x5A, 2, 1}), FrameVerdict::kImpossibleLength);
-  EXPECT_EQ(to_device({0xA5, 0x5A, 12, 4}), FrameVerdict::kImpossibleLength);
-  EXPECT_EQ(to_device({0xA5, 0x5A, 13, 4}), FrameVerdict::kUnfinished);
+  EXPECT_EQ(to_device({0xA5, 0x5A, 43, 3}), serial::FrameVerdict::kUnknownType);
+  EXPECT_EQ(to_device({0xA5, 0x5A, 9, 2}), serial::FrameVerdict::kUnknownType);
+  EXPECT_EQ(to_device({0xA5, 0x5A, 2, 1}), serial::FrameVerdict::kImpossibleLength);
+  EXPECT_EQ(to_device({0xA5, 0x5A, 12, 4}), serial::FrameVerdict::kImpossibleLength);
+  EXPECT_EQ(to_device({0xA5, 0x5A, 13, 4}), serial::FrameVerdict::kUnfinished);
 }
 
 TEST(SerialFrame, SequenceNumbersGoRoundAndLateOnesAreOld) {
-  EXPECT_EQ(numbersAhead(8, 7), 1);
-  EXPECT_EQ(numbersAhead(0, 255), 1);
-  EXPECT_EQ(numbersAhead(4, 250), 10);
-  EXPECT_EQ(numbersAhead(7, 7), 0);
-  EXPECT_EQ(numbersAhead(6, 7), 0);
-  EXPECT_EQ(numbersAhead(250, 4), 0);
-  EXPECT_EQ(numbersAhead(100 - kOldNumbers, 100), 0);
-  EXPECT_EQ(numbersAhead(100 - kOldNumbers - 1, 100), 255 - kOldNumbers);
+  EXPECT_EQ(serial::numbersAhead(8, 7), 1);
+  EXPECT_EQ(serial::numbersAhead(0, 255), 1);
+  EXPECT_EQ(serial::numbersAhead(4, 250), 10);
+  EXPECT_EQ(serial::numbersAhead(7, 7), 0);
+  EXPECT_EQ(serial::numbersAhead(6, 7), 0);
+  EXPECT_EQ(serial::numbersAhead(250, 4), 0);
+  EXPECT_EQ(serial::numbersAhead(100 - serial::kOldNumbers, 100), 0);
+  EXPECT_EQ(serial::numbersAhead(100 - serial::kOldNumbers - 1, 100), 255 - serial::kOldNumbers);
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "haptex/exoskeleton/emulator/fault_injector.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
 #include "haptex/exoskeleton/protocol/firmware_model.h"
+#include "haptex/serial/fault_injector.h"
 #include "serial_fixtures.h"
 
 namespace haptex::exoskeleton::test_serial_fuzz {
@@ -23,7 +23,7 @@ double mostWronglyTaken(double candidates) {
 /// Hands bytes to a parser in pieces of any size, decodes what it finds, and keeps the books.
 class Listener {
  public:
-  explicit Listener(LineEnd end) : parser_(end) {}
+  explicit Listener(LineEnd end) : parser_(end, kFrameLayout) {}
 
   template <typename OnFrame>
   void hear(const ByteVector& bytes, std::mt19937& generator, OnFrame on_frame) {
@@ -164,7 +164,7 @@ ByteVector randomFrame(LineEnd end, int number, std::mt19937& generator) {
 // the harmed frame lacks: then that is complete, and it is not.
 void fuzz(LineEnd end, const std::vector<LineFault>& faults, int frames, Figures& figures) {
   std::mt19937 generator(12);
-  FaultInjector line(13);
+  FaultInjector line(13, kFrameLayout);
   Listener listener(end);
   std::map<ByteVector, int> sent;  // and not yet too old to arrive
   for (int i = 0; i < frames; ++i) {
@@ -221,7 +221,7 @@ TEST(SerialFuzz, EveryUnharmedFrameIsTakenAtOnceBehindAllFaultsTogether) {
 
 // Both ends behind bad lines in both directions, with a driver that comes and goes.
 TEST(SerialFuzz, BothEndsSurviveAndTheTorqueNeverOutlivesTheDriver) {
-  FaultInjector to_device(14), to_driver(15);
+  FaultInjector to_device(14, kFrameLayout), to_driver(15, kFrameLayout);
   FirmwareModel device(Identity{});
   DeviceLink link;
   std::mt19937 generator(16);

@@ -12,15 +12,19 @@
 #include <string>
 
 #include "haptex/exoskeleton/control/device_controller.h"
-#include "haptex/exoskeleton/driver/port_access.h"
 #include "haptex/exoskeleton/driver/request_box.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
 #include "haptex/realtime/duration_histogram.h"
 #include "haptex/realtime/ring.h"
 #include "haptex/realtime/semaphore.h"
 #include "haptex/realtime/triple_buffer.h"
+#include "haptex/serial/port_access.h"
+#include "haptex/serial/port_keeper.h"
 
 namespace haptex::exoskeleton {
+
+using serial::PortAccess;
+using serial::PortKeeper;
 
 /// A text that is copied without allocating; its end is cut off if it is too long.
 class FixedText {

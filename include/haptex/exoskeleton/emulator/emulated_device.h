@@ -32,6 +32,10 @@ class EmulatedDevice {
   /// normal with this standard deviation (N). Both are representative.
   static constexpr double kForceRange = 10.0;
   static constexpr double kForceNoise = 0.002;
+  /// N along z of the fingertip, what the vibrations of the contactors of 40 and of 320 Hz add to
+  /// the sensor's force while it is asked for: 20 um against the pulp's stiffness, and 24
+  /// contactors of 0.1 g that move by 5 um. Representative.
+  static constexpr double kSlowVibration = 0.02, kFastVibration = 0.05;
   /// Fingers do not pass through each other: below this distance (m) of their middles they push
   /// each other apart with this stiffness (N/m). Bones with compressed pulp: representative.
   static constexpr double kClosest = 0.008;
@@ -57,6 +61,9 @@ class EmulatedDevice {
   /// A component reads the end of the range of the sensor (fault).
   void saturateSensor(Finger finger, bool saturated);
 
+  /// The contactors shake the sensors of both fingers, or no longer; not at first.
+  void shakeSensors(bool shaken) { sensors_shaken_ = shaken; }
+
   const EmulatedTruth& truth(Finger finger) const { return fingers_[finger].truth; }
   const EmulatedFinger& finger(Finger finger) const { return fingers_[finger].dynamics; }
 
@@ -81,6 +88,7 @@ class EmulatedDevice {
   std::mt19937 generator_;
   std::normal_distribution<double> noise_{0.0, kForceNoise};
   std::uint64_t steps_ = 0;
+  bool sensors_shaken_ = false;
 };
 
 }  // namespace haptex::exoskeleton

@@ -12,13 +12,26 @@
 #include <vector>
 
 #include "haptex/exoskeleton/emulator/emulated_device.h"
-#include "haptex/exoskeleton/emulator/emulated_line.h"
-#include "haptex/exoskeleton/emulator/emulator_fault.h"
 #include "haptex/exoskeleton/finger.h"
 #include "haptex/exoskeleton/protocol/device_messages.h"
 #include "haptex/exoskeleton/protocol/firmware_model.h"
+#include "haptex/serial/emulated_line.h"
+#include "haptex/serial/emulator_fault.h"
 
 namespace haptex::exoskeleton {
+
+using serial::EmulatedLine;
+using serial::EmulatorFault;
+using serial::LineStatistics;
+
+/// Faults of the emulated exoskeleton beside those of its line: the force sensors of both fingers
+/// read the end of their range, or are shaken by the contactors of the tactile arrays.
+constexpr char kSaturatedSensor[] = "saturated_sensor";
+constexpr char kShakenSensor[] = "shaken_sensor";
+
+/// As EmulatorFault::parse().
+EmulatorFault parseFault(const std::string& fault, const std::string& direction, double probability,
+                         double duration);
 
 /// What is true at the end of a period, which is lived through at once when it is due.
 struct EmulatorSample {
@@ -103,6 +116,7 @@ class Emulator {
   std::uint32_t first_time_ = 0;  // us
   bool sensor_saturated_ = false;
   Time sensor_saturated_until_{0};
+  Time sensor_shaken_until_{0};
   bool started_ = false;
   Time due_{0};  // begin of the next period
   Time skipped_{0};

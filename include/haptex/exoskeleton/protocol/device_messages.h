@@ -27,11 +27,6 @@ enum class DriveMode : std::uint8_t {
   kForce = 2,   ///< the torques render forces
 };
 
-/// Asks a device who it is.
-struct Hello {
-  std::uint8_t version = kProtocolVersion;
-};
-
 /// The answer to Hello. States follow it and no command is obeyed before it.
 struct Identity {
   std::uint8_t version = kProtocolVersion;

@@ -9,8 +9,8 @@
 
 #include "haptex/exoskeleton/finger.h"
 #include "haptex/exoskeleton/protocol/device_messages.h"
-#include "haptex/exoskeleton/protocol/frame_parser.h"
 #include "haptex/exoskeleton/protocol/serial_frame.h"
+#include "haptex/serial/frame_parser.h"
 
 namespace haptex::exoskeleton {
 
@@ -60,7 +60,7 @@ class FirmwareModel {
   Bytes report(DeviceState state, Time now);
 
   /// Counts of what came.
-  const ParserStatistics& received() const { return parser_.statistics(); }
+  const serial::ParserStatistics& received() const { return parser_.statistics(); }
 
  private:
   void handleHello(const Frame& frame);
@@ -76,7 +76,7 @@ class FirmwareModel {
   PerFinger<MotorVector> torques(Time now) const;
 
   Identity identity_;
-  FrameParser parser_{LineEnd::kDevice};
+  serial::FrameParser parser_{LineEnd::kDevice, kFrameLayout};
   FrameBuffer outgoing_{};
   bool greeted_ = false;  // by a driver of our version
   bool to_answer_ = false;

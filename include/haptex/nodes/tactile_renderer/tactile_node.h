@@ -3,6 +3,7 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <haptex/ArrayState.h>
 #include <haptex/ClothMesh.h>
 #include <haptex/Contact.h>
 #include <haptex/SetSurface.h>
@@ -31,9 +32,11 @@ struct TactileParameters {
 };
 
 /// Below the namespace of `node`: subscribes to <finger>/contact of each finger, and to cloth/mesh
-/// for the name of the cloth's fabric; advertises <finger>/tactile (Tactile) every
-/// tactile::kTactileStep, whatever comes in, tactile/markers (visualization_msgs/MarkerArray), for
-/// subscribers only, and the service tactile/set_surface (SetSurface).
+/// for the name of the cloth's fabric, and to tactile/array_state (ArrayState), by which the driver
+/// of the contactors sees at once when this node has died; advertises <finger>/tactile (Tactile)
+/// every tactile::kTactileStep, whatever comes in, tactile/markers
+/// (visualization_msgs/MarkerArray), for subscribers only, and the service tactile/set_surface
+/// (SetSurface).
 ///
 /// All runs on the one thread that spins. Reading another surface delays a step by as long as it
 /// takes.
@@ -70,6 +73,8 @@ class TactileNode {
   base::PerFinger<ros::Publisher> publishers_;
   base::PerFinger<ros::Subscriber> subscribers_;
   ros::Subscriber mesh_subscriber_;
+  ros::Subscriber array_subscriber_;
+  std::string array_message_ = "no tactile_driver";  // what the driver of the contactors says
   ros::ServiceServer service_;
   ros::SteadyTimer step_timer_;
 

@@ -73,6 +73,7 @@ void randomTablePress(const std::string& config_directory, Random& random, const
 void randomTableDrag(const std::string& config_directory, Random& random, const Sink& sink);
 void randomFastFinger(const std::string& config_directory, Random& random, const Sink& sink);
 void randomGrating(const std::string&, Random& random, const Sink& sink);
+void randomContactors(const std::string&, Random& random, const Sink& sink);
 void randomPose(const std::string& config_directory, Random& random, const Sink& sink);
 void randomStaticForce(const std::string& config_directory, Random& random, const Sink& sink);
 

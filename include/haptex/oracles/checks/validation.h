@@ -60,6 +60,12 @@ void validateExoskeleton(const std::string& config_directory, const Sink& sink);
 /// @throws what loadFabric() and buildSurface() throw
 void validateTactile(const std::string& config_directory, const Sink& sink);
 
+/// Drive electronics of the contactors behind a simulated serial line: the waveforms against exact
+/// sums of sines, their jumps, calibration, silence after the death of source, driver or line, and
+/// damaged frames.
+/// @throws what tactile::loadCalibration() throws
+void validateTactileDriver(const std::string& config_directory, const Sink& sink);
+
 /// The [strain, stress] samples of a fabric file as they stand in it, as Green-Lagrange strain and
 /// second Piola-Kirchhoff stress. @param curve for example "warp.elastic"
 /// @throws what loadFabric() throws for a bad file, std::invalid_argument if the curve has no

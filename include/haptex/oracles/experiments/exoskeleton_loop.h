@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <string>
 #include <utility>
@@ -12,35 +11,10 @@
 
 #include "haptex/exoskeleton/driver/driver_loop.h"
 #include "haptex/exoskeleton/emulator/emulated_device.h"
-#include "haptex/exoskeleton/emulator/fault_injector.h"
 #include "haptex/exoskeleton/protocol/firmware_model.h"
+#include "haptex/oracles/experiments/lines/simulated_line.h"
 
 namespace haptex::oracles {
-
-/// One direction of a serial line: what a FaultInjector lets through arrives byte by byte, 10 bits
-/// each.
-class SimulatedLine {
- public:
-  /// @param baud_rate bits per second
-  SimulatedLine(unsigned seed, int baud_rate) : faults_(seed), baud_rate_(baud_rate) {}
-
-  void send(exoskeleton::Bytes frame, base::Time now) { faults_.send(frame, now); }
-  /// To be called in every step: what the injector lets through starts on its way.
-  void advance(base::Time now);
-  /// What has arrived since the last call.
-  const std::vector<std::uint8_t>& arrived(base::Time now);
-  /// Loses what is on its way.
-  void clear() { on_its_way_.clear(); }
-
-  exoskeleton::FaultInjector& faults() { return faults_; }
-
- private:
-  exoskeleton::FaultInjector faults_;
-  int baud_rate_;
-  base::Time free_at_{0};
-  std::deque<std::pair<base::Time, std::uint8_t>> on_its_way_;
-  std::vector<std::uint8_t> arrived_;
-};
 
 /// What the loop does at a moment, for one finger; forces in N, in hand_base.
 struct LoopSample {

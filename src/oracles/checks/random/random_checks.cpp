@@ -43,6 +43,7 @@ const std::vector<RandomCheck>& randomChecks() {
       {"exoskeleton", "pose", randomPose},
       {"exoskeleton", "static_force", randomStaticForce},
       {"tactile", "grating", randomGrating},
+      {"tactile_driver", "contactors", randomContactors},
   };
   return all;
 }
