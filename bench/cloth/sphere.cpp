@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/scene/scene.h"
 #include "haptex/simulation/simulated_cloth.h"

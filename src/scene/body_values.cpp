@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "haptex/contact/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
 
 namespace haptex::scene {
 

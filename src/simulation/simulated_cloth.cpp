@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <numeric>
-#include <string>
 #include <utility>
 
 #include "haptex/base/require.h"
-#include "haptex/proximity/cursor.h"
 #include "haptex/scene/step_values.h"
-#include "haptex/simulation/particle_requests.h"
 
 namespace haptex::simulation {
 namespace {
@@ -264,145 +259,6 @@ void SimulatedCloth::makeIntegrators() {
   }
   if (several) keep(before_);
   if (adaptive) keep(before_substep_);
-}
-
-void SimulatedCloth::setFabric(material::Fabric fabric) {
-  if (collision_) collision_->requireFriction(fabric);
-  cloth_.setFabric(std::move(fabric));
-  cloth_.forget(state_);
-  if (!cloth_.forces().pairs().empty()) makeIntegrators();
-  wake();
-}
-
-void SimulatedCloth::setPointLoads(const std::vector<cloth::PointLoad>& loads) {
-  const bool changes = !loads.empty() || loaded_;
-  cloth_.setPointLoads(loads);
-  loaded_ = !loads.empty();
-  if (changes) wake();
-}
-
-void SimulatedCloth::setExternalForce(std::uint32_t particle, const Eigen::Vector3d& force) {
-  cloth_.setExternalForce(static_cast<int>(particle), force);
-  pushed_ = true;
-  wake();
-}
-
-void SimulatedCloth::setState(const std::vector<std::uint32_t>& particles,
-                              const std::vector<Eigen::Vector3d>& positions,
-                              const std::vector<Eigen::Vector3d>& velocities) {
-  if (positions.empty() && velocities.empty()) {
-    refuse("positions and velocities are empty: allowed is one of them, or both");
-  }
-  requireParticles(particles, cloth_.particleCount());
-  std::vector<int> indices(particles.begin(), particles.end());
-  if (particles.empty()) {
-    indices.resize(cloth_.particleCount());
-    std::iota(indices.begin(), indices.end(), 0);
-  }
-  if (!positions.empty()) {
-    requireOneEach("positions", positions.size(), indices.size(), "none: they stay");
-  }
-  if (!velocities.empty()) {
-    requireOneEach("velocities", velocities.size(), indices.size(), "none: they stay");
-  }
-  requireAllWithin("positions", positions, proximity::kMaxLength, "m");
-  requireAllWithin("velocities", velocities, proximity::kMaxLength, "m/s");
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    requireHeld(indices[i], positions.empty() ? nullptr : &positions[i],
-                velocities.empty() ? nullptr : &velocities[i]);
-  }
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    if (cloth_.attachments()[indices[i]]) continue;
-    if (!positions.empty()) state_.positions[indices[i]] = positions[i];
-    if (!velocities.empty()) state_.velocities[indices[i]] = velocities[i];
-  }
-  if (!positions.empty()) cloth_.forget(state_);
-  makeIntegrators();  // the old ones remember where they have been
-  wake();
-}
-
-/// @param position, velocity that a particle shall get, or null
-void SimulatedCloth::requireHeld(int particle, const Eigen::Vector3d* position,
-                                 const Eigen::Vector3d* velocity) const {
-  const std::optional<cloth::AttachmentPath>& path = cloth_.attachments()[particle];
-  if (!path) return;
-  const auto require = [&](const char* what, const Eigen::Vector3d& wanted,
-                           const Eigen::Vector3d& held, const char* unit) {
-    if ((wanted - held).norm() <= scene::kHeldTolerance) return;
-    refuse("particle ", particle, " is attached: allowed is its ", what, " (", held.x(), ", ",
-           held.y(), ", ", held.z(), ") ", unit, ", not (", wanted.x(), ", ", wanted.y(), ", ",
-           wanted.z(), "), or release it first");
-  };
-  if (position != nullptr) require("place", *position, path->position(state_.time), "m");
-  if (velocity != nullptr) require("velocity", *velocity, state_.velocities[particle], "m/s");
-}
-
-void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
-  for (const int particle : requireSome(particles)) {
-    cloth_.attach(particle, {state_.positions[particle], Eigen::Vector3d::Zero(), state_.time, 0});
-  }
-  wake();
-}
-
-void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,
-                            const std::vector<Eigen::Vector3d>& places) {
-  const std::vector<int> indices = requireSome(particles);
-  requireOneEach("positions", places.size(), indices.size(), "none to attach them where they are");
-  requireAllWithin("positions", places, kMaxCoordinate, "m");
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    cloth_.attach(indices[i], {places[i], Eigen::Vector3d::Zero(), state_.time, 0});
-  }
-  wake();
-}
-
-void SimulatedCloth::move(const std::vector<std::uint32_t>& particles,
-                          const Eigen::Vector3d& displacement, double duration) {
-  const std::vector<int> indices = requireAttached(particles);
-  if (!displacement.allFinite()) {
-    refuse("displacement = (", displacement.x(), ", ", displacement.y(), ", ", displacement.z(),
-           ") m: allowed are finite numbers");
-  }
-  if (!std::isfinite(duration) || duration < 0) {
-    refuse("duration = ", duration, " s: allowed are finite numbers >= 0");
-  }
-  std::vector<Eigen::Vector3d> starts;
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    starts.push_back(cloth_.attachments()[indices[i]]->position(state_.time));
-    requireWithin("the end of the path of " + element("particles", i), starts[i] + displacement,
-                  kMaxCoordinate, "m");
-  }
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    cloth_.attach(indices[i], {starts[i], displacement, state_.time, duration});
-  }
-  wake();
-}
-
-void SimulatedCloth::release(const std::vector<std::uint32_t>& particles) {
-  for (const int particle : requireAttached(particles)) cloth_.release(particle);
-  wake();
-}
-
-std::vector<cloth::JacobianBlock> SimulatedCloth::jacobian(
-    const std::vector<std::uint32_t>& particles) const {
-  return cloth_.jacobian(state_, requireSome(particles));
-}
-
-std::vector<int> SimulatedCloth::requireSome(const std::vector<std::uint32_t>& particles) const {
-  if (particles.empty()) refuse("particles is empty: allowed is at least one particle");
-  requireParticles(particles, cloth_.particleCount());
-  return {particles.begin(), particles.end()};
-}
-
-std::vector<int> SimulatedCloth::requireAttached(
-    const std::vector<std::uint32_t>& particles) const {
-  const std::vector<int> indices = requireSome(particles);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    if (!cloth_.isAttached(indices[i])) {
-      refuse(element("particles", i), " = ", indices[i],
-             " is not attached: allowed are attached particles");
-    }
-  }
-  return indices;
 }
 
 void SimulatedCloth::attachInitially() {

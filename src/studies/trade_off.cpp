@@ -7,7 +7,7 @@
 
 #include "haptex/base/constants.h"
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/contact/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
 #include "haptex/kes/equilibrium.h"
 #include "haptex/oracles/experiments/hanging_strip.h"
 #include "haptex/oracles/scenes/obstacle_scenes.h"

@@ -5,7 +5,7 @@
 
 #include "../malloc_counter.h"
 #include "fixtures.h"
-#include "haptex/contact/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
 
 namespace haptex::contact::test_allocation {
 namespace {

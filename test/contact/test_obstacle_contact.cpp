@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "fixtures.h"
-#include "haptex/contact/obstacle_collision.h"
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacles.h"
 
 namespace haptex::contact::test_obstacle_contact {
 namespace {

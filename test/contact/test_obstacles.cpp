@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/scene/scene.h"
 
 namespace haptex::contact::test_obstacles {

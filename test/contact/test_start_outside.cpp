@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "../cloth/fixtures.h"
-#include "haptex/contact/obstacles.h"
-#include "haptex/contact/start_outside.h"
+#include "haptex/contact/obstacles/obstacles.h"
+#include "haptex/contact/obstacles/start_outside.h"
 #include "haptex/proximity/element_pair.h"
 
 namespace haptex::contact::test_start_outside {

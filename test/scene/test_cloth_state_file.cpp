@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/scene/cloth_state_file.h"
 #include "scene_fixtures.h"
 

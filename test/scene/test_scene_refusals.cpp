@@ -44,9 +44,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"SheetAndMesh",
                 "attach:", "mesh: corner\nattach:", "must have exactly one of sheet, mesh"},
         Refusal{"NeitherSheetNorMesh", kSheet, "", "must have exactly one of sheet, mesh"},
-        Refusal{"UnknownSheetKey", "size:", "thickness: 1, size:",
-                "sheet.thickness: unknown key, allowed here: size, cells, diagonals, position, "
-                "rpy"},
+        Refusal{
+            "UnknownSheetKey", "size:", "thickness: 1, size:",
+            "sheet.thickness: unknown key, allowed here: size, cells, diagonals, position, rpy"},
         Refusal{"MissingCells", "cells: [3, 2], ", "",
                 "sheet: the key 'cells' is missing, required here: size, cells, diagonals"},
         Refusal{"UnknownSolverKey", "attach:", "solver: {iterations: 9}\nattach:",

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "haptex/contact/obstacle_collision.h"
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/proximity/intersections.h"
 #include "step_plans.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "haptex/contact/obstacles.h"
-#include "haptex/contact/start_outside.h"
+#include "haptex/contact/obstacles/obstacles.h"
+#include "haptex/contact/obstacles/start_outside.h"
 #include "haptex/proximity/intersections.h"
 #include "haptex/scene/scene.h"
 #include "haptex/scene/scene_fabric.h"

@@ -14,7 +14,7 @@
 #include "haptex/contact/haptic_settings.h"
 #include "haptex/contact/held_fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
-#include "haptex/contact/obstacle_contact.h"
+#include "haptex/contact/obstacles/obstacle_contact.h"
 #include "haptex/contact/patch.h"
 #include "haptex/contact/patch_selection.h"
 #include "haptex/contact/whole_cloth_contact.h"

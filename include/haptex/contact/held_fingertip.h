@@ -1,4 +1,4 @@
-// A fingertip that cannot get through the cloth, however fast or far it is moved.
+// A fingertip that the cloth holds on the side that it came from.
 #pragma once
 
 #include <optional>

@@ -11,7 +11,7 @@
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
 #include "haptex/contact/layers_between.h"
-#include "haptex/contact/obstacle_contact.h"
+#include "haptex/contact/obstacles/obstacle_contact.h"
 #include "haptex/contact/patch_solver.h"
 #include "haptex/contact/refined_cut.h"
 #include "haptex/contact/sphere_contact.h"

@@ -9,7 +9,7 @@
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/step.h"
 #include "haptex/cloth/dynamics/step_length_control.h"
-#include "haptex/contact/start_outside.h"
+#include "haptex/contact/obstacles/start_outside.h"
 #include "haptex/mesh/mesh.h"
 #include "haptex/mesh/obstacle.h"
 

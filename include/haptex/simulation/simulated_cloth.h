@@ -11,7 +11,7 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/cloth/dynamics/rest_detector.h"
 #include "haptex/cloth/dynamics/step_length_control.h"
-#include "haptex/contact/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
 #include "haptex/material/fabric.h"
 #include "haptex/scene/scene.h"
 #include "haptex/simulation/quality_controller.h"

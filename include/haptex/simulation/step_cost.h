@@ -8,7 +8,7 @@
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/contact/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
 #include "haptex/material/fabric.h"
 #include "haptex/scene/scene.h"
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/node_parameters.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "haptex/base/constants.h"
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/material/linear_fabric.h"
 
 namespace haptex::oracles {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <variant>
 
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/proximity/intersections.h"
 
 namespace haptex::oracles {

@@ -1,4 +1,4 @@
-#include "haptex/contact/start_outside.h"
+#include "haptex/contact/obstacles/start_outside.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <utility>
 #include <variant>
 
-#include "haptex/contact/obstacle_collision.h"
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/proximity/element_pair.h"
 
 namespace haptex::contact {

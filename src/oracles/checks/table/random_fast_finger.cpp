@@ -7,7 +7,6 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/checks/random_checks.h"
 #include "haptex/oracles/experiments/contact_scenes.h"
-#include "haptex/oracles/experiments/table.h"
 
 namespace haptex::oracles {
 namespace {

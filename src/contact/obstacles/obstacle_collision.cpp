@@ -1,4 +1,4 @@
-#include "haptex/contact/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "haptex/base/require.h"
 #include "haptex/contact/bodies/obstacle_path.h"
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacles.h"
 
 namespace haptex::contact {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacles.h"
 
 #include <cstddef>
 #include <stdexcept>

@@ -1,10 +1,10 @@
-#include "haptex/contact/obstacle_contact.h"
+#include "haptex/contact/obstacles/obstacle_contact.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "haptex/contact/obstacle_collision.h"
-#include "haptex/contact/obstacles.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacles.h"
 
 namespace haptex::contact {
 

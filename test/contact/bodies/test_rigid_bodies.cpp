@@ -6,7 +6,7 @@
 #include <string>
 
 #include "../cloth/fixtures.h"
-#include "haptex/contact/obstacle_collision.h"
+#include "haptex/contact/obstacles/obstacle_collision.h"
 
 namespace haptex::contact::test_rigid_bodies {
 namespace {

@@ -8,7 +8,7 @@
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/checks/random_checks.h"
 #include "haptex/oracles/exact/supported_press.h"
-#include "haptex/oracles/experiments/table.h"
+#include "haptex/oracles/experiments/contact_scenes.h"
 
 namespace haptex::oracles {
 namespace {
