@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "../cloth/fixtures.h"
+#include "../../cloth/fixtures.h"
 #include "haptex/contact/obstacles/obstacle_collision.h"
 
 namespace haptex::contact::test_rigid_bodies {
