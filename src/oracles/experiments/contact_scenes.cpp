@@ -221,6 +221,26 @@ Fingertip press(HapticLoop& loop, double height, double seconds) {
   return finger;
 }
 
+double frictionOfDrag(const TableSettings& settings, double depth, const Vector3d& velocity) {
+  constexpr double kLength = 0.008;  // m
+  HapticLoop loop(sheetOnPlate(settings));
+  Fingertip finger = press(loop, kIndexRadius + loop.layer().law().halfThickness() - depth, 0.1);
+  finger.velocity = velocity;
+  const Vector3d way = velocity.normalized();
+  const double weight =
+      settings.fabric.areal_density * settings.side * settings.side * base::kStandardGravity;
+  double drag = 0.0, pressed = 0.0;
+  const int ticks = static_cast<int>(kLength / velocity.norm() * 1e3);
+  for (int tick = 0; tick < ticks; ++tick) {
+    finger.position += 1e-3 * velocity;
+    loop.step({finger, std::nullopt});
+    if (2 * tick < ticks) continue;
+    drag -= feltByIndex(loop).dot(way);
+    pressed += feltByIndex(loop).z() + weight;
+  }
+  return drag / pressed;
+}
+
 Vector3d feltByIndex(const HapticLoop& loop) {
   return loop.layer().contacts()[Finger::kIndex].force;
 }

@@ -49,6 +49,10 @@ void validateContact(const std::string& config_directory, const Sink& sink);
 /// Fabric on a plate under one finger, both layers in one loop without clocks: force of a press,
 /// drag of fabric that slips, and fast fingers, which must not get through.
 void validateTable(const std::string& config_directory, const Sink& sink);
+/// Relative, of frictionOfDrag(): half a percent, and by what one layer tells the other too late,
+/// as the finger goes on meanwhile, 1.5 % per 10 mm/s.
+/// @param speed m/s
+double dragTolerance(double speed);
 
 /// Kinematics of the fingers of urdf/hand_exoskeleton.urdf: against differences, closed forms and
 /// what its comment says, and whether the fingertips meet.

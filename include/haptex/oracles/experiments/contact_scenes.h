@@ -95,6 +95,13 @@ contact::Fingertip fingerAbove(double height);
 /// @return the fingertip, for further steps of the loop
 contact::Fingertip press(HapticLoop& loop, double height, double seconds);
 
+/// Presses until the finger is `depth` (m) in fabric and pulp, and drags the sheet over the plate
+/// by 8 mm. @param velocity m/s, along the plate
+/// @return over the second half of the way the mean drag over that of the force on the plate: of
+/// the
+///   finger, and of the sheet's weight
+double frictionOfDrag(const TableSettings& settings, double depth, const Eigen::Vector3d& velocity);
+
 /// N, that the cloth's layer has the index finger feel.
 Eigen::Vector3d feltByIndex(const HapticLoop& loop);
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "haptex/base/workload.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/checks/validation.h"
 #include "haptex/oracles/exact/supported_press.h"
@@ -17,19 +18,40 @@ void validatePress(const material::Fabric& fabric, const Sink& sink) {
     TableSettings table;
     table.fabric = fabric;
     table.cells = 40;
+    table.refinement = base::unlessSanitized(2, 1);
     const double height = kIndexRadius + law.halfThickness() - depth;
     HapticLoop loop(sheetOnPlate(table));
     press(loop, height, 0.2);
     const double exact = supportedPressForce(fabric, law, kIndexRadius, height);
-    sink(base::relativeTo(exact, "table/press/" + std::to_string(std::lround(depth * 1e6)) + "um",
-                          exact, feltByIndex(loop).z(), 0.01));
+    const std::string name =
+        "table/press/" + fabric.name + "/" + std::to_string(std::lround(depth * 1e6)) + "um";
+    sink(base::relativeTo(exact, name, exact, feltByIndex(loop).z(),
+                          base::unlessSanitized(0.01, 0.1)));
+  }
+}
+
+void validateDrag(const material::Fabric& fabric, const Sink& sink) {
+  for (const double speed : {0.01, 0.02, 0.03}) {
+    TableSettings table;
+    table.fabric = fabric;
+    table.refinement = base::unlessSanitized(2, 1);
+    const double measured = frictionOfDrag(table, 1.5e-3, speed * Eigen::Vector3d::UnitX());
+    const std::string name = "table/drag/" + std::to_string(std::lround(speed * 1e3)) + "mm_s";
+    sink(base::relativeTo(table.plate_friction, name, table.plate_friction, measured,
+                          dragTolerance(speed)));
   }
 }
 
 }  // namespace
 
+double dragTolerance(double speed) { return 0.005 + 1.5 * speed; }
+
 void validateTable(const std::string& config_directory, const Sink& sink) {
-  validatePress(material::loadFabric(config_directory + "/fabrics/wool.yaml"), sink);
+  const std::string fabrics = config_directory + "/fabrics/";
+  for (const char* name : {"wool", "denim", "cotton_canvas", "silk_habutae"}) {
+    validatePress(material::loadFabric(fabrics + name + ".yaml"), sink);
+  }
+  validateDrag(material::loadFabric(fabrics + "wool.yaml"), sink);
 }
 
 }  // namespace haptex::oracles
