@@ -72,7 +72,8 @@ struct ShearReading {
 std::vector<ShearReading> shearReadings(const std::vector<ShearedSample>& samples,
                                         const std::optional<ShearHysteresis>& stated, bool loops) {
   std::vector<ShearReading> result;
-  for (const auto& [loop, pulled] : samples) {
+  for (const ShearedSample& sample : samples) {
+    const ReadingLoop& loop = sample.loop;
     requireLoading(loop);
     const auto add = [&](const Reading& raw, double side) {
       Reading reading = folded(raw);
@@ -85,7 +86,7 @@ std::vector<ShearReading> shearReadings(const std::vector<ShearedSample>& sample
       if (slips && reading.x < kFirstAngle * (1.0 - 1e-9)) return;
       if (side < 0.0 && reading.x > kLastAngle * (1.0 + 1e-9)) return;
       result.push_back(
-          {exactShearStrain(pulled, reading.x), reading.y, reading.x, loops ? side : 0.0});
+          {exactShearStrain(sample.pulled, reading.x), reading.y, reading.x, loops ? side : 0.0});
     };
     for (const Reading& reading : loop.loading) add(reading, 1.0);
     for (const Reading& reading : loop.unloading) add(reading, -1.0);
