@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "../fixtures.h"
 #include "../temporary_file.h"
@@ -52,7 +53,9 @@ TEST(Calibration, ANumberIsForAllContactorsAndAListForEach) {
 }
 
 TEST(Calibration, RefusalsNameKeyValueAndWhatIsAllowed) {
-  for (const char* value : {"0", "-1", ".nan", ".inf", "1001", "many", list("80", 1).c_str()}) {
+  const std::string too_short = list("80", 1);
+  for (const std::string& value :
+       std::vector<std::string>{"0", "-1", ".nan", ".inf", "1001", "many", too_short}) {
     const std::string refused = refusalOf(fileWith(value));
     EXPECT_NE(refused.find("index.full_displacement_40"), std::string::npos) << value << refused;
   }
