@@ -177,10 +177,11 @@ class RefusedParameters(unittest.TestCase):
                              says=[file.name, 'index'])
 
     def test_sounds_of_the_contactors_that_there_cannot_be(self):
+        sound = '_sound:=' + os.path.join(tempfile.gettempdir(), 'a.wav')
         for parameters, says in ((['_sound:=/no/such/folder/a.wav'], ['/no/such/folder/a.wav']),
-                                 (['_sound:=/tmp/a.wav', '_sound_finger:=ring'],
+                                 ([sound, '_sound_finger:=ring'],
                                   ['~sound_finger', 'allowed are index and thumb']),
-                                 (['_sound:=/tmp/a.wav', '_sound_contactor:=24'],
+                                 ([sound, '_sound_contactor:=24'],
                                   ['~sound_contactor', 'whole numbers from 0 to 23'])):
             self.refused(LINK, *parameters, node='tactile_emulator', says=says)
 
