@@ -78,8 +78,9 @@ double ActiveSetContactSolver::searchLine(const linear::BlockVector& solution) {
   double curvature = product_.cwiseProduct(accepted_).sum();
   double slope = residual_.cwiseProduct(accepted_).sum() - curvature;
   if (!bodies_.empty()) {
-    curvature += bodies_.curvature();
-    slope += bodies_.slope() - bodies_.curvature();
+    const double of_bodies = bodies_.curvature();
+    curvature += of_bodies;
+    slope += bodies_.slope() - of_bodies;
   }
   accepted_ = solution - accepted_;
   // What has closed goes out of the body on the way: more than its normal force is worth that.

@@ -14,6 +14,13 @@ bool holds(const HeldContact& contact) {
   return contact.rigid >= 0 && contact.state != State::kOpen;
 }
 
+/// By how much the velocity (m/s) at a contact differs between two velocities of all bodies.
+Vector3d changeAt(const HeldContact& contact, const VectorXd& from, const VectorXd& to) {
+  const Eigen::Index row = kFreedoms * contact.rigid;
+  const Twist change = to.segment<kFreedoms>(row) - from.segment<kFreedoms>(row);
+  return velocityAt(change, contact.arm);
+}
+
 }  // namespace
 
 BodyCoupling::BodyCoupling(std::size_t bodies, std::size_t contacts, int particles)
@@ -39,16 +46,10 @@ void BodyCoupling::begin(const RigidBodies& bodies, double h) {
   pushed_ = solver_.impulses();
 }
 
-Vector3d BodyCoupling::shift(const HeldContact& contact) const {
-  const Twist beyond = velocities_.segment<kFreedoms>(kFreedoms * contact.rigid) -
-                       predicted_.segment<kFreedoms>(kFreedoms * contact.rigid);
-  return velocityAt(beyond, contact.arm);
-}
-
 void BodyCoupling::place(std::vector<HeldContact>& contacts) const {
   for (HeldContact& contact : contacts) {
     if (contact.rigid < 0) continue;
-    const Vector3d beyond = shift(contact);
+    const Vector3d beyond = changeAt(contact, predicted_, velocities_);
     contact.target = contact.predicted_target + beyond;
     contact.body = contact.predicted_body + beyond;
   }
@@ -151,10 +152,7 @@ double BodyCoupling::slope() const {
 }
 
 double BodyCoupling::bodyPart(const HeldContact& contact) const {
-  if (contact.rigid < 0) return 0.0;
-  const Twist way = full_.segment<kFreedoms>(kFreedoms * contact.rigid) -
-                    accepted_.segment<kFreedoms>(kFreedoms * contact.rigid);
-  return contact.normal.dot(velocityAt(way, contact.arm));
+  return contact.rigid < 0 ? 0.0 : contact.normal.dot(changeAt(contact, accepted_, full_));
 }
 
 void BodyCoupling::accept(double share) {
@@ -174,9 +172,7 @@ double BodyCoupling::descent() const {
 }
 
 Vector3d BodyCoupling::way(const HeldContact& contact) const {
-  const Twist way = full_.segment<kFreedoms>(kFreedoms * contact.rigid) -
-                    before_.segment<kFreedoms>(kFreedoms * contact.rigid);
-  return velocityAt(way, contact.arm);
+  return changeAt(contact, before_, full_);
 }
 
 void BodyCoupling::settle(const std::vector<HeldContact>& contacts,

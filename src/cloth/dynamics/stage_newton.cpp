@@ -47,9 +47,8 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     if (touching()) {
       contacts_->moveBodies(0.0);
       potential = incrementalPotential(cloth, stage, result);  // of this friction
-      contacts_->moveBodies(1.0);
+      contacts_->moveBodies(exact && !solved ? 0.0 : 1.0);
     }
-    if (touching() && exact && !solved) contacts_->moveBodies(0.0);
     const bool is_last = solved && isSmallError(norm / stage.a, decrease());
     if (!exact) report.linear_converged = report.linear_converged && solved;
     // Of the projected Hessian an inexact solution will do: the line search judges it.

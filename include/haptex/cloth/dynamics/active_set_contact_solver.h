@@ -103,6 +103,7 @@ class ActiveSetContactSolver {
   /// What the last stage did: the velocities of particles whose contact holds become the body's,
   /// along the normal or altogether. Impacts are inelastic.
   void settle(Velocities& velocities);
+  /// How the cloth's bodies have gone, in their order.
   const std::vector<BodyMotion>& bodyMotions() { return bodies_.motions(); }
   /// Whether any contact held in the last stage.
   bool holding() const;

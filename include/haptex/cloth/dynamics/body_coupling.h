@@ -13,8 +13,8 @@ namespace haptex::cloth {
 
 /// How a body has gone through a step.
 struct BodyMotion {
-  Twist way;  ///< by which it has moved, times the step's length
-  Twist end;  ///< at the end: impacts are inelastic
+  Twist way;  ///< m/s and rad/s: this, for the length of the step, has moved it
+  Twist end;  ///< m/s and rad/s, at the end, after inelastic impacts
 };
 
 /// With the contacts that hold, the velocities of the particles that touch a body follow its own,
@@ -35,8 +35,6 @@ class BodyCoupling {
 
   /// Takes the bodies over, as they go without cloth. @param h s, of the step
   void begin(const RigidBodies& bodies, double h);
-  /// m/s, beyond what was predicted.
-  Eigen::Vector3d shift(const HeldContact& contact) const;
   /// Writes the targets of the contacts as the bodies go now.
   void place(std::vector<HeldContact>& contacts) const;
 
@@ -66,10 +64,9 @@ class BodyCoupling {
   // On the way from what was accepted in the rounds before, or what the system began with.
   double curvature() const;  ///< of the kinetic energy, J
   double slope() const;      ///< of the incremental potential at the end of the way, J
-  /// Of what has gone out of a body, that not the body has (m/s).
+  /// How the velocity of its body changes at a contact, along the normal (m/s); 0 without a body.
   double bodyPart(const HeldContact& contact) const;
   void accept(double share);
-  void finish() { velocities_ = full_; }  ///< the last round's are taken altogether
   /// Of the way since beginSystem().
   void go(double share) { velocities_ = end_ = before_ + share * (full_ - before_); }
   double potential() const;  ///< incremental, J

@@ -22,7 +22,7 @@ struct HeldContact : ContactMemory {
   Eigen::Vector3d normal;  ///< of that contact
   Eigen::Vector3d body;    ///< m/s, its velocity
   Eigen::Vector3d target;  ///< m/s, of a particle that goes with the body and closes the gap
-  int rigid = -1;          ///< body of that contact; the next four are of it
+  int rigid = -1;          ///< number of the contact's rigid body; -1: none, without the next four
   double mass = 0.0;       ///< kg, of the particle
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();               ///< of that contact
   Eigen::Vector3d predicted_body = Eigen::Vector3d::Zero();    ///< m/s, as the body was predicted

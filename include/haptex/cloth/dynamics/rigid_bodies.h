@@ -66,8 +66,8 @@ class BodyContactSolver {
 
   /// @param right r, N s and N m s @return u
   const Eigen::VectorXd& solve(const Eigen::VectorXd& right);
-  /// How u changes with r while the contacts that held in the last solve() hold, and those that
-  /// stuck stick.
+  /// How u changes with r while the contacts that held in the last solve() go on to hold, and those
+  /// that stuck go on to stick.
   const Eigen::VectorXd& respond(const Eigen::VectorXd& change);
   /// As solve(), but for the velocities after the step: contacts that held in the last solve() let
   /// nothing come nearer, whatever their gap, and others do nothing.

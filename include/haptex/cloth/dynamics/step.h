@@ -61,8 +61,8 @@ constexpr bool collidesWithItself(IntegrationMethod method, bool among_obstacles
          (method == IntegrationMethod::kBdf2 || method == IntegrationMethod::kTrBdf2);
 }
 
-/// Whether the method moves rigid bodies with the cloth (RigidBodies). Of explicit ones the bodies
-/// are pushed after the step.
+/// Whether cloth among rigid bodies (RigidBodies) can be stepped by the method. Backward Euler
+/// moves them in one step with the cloth; with explicit methods they are pushed after it.
 constexpr bool knowsBodies(IntegrationMethod method) {
   return method == IntegrationMethod::kBackwardEuler || !isImplicit(method);
 }

@@ -18,9 +18,9 @@ struct AdaptiveSteps {
 
 /// What a step misses, and from it how long the next one may be.
 ///
-/// The estimate of the error is how far the largest way of a free particle is from the integral of
-/// its velocity: with v at the ends of this step (h) and of the one before (h'), through which a
-/// parabola goes,
+/// The estimate of the error is how far the way of a free particle is from the integral of its
+/// velocity, at most: with v at the ends of this step (h) and of the one before (h'), through which
+/// a parabola goes,
 ///   error = |x1 - x0 - h (v0 + v1)/2 + h^3 d/6|,
 ///   d = ((v1 - v0)/h - (v0 - v')/h') / (h + h'),
 /// or d = 0 without a step before. To the leading order that is the error of x in one step of
@@ -33,6 +33,7 @@ struct AdaptiveSteps {
 /// 1993, II.4; BDF-2 is stable up to 1 + sqrt 2). Nothing allocates after construction.
 class StepLengthControl {
  public:
+  /// @throws std::invalid_argument unless all three of AdaptiveSteps are finite and as said there
   StepLengthControl(const Cloth& cloth, IntegrationMethod method, const AdaptiveSteps& steps);
 
   /// The next step's length (s): `left` by the least whole number of steps that the controller
