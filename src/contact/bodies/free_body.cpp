@@ -80,8 +80,8 @@ double FreeBody::kineticEnergy() const {
   return 0.5 * momentum_.squaredNorm() / mass_ + 0.5 * turned.dot(turned.cwiseQuotient(principal_));
 }
 
-/// The rotation after h seconds in which the angular momentum stays, by Runge-Kutta steps of a 1/20
-/// rad at most.
+/// The rotation after h seconds in which the angular momentum stays, by Runge-Kutta steps of 1/20
+/// rad at most, as long as kMostSteps of them suffice.
 Quaterniond FreeBody::turned(const Vector3d& angular_momentum, double h) const {
   constexpr double kAngle = 0.05;
   constexpr int kMostSteps = 10000;

@@ -61,17 +61,19 @@ void findContact(const PlacedObstacle& mover, const Vector3d& point, const Place
 
 bool isPoint(const PlacedObstacle& obstacle) { return obstacle.points.size() == 1; }
 
-/// Which of two touches the other with its points: both, unless one is a sphere, whose centre says
-/// it all.
-struct Pair {
-  bool first_touches, second_touches;
-
-  Pair(const PlacedObstacle& first, const PlacedObstacle& second)
-      : first_touches(isPoint(first) || !isPoint(second)), second_touches(!isPoint(first)) {}
-};
-
-bool eitherHasMass(const PlacedObstacle& first, const PlacedObstacle& second) {
-  return first.body >= 0 || second.body >= 0;
+/// Calls touch(mover, wall) for each that may touch another one with its points: of two, of which
+/// one at least has mass, both, unless one is a sphere, whose centre says it all.
+template <typename Touch>
+void forEachMover(const std::vector<PlacedObstacle>& obstacles, const Touch& touch) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    for (std::size_t j = i + 1; j < obstacles.size(); ++j) {
+      const PlacedObstacle& first = obstacles[i];
+      const PlacedObstacle& second = obstacles[j];
+      if (first.body < 0 && second.body < 0) continue;
+      if (isPoint(first) || !isPoint(second)) touch(first, second);
+      if (!isPoint(first)) touch(second, first);
+    }
+  }
 }
 
 }  // namespace
@@ -95,32 +97,18 @@ void setPoints(const mesh::Obstacle& obstacle, double offset, PlacedObstacle& pl
 
 std::size_t mostBodyContacts(const std::vector<PlacedObstacle>& obstacles) {
   std::size_t most = 0;
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    for (std::size_t j = i + 1; j < obstacles.size(); ++j) {
-      if (!eitherHasMass(obstacles[i], obstacles[j])) continue;
-      most += obstacles[i].points.size() + obstacles[j].points.size();
-    }
-  }
+  forEachMover(obstacles, [&](const PlacedObstacle& mover, const PlacedObstacle& /*wall*/) {
+    most += mover.points.size();
+  });
   return most;
 }
 
 void findBodyContacts(const std::vector<PlacedObstacle>& obstacles, double h,
                       std::vector<cloth::BodyContact>& contacts) {
   contacts.clear();
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    for (std::size_t j = i + 1; j < obstacles.size(); ++j) {
-      const PlacedObstacle& first = obstacles[i];
-      const PlacedObstacle& second = obstacles[j];
-      if (!eitherHasMass(first, second)) continue;
-      const Pair pair(first, second);
-      if (pair.first_touches) {
-        for (const Vector3d& point : first.points) findContact(first, point, second, h, contacts);
-      }
-      if (pair.second_touches) {
-        for (const Vector3d& point : second.points) findContact(second, point, first, h, contacts);
-      }
-    }
-  }
+  forEachMover(obstacles, [&](const PlacedObstacle& mover, const PlacedObstacle& wall) {
+    for (const Vector3d& point : mover.points) findContact(mover, point, wall, h, contacts);
+  });
 }
 
 }  // namespace haptex::contact

@@ -102,11 +102,7 @@ cloth::StepReport ObstacleCollision::step(cloth::Cloth& cloth, cloth::Integrator
   if (penalty_) pushOut(cloth, state, time_step);
   if (!bodies_.empty()) predictBodies(cloth.effects().gravity, time_step);
   findContacts(cloth, state, time_step);
-  if (bodies_.empty()) {
-    cloth.setContacts(contacts_);
-  } else {
-    cloth.setContacts(contacts_, rigid_);
-  }
+  cloth.setContacts(contacts_, rigid_);
   std::copy(state.positions.begin(), state.positions.end(), positions_.begin());
   const cloth::StepReport report = integrator.step(cloth, state, time_step);
   if (!report.accepted) {
@@ -138,13 +134,11 @@ void ObstacleCollision::predictBodies(const Vector3d& gravity, double h) {
     cloth::Twist free = body.velocity();
     free.head<3>() += h * gravity;
     rigid_.bodies[obstacle.body] = {body.mass(), body.inertia(), free, free};
+    velocities_.segment<6>(static_cast<Eigen::Index>(6 * obstacle.body)) = free;
     obstacle.end = body.poseAfter(free, h);
   }
   findBodyContacts(placed_, h, rigid_.contacts);
   alone_->begin(rigid_, h);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    velocities_.segment<6>(static_cast<Eigen::Index>(6 * b)) = rigid_.bodies[b].free;
-  }
   momenta_.noalias() = alone_->masses() * velocities_;
   velocities_ = alone_->solve(momenta_);
   momenta_.noalias() = alone_->masses() * velocities_;
@@ -248,7 +242,7 @@ void ObstacleCollision::resolve(const cloth::Cloth& cloth, cloth::ClothState& st
   }
 }
 
-/// @param begin m, where the particle has been @return whether it had to be moved
+/// @param from m, where the particle has been @return whether it had to be moved
 bool ObstacleCollision::bringBack(double mass, const Vector3d& from, double h,
                                   PlacedObstacle& obstacle, Vector3d& position,
                                   Vector3d& velocity) {

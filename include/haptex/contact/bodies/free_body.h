@@ -13,9 +13,8 @@ namespace haptex::contact {
 class FreeBody {
  public:
   /// As at the start.
-  /// @throws std::invalid_argument naming the obstacle unless it is a sphere or a box without
-  /// motion
-  ///   of its own, its mass is finite and > 0, its velocities are finite and its friction is finite
+  /// @throws std::invalid_argument naming the obstacle unless it is a sphere or a box without its
+  ///   own motion, its mass is finite and > 0, its velocities are finite and its friction is finite
   ///   and >= 0
   explicit FreeBody(const mesh::Obstacle& obstacle);
 

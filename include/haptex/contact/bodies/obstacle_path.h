@@ -14,9 +14,8 @@ struct Path {
 };
 
 /// How far along a path, from 0 to 1, something is nearer to the surface than a clearance > 0 (m);
-/// 2 if nowhere. Steps as long as the distance allows (sphere tracing), and at least a quarter of
-/// the clearance, which does not lead through a surface, or a 1e-5 of a path longer than 10 m or
-/// so.
+/// 2 if nowhere. Steps are as long as the distance allows (sphere tracing), and at least a quarter
+/// of the clearance, which does not lead through a surface, or 1e-5 of the path if that is more.
 double firstTouch(const proximity::RigidObstacle& shape, const Path& path, double clearance);
 
 /// Where a path ends that slides along the tangent plane from where it touches (m).

@@ -59,8 +59,7 @@ class ObstacleCollision {
   cloth::StepReport step(cloth::Cloth& cloth, cloth::Integrator& integrator,
                          cloth::ClothState& state, double time_step);
 
-  /// @throws std::invalid_argument if an obstacle has no friction of its own and the fabric has
-  /// none
+  /// @throws std::invalid_argument if an obstacle has no friction of its own, and the fabric none
   void requireFriction(const material::Fabric& fabric) const;
 
   const std::vector<mesh::Obstacle>& obstacles() const { return obstacles_; }
@@ -88,7 +87,7 @@ class ObstacleCollision {
                   double h);
   bool isAlone(int body) const;
   void resolve(const cloth::Cloth& cloth, cloth::ClothState& state, double h);
-  bool bringBack(double mass, const Eigen::Vector3d& begin, double h, PlacedObstacle& obstacle,
+  bool bringBack(double mass, const Eigen::Vector3d& from, double h, PlacedObstacle& obstacle,
                  Eigen::Vector3d& position, Eigen::Vector3d& velocity);
   void pushOut(const cloth::Cloth& cloth, cloth::ClothState& state, double h);
   void takeBack(cloth::ClothState& state);
