@@ -28,8 +28,7 @@ void requireBodiesKnown(const YamlValue& file, const std::vector<mesh::Obstacle>
   }
   if (file.has("state")) {
     file.at("state").refuseBecause(
-        "is not allowed with a body among the obstacles: states have "
-        "the cloth alone");
+        "is not allowed with a body among the obstacles: states have the cloth alone");
   }
   if (cloth::knowsBodies(method)) return;
   file.at("integrator")

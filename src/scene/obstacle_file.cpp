@@ -1,6 +1,5 @@
 #include "haptex/scene/obstacle_file.h"
 
-#include <cmath>
 #include <set>
 #include <string>
 
@@ -62,16 +61,8 @@ mesh::ObstacleOrbit readOrbit(const YamlValue& value) {
   return orbit;
 }
 
-Eigen::Vector3d readVelocity(const YamlValue& value, double fastest, const char* allowed) {
-  const Eigen::Vector3d velocity = readVector(value);
-  for (int i = 0; i < 3; ++i) {
-    if (std::abs(velocity[i]) > fastest) value.items(3)[i].refuse(allowed);
-  }
-  return velocity;
-}
-
-Eigen::Vector3d readSpeed(const YamlValue& value) {
-  return readVelocity(value, kFastest, "must be from -1000 to 1000 m/s");
+Eigen::Vector3d readVelocity(const YamlValue& value) {
+  return readVectorWithin(value, kFastest, "must be from -1000 to 1000 m/s");
 }
 
 auto readMotion(const YamlValue& value) -> decltype(mesh::Obstacle::motion) {
@@ -79,7 +70,7 @@ auto readMotion(const YamlValue& value) -> decltype(mesh::Obstacle::motion) {
     value.refuseBecause("must have at most one of orbit, velocity");
   }
   if (value.has("orbit")) return readOrbit(value.at("orbit"));
-  if (value.has("velocity")) return mesh::ObstacleDrift{readSpeed(value.at("velocity"))};
+  if (value.has("velocity")) return mesh::ObstacleDrift{readVelocity(value.at("velocity"))};
   return {};
 }
 
@@ -96,10 +87,10 @@ mesh::ObstacleBody readBody(const YamlValue& value) {
     value.at("mass").refuse("must be from 1e-6 to 1e6 kg");
   }
   body.friction = readFriction(value.at("friction"));
-  if (value.has("velocity")) body.velocity = readSpeed(value.at("velocity"));
+  if (value.has("velocity")) body.velocity = readVelocity(value.at("velocity"));
   if (value.has("angular_velocity")) {
-    body.angular_velocity = readVelocity(value.at("angular_velocity"), kFastestTurn,
-                                         "must be from -10000 to 10000 rad/s");
+    body.angular_velocity = readVectorWithin(value.at("angular_velocity"), kFastestTurn,
+                                             "must be from -10000 to 10000 rad/s");
   }
   return body;
 }

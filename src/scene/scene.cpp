@@ -273,6 +273,15 @@ cloth::ModelledEffects readEffects(const YamlValue& scene, const Listed& listed)
   return effects;
 }
 
+void readTimeSteps(const YamlValue& value, Scene& scene) {
+  if (value.isMap()) {
+    scene.adaptive_steps = readAdaptiveSteps(value);
+    scene.time_step = scene.adaptive_steps->longest;
+  } else {
+    scene.time_step = readTimeStep(value);
+  }
+}
+
 Scene readScene(const std::string& path, double cell_size) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"fabric", "attach", "model", "time_step"},
@@ -306,12 +315,7 @@ Scene readScene(const std::string& path, double cell_size) {
       file.at("bending").refuseBecause("is not allowed with mass_spring, which bends by springs");
     }
   }
-  if (const YamlValue steps = file.at("time_step"); steps.isMap()) {
-    scene.adaptive_steps = readAdaptiveSteps(steps);
-    scene.time_step = scene.adaptive_steps->longest;
-  } else {
-    scene.time_step = readTimeStep(steps);
-  }
+  readTimeSteps(file.at("time_step"), scene);
   scene.step = readStepSettings(file);
   const bool among_obstacles = scene.effects.contacts;
   if (scene.effects.self_collision &&

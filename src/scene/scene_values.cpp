@@ -58,6 +58,14 @@ Eigen::Vector3d readVector(const YamlValue& value) {
   return {components[0].number(), components[1].number(), components[2].number()};
 }
 
+Eigen::Vector3d readVectorWithin(const YamlValue& value, double largest, const char* allowed) {
+  const Eigen::Vector3d vector = readVector(value);
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(vector[i]) > largest) value.items(3)[i].refuse(allowed);
+  }
+  return vector;
+}
+
 double readSize(const YamlValue& value) {
   const double size = value.number();
   if (size <= 0.0 || size > kMaxSize) value.refuse("must be > 0 and <= 100 m");
@@ -72,11 +80,7 @@ void requireTriangleCount(const YamlValue& value, long long triangles) {
 }
 
 Eigen::Vector3d readPosition(const YamlValue& value) {
-  const Eigen::Vector3d position = readVector(value);
-  for (int i = 0; i < 3; ++i) {
-    if (std::abs(position[i]) > kMaxSize) value.items(3)[i].refuse("must be from -100 to 100 m");
-  }
-  return position;
+  return readVectorWithin(value, kMaxSize, "must be from -100 to 100 m");
 }
 
 Eigen::Isometry3d readPose(const YamlValue& value) {

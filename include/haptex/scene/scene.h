@@ -49,9 +49,9 @@ constexpr double kHeldTolerance = 1e-9;
 /// (config/fabrics for config/scenes); one with a separator is a path from the scene's directory.
 /// With a saved state its positions are the mesh's initial ones.
 /// @throws std::runtime_error if the scene file, its mesh or its state cannot be read, or the scene
-/// is not YAML
+///   is not YAML
 /// @throws std::invalid_argument naming file, key, value and what is allowed, or what loadObj() and
-/// loadState() say
+///   loadState() say
 Scene loadScene(const std::string& path);
 
 /// The same, but a sheet of a scene with any_cells has as few cells as make no edge along weft or

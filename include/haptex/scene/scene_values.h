@@ -21,6 +21,11 @@ std::string resolveFile(const base::YamlValue& value, const std::string& kind,
 /// @throws std::invalid_argument naming file, key, value and what is allowed
 Eigen::Vector3d readVector(const base::YamlValue& value);
 
+/// The same, each at most `largest` from 0.
+/// @param allowed says so when it refuses one, with the unit
+/// @throws std::invalid_argument naming file, key, value and what is allowed
+Eigen::Vector3d readVectorWithin(const base::YamlValue& value, double largest, const char* allowed);
+
 /// A length (m), > 0 and at most kMaxSize.
 /// @throws std::invalid_argument naming file, key, value and what is allowed
 double readSize(const base::YamlValue& value);
