@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 
@@ -69,6 +70,23 @@ inline std::string replaced(std::string text, const std::string& from, const std
   EXPECT_NE(at, std::string::npos) << "the test replaces what is not there: " << from;
   return text.replace(at, from.size(), to);
 }
+
+// What makes a valid scene invalid, and what is said then.
+struct Refusal {
+  std::string name;
+  std::string from, to;   // the change
+  std::string complaint;  // after the path
+};
+
+inline void PrintTo(const Refusal& refusal, std::ostream* stream) { *stream << refusal.name; }
+
+class RefusedScene : public SceneFile, public testing::WithParamInterface<Refusal> {
+ protected:
+  void expectRefusal(const std::string& valid) const {
+    EXPECT_EQ(refusalOf(replaced(valid, GetParam().from, GetParam().to)),
+              path() + ": " + GetParam().complaint);
+  }
+};
 
 static inline std::string meshScene(const std::string& mesh) {
   return replaced(kValid, "sheet: {size: [0.3, 0.2], cells: [3, 2], diagonals: alternating}",

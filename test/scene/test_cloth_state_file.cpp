@@ -120,6 +120,16 @@ TEST_F(StateFile, OfAnotherClothIsRefused) {
   EXPECT_EQ(refusalOf(replaced(kFromState, "[top]", "[]")), "(not refused)");
 }
 
+TEST_F(StateFile, IsRefusedBesideObstaclesWithMass) {
+  saveState(statePath(), state_);
+  EXPECT_EQ(refusalOf(replaced(kFromState, "viscosity]", "viscosity, obstacles]") +
+                      "obstacles: [{name: ball, sphere: 0.05, position: [1, 0, 0], "
+                      "body: {mass: 0.4, friction: 0.5}}]\n"),
+            path() +
+                ": state: is not allowed with a body among the obstacles: states have the "
+                "cloth alone");
+}
+
 TEST_F(StateFile, IsRefusedForWhatIsWrongWithIt) {
   const std::string good = savedText();
   const auto expect = [&](const std::string& from, const std::string& to,

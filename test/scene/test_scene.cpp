@@ -41,8 +41,7 @@ TEST_F(SceneFile, LaysASheetWhereItsPoseSays) {
   const mesh::ClothMesh upright =
       mesh::makeRectangle(0.3, 0.2, 3, 2, mesh::Triangulation::kAlternating);
   for (std::size_t i = 0; i < upright.initial_positions.size(); ++i) {
-    const Eigen::Vector3d& place =
-        upright.initial_positions[i];  // warp along z, in the plane x = 0
+    const Eigen::Vector3d& place = upright.initial_positions[i];  // in the plane x = 0
     const Eigen::Vector3d lying(0.1 - place.z(), place.y(), 0.5 + place.x());
     EXPECT_LT((scene.mesh.initial_positions[i] - lying).norm(), 1e-12);
   }
