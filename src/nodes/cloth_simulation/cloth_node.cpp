@@ -69,6 +69,16 @@ void addInput(diagnostic_updater::DiagnosticStatusWrapper& status, const std::st
              input.refused_why.empty() ? "none" : input.refused_why);
 }
 
+void addSubsteps(diagnostic_updater::DiagnosticStatusWrapper& status,
+                 const simulation::AdaptiveReport& adaptive) {
+  if (adaptive.substeps == 0) return;
+  status.add("substeps of the last step", adaptive.substeps);
+  status.add("substeps repeated in the last step", adaptive.repeated);
+  status.add("shortest substep of the last step (ms)", 1e3 * adaptive.shortest);
+  status.addf("error of a substep of the last step (mm)", "%.3g%s", 1e3 * adaptive.error,
+              adaptive.missed ? ", more than allowed, with the shortest substep" : "");
+}
+
 }  // namespace
 
 ClothNodeParameters ClothNodeParameters::read(const ros::NodeHandle& private_node) {
@@ -239,14 +249,7 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
     status.summary(DiagnosticStatus::OK, "in real time");
   }
   diagnosed_drop_ = loop.dropped_seconds;
-  if (const simulation::AdaptiveReport& adaptive = loop.last_adaptive_report;
-      adaptive.substeps > 0) {
-    status.add("substeps of the last step", adaptive.substeps);
-    status.add("substeps repeated in the last step", adaptive.repeated);
-    status.add("shortest substep of the last step (ms)", 1e3 * adaptive.shortest);
-    status.addf("error of a substep of the last step (mm)", "%.3g%s", 1e3 * adaptive.error,
-                adaptive.missed ? ", more than allowed, with the shortest substep" : "");
-  }
+  addSubsteps(status, loop.last_adaptive_report);
   const bool direct = loop.last_report.solver == linear::LinearSolverMethod::kCholesky;
   status.add("simulated time (s)", loop.simulated_time);
   status.add("steps", loop.steps);
