@@ -8,9 +8,10 @@
 #include <cmath>
 #include <ctime>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "haptex/contact/obstacles/obstacles.h"
+#include "haptex/contact/bodies/free_body.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/scene/scene.h"
 #include "haptex/simulation/simulated_cloth.h"

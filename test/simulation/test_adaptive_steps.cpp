@@ -116,8 +116,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, AdaptiveSteps,
 
 TEST(AdaptiveStep, EstimateIsTheErrorOfASmoothStep) {
   // One step from a state of a smooth motion against the same time in a thousand steps.
-  for (const auto& [method, tolerance] : {std::pair{IntegrationMethod::kBackwardEuler, 0.25},
-                                          std::pair{IntegrationMethod::kTrBdf2, 0.25}}) {
+  for (const IntegrationMethod method :
+       {IntegrationMethod::kBackwardEuler, IntegrationMethod::kTrBdf2}) {
     const scene::Scene scene = swing(method);
     const cloth::Cloth model = [&] {
       cloth::Cloth made(scene.mesh, smallFabric(), scene.effects);
@@ -142,7 +142,7 @@ TEST(AdaptiveStep, EstimateIsTheErrorOfASmoothStep) {
     for (std::size_t i = 0; i < exact.positions.size(); ++i) {
       error = std::max(error, (next.positions[i] - exact.positions[i]).norm());
     }
-    EXPECT_NEAR(lengths.error(), error, tolerance * error) << cloth::nameOf(method);
+    EXPECT_NEAR(lengths.error(), error, 0.25 * error) << cloth::nameOf(method);
   }
 }
 
