@@ -171,17 +171,19 @@ void SimulatedCloth::runAdaptiveSubsteps(double duration) {
   while (left > 0.0) {
     const double length = lengths.lengthWithin(left);
     keep(before_substep_);
-    total = sum(total, runSubstep(length));
-    if (!total.accepted) {
-      if (lengths.shorten(left)) continue;
-      bringBack(before_);
-      lengths.forget();
-      break;
-    }
-    if (!lengths.judge(cloth_, before_substep_.state, state_, left)) {
+    cloth::StepReport report = runSubstep(length);
+    const bool again = report.accepted ? !lengths.judge(cloth_, before_substep_.state, state_, left)
+                                       : lengths.shorten(left);
+    if (again) report.linear_converged = report.newton_converged = true;  // of those taken
+    total = sum(total, report);
+    if (again) {
       bringBack(before_substep_);
       ++adaptive_report_.repeated;
       continue;
+    }
+    if (!report.accepted) {
+      bringBack(before_);
+      break;
     }
     left = length < left ? left - length : 0.0;
     const int taken = adaptive_report_.substeps++;

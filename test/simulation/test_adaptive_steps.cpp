@@ -174,12 +174,53 @@ TEST(AdaptiveStep, UnsoundLengthsAreRefused) {
   EXPECT_THROW(simulate({0.001, 0.01, std::nan("")}), std::invalid_argument);
 }
 
-TEST(AdaptiveStep, AStepThatExplodesIsRepeatedInShorterOnes) {
-  // Ten times the longest stable step of Runge-Kutta.
-  scene::Scene scene = adaptiveSwing(IntegrationMethod::kRungeKutta4, 1e-4);
-  SimulatedCloth simulation(scene, smallFabric());
+TEST(AdaptiveStep, AnExplicitMethodFindsALengthThatIsStable) {
+  SimulatedCloth fixed(swing(IntegrationMethod::kRungeKutta4), smallFabric());
+  bool accepted = true;
+  for (int i = 0; i < 20; ++i) accepted = fixed.step() && accepted;
+  EXPECT_FALSE(accepted) << "the longest step is stable itself";
+  SimulatedCloth simulation(adaptiveSwing(IntegrationMethod::kRungeKutta4, 1e-4), smallFabric());
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(simulation.step());
   EXPECT_LT(distance({simulation.state().positions}, reference(20 * kFrame)), 0.005);
+}
+
+TEST(AdaptiveStep, OneThatHasFailedIsRepeatedInShorterOnesDownToTheShortest) {
+  const scene::Scene scene = swing(IntegrationMethod::kBackwardEuler);
+  const cloth::Cloth model(scene.mesh, smallFabric(), scene.effects);
+  cloth::StepLengthControl lengths(model, IntegrationMethod::kBackwardEuler, {1e-3, 1.0, 1.0});
+  const cloth::ClothState rest = model.initialState();
+  EXPECT_DOUBLE_EQ(lengths.lengthWithin(0.1), 1e-3);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(lengths.judge(model, rest, rest, 0.1));
+  EXPECT_GT(lengths.lengthWithin(0.1), 0.02);  // twice as long each time
+  double length = lengths.lengthWithin(0.1);
+  while (lengths.shorten(0.1)) {
+    EXPECT_LE(lengths.lengthWithin(0.1), 0.5 * length);
+    length = lengths.lengthWithin(0.1);
+  }
+  EXPECT_DOUBLE_EQ(length, 1e-3);
+}
+
+TEST(AdaptiveStep, WhatGoesOnFromSomewhereElseHasNoStepBefore) {
+  // Free fall, of which a method of order 2 misses nothing, but for a jump of the velocity between
+  // two steps.
+  scene::Scene scene = swing(IntegrationMethod::kTrBdf2);
+  const cloth::Cloth model(scene.mesh, smallFabric(), scene.effects);
+  cloth::StepLengthControl lengths(model, IntegrationMethod::kTrBdf2, {1e-3, 1e-3, 1.0});
+  cloth::Integrator integrator(model, scene.step);
+  cloth::ClothState state = model.initialState();
+  const auto error_after = [&](double time, const Eigen::Vector3d& velocity) {
+    cloth::ClothState begin = state;
+    begin.time = time;
+    for (Eigen::Vector3d& of_particle : begin.velocities) of_particle += velocity;
+    state = begin;
+    EXPECT_TRUE(integrator.step(model, state, 1e-3).accepted);
+    EXPECT_TRUE(lengths.judge(model, begin, state, 1e-3));
+    return lengths.error();
+  };
+  error_after(0.0, Eigen::Vector3d::Zero());
+  EXPECT_LT(error_after(state.time, Eigen::Vector3d::Zero()), 1e-9);
+  EXPECT_GT(error_after(state.time, Eigen::Vector3d::UnitX()), 1e-5);
+  EXPECT_EQ(error_after(state.time + 1.0, Eigen::Vector3d::UnitX()), 0.0);
 }
 
 }  // namespace

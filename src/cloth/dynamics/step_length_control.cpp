@@ -55,6 +55,7 @@ double StepLengthControl::lengthWithin(double left) const {
 bool StepLengthControl::judge(const Cloth& cloth, const ClothState& begin, const ClothState& end,
                               double left) {
   const double length = lengthWithin(left);
+  if (begin.time != taken_until_) before_length_ = 0.0;  // it goes on from somewhere else
   error_ = estimate(cloth, begin, end, length);
   // What the first step of a method of order 2 misses cannot be told.
   const bool known = order_ == 1 || before_length_ > 0.0;
@@ -65,6 +66,7 @@ bool StepLengthControl::judge(const Cloth& cloth, const ClothState& begin, const
                      steps_.longest);
   if (missed() && lengthWithin(left) < length) return false;
   before_length_ = length;
+  taken_until_ = end.time;
   std::copy(begin.velocities.begin(), begin.velocities.end(), before_.begin());
   return true;
 }
@@ -73,11 +75,6 @@ bool StepLengthControl::shorten(double left) {
   const double length = lengthWithin(left);
   next_ = std::max(steps_.shortest, kLeastGrowth * length);
   return lengthWithin(left) < length;
-}
-
-void StepLengthControl::forget() {
-  next_ = steps_.shortest;
-  before_length_ = 0.0;
 }
 
 double StepLengthControl::estimate(const Cloth& cloth, const ClothState& begin,

@@ -50,9 +50,6 @@ class StepLengthControl {
   double error() const { return error_; }  ///< m, of the last judge(); 0: it could not tell
   bool missed() const { return error_ > steps_.error; }
 
-  /// The next step begins anywhere: it has the shortest length, and none before it.
-  void forget();
-
  private:
   double estimate(const Cloth& cloth, const ClothState& begin, const ClothState& end,
                   double length) const;
@@ -62,6 +59,7 @@ class StepLengthControl {
   double next_;                          // s
   double error_ = 0.0;                   // m
   double before_length_ = 0.0;           // s, of the last step that was taken; 0: none was
+  double taken_until_ = 0.0;             // s, simulated, where that ended
   std::vector<Eigen::Vector3d> before_;  // m/s, where that began
 };
 
