@@ -86,4 +86,15 @@ std::string describe(const EmulatorFault& fault) {
   return std::string(serial::name(fault.line_fault)) + " " + direction;
 }
 
+std::string answerTo(const EmulatorFault& fault) {
+  std::ostringstream answer;
+  answer << describe(fault);
+  if (fault.probability == 0.0) {
+    answer << " is over";
+  } else {
+    answer << " for " << base::seconds(fault.duration) << " s";
+  }
+  return answer.str();
+}
+
 }  // namespace haptex::serial

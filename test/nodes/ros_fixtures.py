@@ -1,4 +1,5 @@
 """What the tests of nodes in Python have in common."""
+import threading
 import time
 import unittest
 import xmlrpc.client
@@ -56,6 +57,29 @@ class Diagnostics:
     def values(self, name):
         """Of next()."""
         return {item.key: item.value for item in self.next(name).values}
+
+
+class Repeated:
+    """Publishes what `make` makes once in about a period (s) until the end of the with statement;
+    `last` is when it did so last, of time.monotonic()."""
+
+    def __init__(self, publisher, make, period):
+        self.publisher, self.make, self.period = publisher, make, period
+        self.ends, self.last = threading.Event(), 0.0
+        self.thread = threading.Thread(target=self.run)
+
+    def run(self):
+        while not self.ends.wait(self.period):
+            self.publisher.publish(self.make())
+            self.last = time.monotonic()
+
+    def __enter__(self):
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.ends.set()
+        self.thread.join()
 
 
 class NodeTest(unittest.TestCase):

@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 import wave
 
@@ -14,7 +13,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 from haptex.msg import ArrayState, Tactile
 from haptex.srv import InjectFault
-from ros_fixtures import WAIT, Diagnostics, NodeTest, await_connections
+from ros_fixtures import WAIT, Diagnostics, NodeTest, Repeated, await_connections
 from std_msgs.msg import Header
 
 NAN = float('nan')
@@ -31,25 +30,9 @@ def tactile(finger='index', slow=20.0, fast=5.0, frame=None):
                    amplitudes_40=[slow] * CONTACTORS, amplitudes_320=[fast] * CONTACTORS)
 
 
-class Source:
+def source(publisher):
     """Amplitudes for the index every 25 ms until the end of the with statement."""
-
-    def __init__(self, publisher):
-        self.publisher, self.ends, self.last = publisher, threading.Event(), 0.0
-        self.thread = threading.Thread(target=self.run)
-
-    def run(self):
-        while not self.ends.wait(STEP):
-            self.publisher.publish(tactile())
-            self.last = time.monotonic()
-
-    def __enter__(self):
-        self.thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self.ends.set()
-        self.thread.join()
+    return Repeated(publisher, tactile, STEP)
 
 
 def be_a_source():
@@ -102,7 +85,7 @@ class TactileDriver(NodeTest):
                         lambda: f'connection: {self.state}')
 
     def test_displays_what_is_published_and_nothing_on_the_other_finger(self):
-        with Source(self.publisher):
+        with source(self.publisher):
             self.await_displayed()
             message = self.displayed['index']
             self.assertEqual(message.header.frame_id, 'index_tactile')
@@ -115,10 +98,10 @@ class TactileDriver(NodeTest):
         self.assertIn('no amplitudes', status.message)
 
     def test_rests_when_the_source_falls_silent(self):
-        with Source(self.publisher) as source:
+        with source(self.publisher) as amplitudes:
             self.await_displayed()
         self.await_rest()
-        self.assertLess(self.moved_at - source.last, 2 * STEP + PATIENCE)
+        self.assertLess(self.moved_at - amplitudes.last, 2 * STEP + PATIENCE)
 
     def test_rests_25_ms_after_the_source_was_killed(self):
         for attempt in range(3):
@@ -137,7 +120,7 @@ class TactileDriver(NodeTest):
                         'deaths counted')
 
     def test_rests_when_the_line_stalls_and_comes_back(self):
-        with Source(self.publisher):
+        with source(self.publisher):
             self.await_displayed()
             trips = int(self.diagnostics.values('contactor emulator')['watchdog trips'])
             asked = time.monotonic()
@@ -151,7 +134,7 @@ class TactileDriver(NodeTest):
         self.await_rest()
 
     def test_survives_damaged_frames_and_a_port_that_goes(self):
-        with Source(self.publisher):
+        with source(self.publisher):
             self.await_displayed()
             for fault in ('flip', 'drop_bytes', 'garbage', 'duplicate'):
                 self.assertTrue(self.inject(fault, 'both', 0.3, 1.0).success)
@@ -187,7 +170,7 @@ class TactileDriver(NodeTest):
 
     def test_plays_a_contactor(self):
         path = rospy.get_param('~sound')
-        with Source(self.publisher):
+        with source(self.publisher):
             self.await_displayed()
             time.sleep(1.2)
         with wave.open(path) as sound:

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The promises of tactile_renderer alone: contacts and the cloth's fabric come from the test."""
-import threading
 import time
 
 import rospy
@@ -8,7 +7,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 from haptex.msg import ClothMesh, Contact, Tactile
 from haptex.srv import SetSurface
-from ros_fixtures import WAIT, Diagnostics, NodeTest, await_connections, eventually
+from ros_fixtures import WAIT, Diagnostics, NodeTest, Repeated, await_connections, eventually
 from std_msgs.msg import Header
 from visualization_msgs.msg import MarkerArray
 
@@ -33,25 +32,9 @@ def no_contact():
     return Contact(header=Header(frame_id='world', stamp=rospy.Time.now()))
 
 
-class Contacts:
-    """Publishes what `make` makes at about 200 Hz until the end of the with statement."""
-
-    def __init__(self, publisher, make=contact):
-        self.publisher, self.make = publisher, make
-        self.ends = threading.Event()
-        self.thread = threading.Thread(target=self.run)
-
-    def run(self):
-        while not self.ends.wait(0.005):
-            self.publisher.publish(self.make())
-
-    def __enter__(self):
-        self.thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self.ends.set()
-        self.thread.join()
+def contacts(publisher, make=contact):
+    """What `make` makes at about 200 Hz until the end of the with statement."""
+    return Repeated(publisher, make, 0.005)
 
 
 class Arrived:
@@ -138,7 +121,7 @@ class TactileRenderer(NodeTest):
         self.assertAlmostEqual(place.y, -0.003)
 
     def test_a_finger_that_slides_vibrates_and_the_other_does_not(self):
-        with Contacts(self.contacts['index']):
+        with contacts(self.contacts['index']):
             self.eventually_vibrates('index')
             message = self.arrived['index'].messages[-1]
             self.assertEqual(largest(self.arrived['thumb'].messages[-1]), 0.0)
@@ -151,13 +134,13 @@ class TactileRenderer(NodeTest):
 
     def test_a_finger_that_rests_or_has_left_does_not_vibrate(self):
         for make in (lambda: contact(fabric_velocity=[0.0, 0.0]), no_contact):
-            with Contacts(self.contacts['index']):
+            with contacts(self.contacts['index']):
                 self.eventually_vibrates()
-            with Contacts(self.contacts['index'], make):
+            with contacts(self.contacts['index'], make):
                 self.eventually_silent()
 
     def test_zero_within_one_step_after_contacts_stop(self):
-        with Contacts(self.contacts['index']):
+        with contacts(self.contacts['index']):
             self.eventually_vibrates()
         last = rospy.get_time()
         self.eventually_silent()
@@ -171,12 +154,12 @@ class TactileRenderer(NodeTest):
         before = int(self.diagnostics.values(INDEX)['contacts dropped'])
         for spoilt in ({'normal_force': NAN}, {'fabric_velocity': [NAN, 0.0]},
                        {'contactor_forces': [-1.0] * CONTACTORS}, {'array_x': [NAN, NAN]}):
-            with Contacts(self.contacts['index'], lambda: contact(**spoilt)):
+            with contacts(self.contacts['index'], lambda: contact(**spoilt)):
                 self.eventually(lambda: next(iter(spoilt)) in self.diagnostics.values(INDEX)
                            ['why the last contact was dropped'], f'{spoilt} is dropped')
             self.assertEqual(max(largest(m) for m in self.arrived['index'].messages[-4:]), 0.0)
         self.assertGreater(int(self.diagnostics.values(INDEX)['contacts dropped']), before)
-        with Contacts(self.contacts['index']):
+        with contacts(self.contacts['index']):
             self.eventually_vibrates()
 
     def test_set_surface_tells_what_it_did_or_refuses_and_keeps_the_surface(self):
@@ -190,7 +173,7 @@ class TactileRenderer(NodeTest):
             self.assertIn(says, response.message)
         self.eventually_strokes('denim')
         self.assertEqual(self.diagnostics.values(SURFACE)['chosen by'], 'tactile/set_surface')
-        with Contacts(self.contacts['thumb']):
+        with contacts(self.contacts['thumb']):
             self.eventually_vibrates('thumb')
 
     def test_follows_the_fabric_of_the_cloth(self):
@@ -203,7 +186,7 @@ class TactileRenderer(NodeTest):
         self.eventually_strokes('linen')
 
     def test_a_cloth_without_a_surface_is_silent_and_diagnostics_tell_what_it_needs(self):
-        with Contacts(self.contacts['index']):
+        with contacts(self.contacts['index']):
             self.eventually_vibrates()
             self.wear('linear')
             self.eventually_silent()
@@ -222,7 +205,7 @@ class TactileRenderer(NodeTest):
         self.assertTrue(values['file'].endswith('config/fabrics/wool.yaml'))
         for key in ('roughness SMD (um)', 'waves'):
             self.assertGreater(float(values[key]), 0.0, key)
-        with Contacts(self.contacts['index']):
+        with contacts(self.contacts['index']):
             self.eventually_vibrates()
             computed = 'steps of a finger that were computed'
             before = self.diagnostics.values(STEPS)
@@ -242,7 +225,7 @@ class TactileRenderer(NodeTest):
 
     def test_computes_nothing_for_nobody(self):
         computed = 'steps of a finger that were computed'
-        with Contacts(self.contacts['index']):
+        with contacts(self.contacts['index']):
             self.eventually_vibrates()
             for arrived in self.arrived.values():
                 arrived.close()

@@ -90,5 +90,10 @@ TEST(EmulatorFault, IsDescribedByNameAndDirection) {
   EXPECT_EQ(describe(EmulatorFault::parse("closed_port", "both", 1.0, 1.0)), "closed_port");
 }
 
+TEST(EmulatorFault, IsAnsweredByHowLongItLastsOrThatItIsOver) {
+  EXPECT_EQ(answerTo(EmulatorFault::parse("flip", "both", 0.5, 1.5)), "flip both for 1.5 s");
+  EXPECT_EQ(answerTo(EmulatorFault::parse("flip", "both", 0.0, 1.5)), "flip both is over");
+}
+
 }  // namespace
 }  // namespace haptex::serial::test_emulator_fault

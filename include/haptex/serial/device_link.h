@@ -15,9 +15,9 @@
 namespace haptex::serial {
 
 /// Never allocates.
-/// @tparam Protocol has the types Identity (with `version`), State and Command, kLayout,
-/// kStateTimeout,
-///   and the functions unknownIdentity(), decodeIdentity(), decodeState() and encode()
+/// @tparam Protocol has the types Identity (with `version`), State and Command, the constants
+///   kLayout and kStateTimeout, and the functions unknownIdentity(), decodeIdentity(),
+///   decodeState() and encode()
 template <typename Protocol>
 class DeviceLink {
  public:

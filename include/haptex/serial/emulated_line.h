@@ -31,7 +31,8 @@ class EmulatedLine {
   /// How long to wait before trying again to open a port that could not be opened.
   static constexpr Time kRetryPeriod = std::chrono::milliseconds(100);
 
-  /// @param link symbolic link to the port, see PseudoTerminal @param layout of the frames
+  /// @param link symbolic link to the port, see PseudoTerminal
+  /// @param layout of the frames
   /// @throws std::runtime_error as PseudoTerminal
   EmulatedLine(const std::string& link, const FrameLayout& layout);
 

@@ -28,6 +28,8 @@ struct EmulatorFault {
   double probability = 0.0;  ///< no unit; 0 ends the fault
   Time duration{0};
 
+  /// @param direction "to_device", "from_device" or "both"
+  /// @param probability 0 to 1, no unit @param duration s, above 0 and at most kLongest
   /// @param of_device names of the faults that the emulator has beside those of the line
   /// @throws std::invalid_argument naming what is not allowed, its value, and what is allowed
   static EmulatorFault parse(const std::string& fault, const std::string& direction,
@@ -37,5 +39,8 @@ struct EmulatorFault {
 
 /// For example "drop to_device" or "closed_port".
 std::string describe(const EmulatorFault& fault);
+
+/// What to answer to who asked for it: "drop to_device for 1.5 s", or "drop to_device is over".
+std::string answerTo(const EmulatorFault& fault);
 
 }  // namespace haptex::serial

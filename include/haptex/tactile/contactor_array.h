@@ -12,7 +12,8 @@ namespace haptex::tactile {
 constexpr int kContactorRows = 4;     ///< along y of the array
 constexpr int kContactorColumns = 6;  ///< along x of the array
 constexpr int kContactors = kContactorRows * kContactorColumns;
-constexpr int kMiddleContactor = 8;         ///< one of the four nearest: second row, third column
+/// One of the four nearest to the middle: second row, third column.
+constexpr int kMiddleContactor = 8;
 constexpr double kContactorSpacing = 2e-3;  ///< m
 
 /// A value for each contactor, index 6 row + column.

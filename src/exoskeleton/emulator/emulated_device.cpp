@@ -14,8 +14,8 @@ static_assert(kMicrosecondsPerStep * EmulatedDevice::kRate == 1e6);
 
 /// N, at a time (s) of the device.
 double shake(double time) {
-  return EmulatedDevice::kSlowVibration * std::sin(2.0 * M_PI * 40.0 * time) +
-         EmulatedDevice::kFastVibration * std::sin(2.0 * M_PI * 320.0 * time);
+  return EmulatedDevice::kSlowVibration * std::sin(2.0 * kPi * 40.0 * time) +
+         EmulatedDevice::kFastVibration * std::sin(2.0 * kPi * 320.0 * time);
 }
 
 }  // namespace

@@ -14,38 +14,18 @@ constexpr double kShortPeriod = 0.95 * seconds(FirmwareModel::kCommandPeriod);
 FirmwareModel::FirmwareModel(const Identity& identity) : identity_(identity) {}
 
 void FirmwareModel::receive(const std::uint8_t* bytes, std::size_t count, Time now) {
-  if (count == 0) return;
-  // Else the first bytes of a dead driver's last command would wait for something to complete them.
-  if (now - last_bytes_ >= kInterrupted) parser_.discard();
-  last_bytes_ = now;
-  Bytes rest{bytes, count};
-  while (const Frame* frame = parser_.next(rest)) {
-    if (frame->type == FrameType::kHello) handleHello(*frame);
-    if (frame->type == FrameType::kCommand) handleCommand(*frame, now);
-  }
+  link_.receive(bytes, count, now,
+                [&](const Frame& frame, int ahead) { return obey(frame, ahead, now); });
 }
 
-void FirmwareModel::handleHello(const Frame& frame) {
-  const auto hello = serial::decodeHello(frame);
-  if (!hello) return;
-  to_answer_ = true;
-  if (hello->version != identity_.version) return;
-  greeted_ = true;
-  command_number_ = frame.sequence;
-}
-
-void FirmwareModel::handleCommand(const Frame& frame, Time now) {
-  const int ahead = serial::numbersAhead(frame.sequence, command_number_);
-  if (!greeted_ || ahead == 0) return;
-  // After a Hello the command of a dead driver may still come twice, with a number that looks new.
-  if (last_command_ && frame.sequence == obeyed_number_) return;
+bool FirmwareModel::obey(const Frame& frame, int ahead, Time now) {
   const auto command = decodeCommand(frame);
-  if (!command) return;
+  if (!command) return false;
   approach(*command, ahead, now);
   last_command_ = now;
   ramp_start_ = now + kRampStart;
   command_ = *command;
-  command_number_ = obeyed_number_ = frame.sequence;
+  return true;
 }
 
 // The driver took a period for each change of at most its slew limit. A line that is on its way
@@ -74,11 +54,7 @@ void FirmwareModel::approach(const DeviceCommand& command, int ahead, Time now) 
 
 void FirmwareModel::hangUp(Time now) { ramp_start_ = std::min(ramp_start_, now); }
 
-Bytes FirmwareModel::answer() {
-  if (!to_answer_) return {};
-  to_answer_ = false;
-  return encode(identity_, state_number_, outgoing_);
-}
+Bytes FirmwareModel::answer() { return link_.answer(identity_); }
 
 double FirmwareModel::watchdogShare(Time now) const {
   if (!last_command_) return 0.0;
@@ -114,11 +90,10 @@ DeviceCommand FirmwareModel::command(Time now) {
 }
 
 Bytes FirmwareModel::report(DeviceState state, Time now) {
-  if (!greeted_) return {};
-  state.last_command = command_number_;
+  state.last_command = link_.lastCommand();
   state.mode = command(now).mode;
   state.watchdog_tripped = command_.mode != DriveMode::kOff && last_command_ && isOff(now);
-  return encode(state, ++state_number_, outgoing_);
+  return link_.report(state);
 }
 
 }  // namespace haptex::exoskeleton

@@ -17,6 +17,21 @@ void addQuantiles(diagnostic_updater::DiagnosticStatusWrapper& status, const std
   status.add(what + " max " + when + " (us)", microseconds(counts.largest));
 }
 
+std::uint64_t spoiltFrames(const serial::LinkStatistics& statistics) {
+  return statistics.lost_states + statistics.received.corrupt_frames;
+}
+
+void addLinkCounts(diagnostic_updater::DiagnosticStatusWrapper& status,
+                   const serial::LinkStatistics& statistics) {
+  status.add("states lost", statistics.lost_states);
+  status.add("states repeated or out of order", statistics.repeated_states);
+  status.add("corrupt frames", statistics.received.corrupt_frames);
+  status.add("bytes of garbage", statistics.received.garbage_bytes);
+  status.add("timeouts", statistics.timeouts);
+  status.add("answers in another version", statistics.version_mismatches);
+  status.add("handshakes", statistics.handshakes);
+}
+
 void LoopDiagnostics::diagnose(const realtime::PeriodicThread& loop,
                                diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;

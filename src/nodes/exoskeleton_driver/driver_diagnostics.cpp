@@ -3,6 +3,7 @@
 
 #include "haptex/exoskeleton/driver/driver_announcement.h"
 #include "haptex/nodes/common/diagnostics_timer.h"
+#include "haptex/nodes/common/loop_diagnostics.h"
 #include "haptex/nodes/exoskeleton_driver/driver_node.h"
 #include "haptex/nodes/markers/hand_markers.h"
 #include "haptex/realtime/steady_clock.h"
@@ -13,17 +14,11 @@ namespace {
 using base::kFingers;
 using base::Time;
 using diagnostic_msgs::DiagnosticStatus;
-using exoskeleton::LinkStatistics;
 using exoskeleton::LinkStatus;
 using exoskeleton::Mode;
 using exoskeleton::NoForceReason;
 
 constexpr Time kRecent = std::chrono::seconds(1);
-
-/// Frames that were lost or spoilt, no unit.
-std::uint64_t spoilt(const LinkStatistics& statistics) {
-  return statistics.lost_states + statistics.received.corrupt_frames;
-}
 
 }  // namespace
 
@@ -50,7 +45,7 @@ void DriverNode::diagnoseLink(Status& status) {
   const Time time = realtime::steadyNow();
   const double elapsed = base::seconds(time - diagnosed_time_);
   const std::uint64_t newly_spoilt =
-      spoilt(now.link_statistics) - spoilt(diagnosed_.link_statistics);
+      spoiltFrames(now.link_statistics) - spoiltFrames(diagnosed_.link_statistics);
   if (now.link != LinkStatus::kConnected) {
     status.summary(DiagnosticStatus::ERROR, "no device: " + whyNoDevice(now));
   } else if (newly_spoilt > 0) {
@@ -59,20 +54,13 @@ void DriverNode::diagnoseLink(Status& status) {
   } else {
     status.summary(DiagnosticStatus::OK, "connected");
   }
-  const LinkStatistics& link = now.link_statistics;
   status.add("port", loop_.port());
   status.add("link", describe(now.link));
   status.add("serial number of the device", now.identity.serial_number);
   status.add("firmware of the device", now.identity.firmware);
   status.add("states received (1/s)",
              static_cast<double>(now.states - diagnosed_.states) / elapsed);
-  status.add("states lost", link.lost_states);
-  status.add("states repeated or out of order", link.repeated_states);
-  status.add("corrupt frames", link.received.corrupt_frames);
-  status.add("bytes of garbage", link.received.garbage_bytes);
-  status.add("timeouts", link.timeouts);
-  status.add("answers in another version", link.version_mismatches);
-  status.add("handshakes", link.handshakes);
+  addLinkCounts(status, now.link_statistics);
   status.add("times the port was lost", now.ports_lost);
   status.add("frames that the line did not take", now.frames_unsent);
   diagnosed_ = now;

@@ -178,14 +178,7 @@ bool EmulatorNode::injectFault(haptex::InjectFault::Request& request,
         request.fault, request.direction, request.probability, request.duration);
     emulator_.inject(fault);
     response.success = true;
-    std::ostringstream message;
-    message << describe(fault);
-    if (request.probability == 0.0) {
-      message << " is over";
-    } else {
-      message << " for " << request.duration << " s";
-    }
-    response.message = message.str();
+    response.message = answerTo(fault);
   } catch (const std::invalid_argument& error) {
     response.success = false;
     response.message = error.what();

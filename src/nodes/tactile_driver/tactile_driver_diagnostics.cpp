@@ -3,6 +3,7 @@
 #include <string>
 
 #include "haptex/nodes/common/diagnostics_timer.h"
+#include "haptex/nodes/common/loop_diagnostics.h"
 #include "haptex/nodes/tactile_driver/tactile_driver_node.h"
 #include "haptex/realtime/steady_clock.h"
 
@@ -11,11 +12,6 @@ namespace {
 
 using base::kFingers;
 using diagnostic_msgs::DiagnosticStatus;
-
-/// Frames that were lost or spoilt, no unit.
-std::uint64_t spoilt(const serial::LinkStatistics& statistics) {
-  return statistics.lost_states + statistics.received.corrupt_frames;
-}
 
 double largest(const tactile::ArrayAmplitudes& amplitudes, tactile::Channel channel) {
   double most = 0.0;
@@ -39,7 +35,7 @@ void TactileDriverNode::diagnoseLink(Status& status) {
   const tactile::DriverStatus& now = driver_.status();
   const std::string why = whyNoElectronics();
   const std::uint64_t newly_spoilt =
-      spoilt(now.link_statistics) - spoilt(diagnosed_.link_statistics);
+      spoiltFrames(now.link_statistics) - spoiltFrames(diagnosed_.link_statistics);
   if (!why.empty()) {
     status.summary(DiagnosticStatus::ERROR, "no electronics: " + why);
   } else if (newly_spoilt > 0) {
@@ -50,19 +46,12 @@ void TactileDriverNode::diagnoseLink(Status& status) {
   } else {
     status.summary(DiagnosticStatus::OK, "connected");
   }
-  const serial::LinkStatistics& link = now.link_statistics;
   status.add("port", driver_.port());
   status.add("link", serial::describe(now.link));
   status.add("serial number of the electronics", now.identity.serial_number);
   status.add("firmware of the electronics", now.identity.firmware);
   status.add("commands sent", now.commands);
-  status.add("states lost", link.lost_states);
-  status.add("states repeated or out of order", link.repeated_states);
-  status.add("corrupt frames", link.received.corrupt_frames);
-  status.add("bytes of garbage", link.received.garbage_bytes);
-  status.add("timeouts", link.timeouts);
-  status.add("answers in another version", link.version_mismatches);
-  status.add("handshakes", link.handshakes);
+  addLinkCounts(status, now.link_statistics);
   status.add("times the port was lost", now.ports_lost);
   status.add("frames that the line did not take", now.frames_unsent);
   status.add("watchdog trips of the electronics", now.watchdog_trips);

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "haptex/nodes/common/config_files.h"
+#include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/tactile_driver/array_messages.h"
 #include "haptex/realtime/steady_clock.h"
@@ -17,7 +18,6 @@ using base::Time;
 
 constexpr char kCalibrationDirectory[] = "tactile";
 constexpr char kDefaultCalibration[] = "representative";
-constexpr char kStateFrame[] = "hand_base";
 constexpr Time kStatePeriod = std::chrono::seconds(1);
 
 }  // namespace
@@ -113,7 +113,7 @@ void TactileDriverNode::publishState() {
   state_due_ = now + kStatePeriod;
   haptex::ArrayState state;
   state.header.stamp = ros::Time::now();
-  state.header.frame_id = kStateFrame;
+  state.header.frame_id = kHandFrame;
   state.connected = static_cast<std::uint8_t>(connected);
   state.message = message;
   state_publisher_.publish(state);

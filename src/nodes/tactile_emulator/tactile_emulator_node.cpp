@@ -121,14 +121,7 @@ bool TactileEmulatorNode::injectFault(haptex::InjectFault::Request& request,
     const serial::EmulatorFault fault = serial::EmulatorFault::parse(
         request.fault, request.direction, request.probability, request.duration);
     electronics_.inject(fault, realtime::steadyNow());
-    std::ostringstream message;
-    message << describe(fault);
-    if (request.probability == 0.0) {
-      message << " is over";
-    } else {
-      message << " for " << request.duration << " s";
-    }
-    return message.str();
+    return answerTo(fault);
   });
 }
 

@@ -9,39 +9,19 @@ using base::kFingers;
 using base::seconds;
 using serial::Bytes;
 using serial::Frame;
-using serial::FrameType;
 
 void DriveFirmware::receive(const std::uint8_t* bytes, std::size_t count, Time now) {
-  if (count == 0) return;
-  if (now - last_bytes_ >= kInterrupted) parser_.discard();
-  last_bytes_ = now;
-  Bytes rest{bytes, count};
-  while (const Frame* frame = parser_.next(rest)) {
-    if (frame->type == FrameType::kHello) handleHello(*frame);
-    if (frame->type == FrameType::kCommand) handleCommand(*frame, now);
-  }
+  link_.receive(bytes, count, now,
+                [&](const Frame& frame, int /*ahead*/) { return obey(frame, now); });
 }
 
-void DriveFirmware::handleHello(const Frame& frame) {
-  const auto hello = serial::decodeHello(frame);
-  if (!hello) return;
-  to_answer_ = true;
-  if (hello->version != identity_.version) return;
-  greeted_ = true;
-  command_number_ = frame.sequence;
-}
-
-void DriveFirmware::handleCommand(const Frame& frame, Time now) {
-  if (!greeted_ || serial::numbersAhead(frame.sequence, command_number_) == 0) return;
-  // After a Hello the command of a dead driver may still come twice, with a number that looks new.
-  if (last_command_ && frame.sequence == obeyed_number_) return;
+bool DriveFirmware::obey(const Frame& frame, Time now) {
   const auto command = decodeDriveCommand(frame);
-  if (!command) return;
+  if (!command) return false;
   from_ = drive(now);
   command_ = *command;
   last_command_ = now;
   ramp_start_ = now + kRampStart;
-  command_number_ = obeyed_number_ = frame.sequence;
   ++obeyed_;
   moving_ = false;
   for (const Finger finger : kFingers) {
@@ -52,19 +32,13 @@ void DriveFirmware::handleCommand(const Frame& frame, Time now) {
       }
     }
   }
+  return true;
 }
 
 void DriveFirmware::hangUp(Time now) { ramp_start_ = std::min(ramp_start_, now); }
 
-Bytes DriveFirmware::answer() {
-  if (!to_answer_) return {};
-  to_answer_ = false;
-  return encode(identity_, state_number_, outgoing_);
-}
-
 Bytes DriveFirmware::report(Time now) {
-  if (!greeted_) return {};
-  return encode(DriveState{command_number_, watchdogTripped(now)}, ++state_number_, outgoing_);
+  return link_.report(DriveState{link_.lastCommand(), watchdogTripped(now)});
 }
 
 PerChannel<double> DriveFirmware::drive(Finger finger, int contactor, Time now) const {

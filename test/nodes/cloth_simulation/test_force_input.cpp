@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <ros/time.h>
 
 #include <stdexcept>
 
@@ -24,20 +23,6 @@ TEST(ExternalForceMessages, KeepEveryNumberInItsPlace) {
   EXPECT_EQ(forces.lifetime, 1.5);
   message.header.frame_id = "map";
   EXPECT_THROW(particleForces(message), std::invalid_argument);
-}
-
-TEST(InputCount, TellsWhatWasTakenAndWhyTheLastWasRefused) {
-  ros::Time::init();  // of warnings
-  InputCount count;
-  EXPECT_EQ(count.status().taken, 0u);
-  count.count("topic", [] {});
-  count.count("topic", [] { throw std::invalid_argument("first"); });
-  count.count("topic", [] { throw std::invalid_argument("second"); });
-  count.count("topic", [] {});
-  EXPECT_EQ(count.status().taken, 2u);
-  EXPECT_EQ(count.status().refused, 2u);
-  EXPECT_EQ(count.status().refused_from, "topic");
-  EXPECT_EQ(count.status().refused_why, "second");
 }
 
 }  // namespace

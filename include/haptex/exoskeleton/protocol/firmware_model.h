@@ -10,7 +10,7 @@
 #include "haptex/exoskeleton/finger.h"
 #include "haptex/exoskeleton/protocol/device_messages.h"
 #include "haptex/exoskeleton/protocol/serial_frame.h"
-#include "haptex/serial/frame_parser.h"
+#include "haptex/serial/firmware_link.h"
 
 namespace haptex::exoskeleton {
 
@@ -31,8 +31,6 @@ class FirmwareModel {
   static constexpr Time kMotorsOff = std::chrono::microseconds(19000);
   static constexpr Time kRamp = kMotorsOff - kRampStart;
   static constexpr Time kReturn = std::chrono::milliseconds(20);
-  /// The rest of a command that was interrupted for so long may be another driver's.
-  static constexpr Time kInterrupted = std::chrono::milliseconds(10);
 
   /// From one command to the next.
   static constexpr Time kCommandPeriod = std::chrono::milliseconds(1);
@@ -60,11 +58,11 @@ class FirmwareModel {
   Bytes report(DeviceState state, Time now);
 
   /// Counts of what came.
-  const serial::ParserStatistics& received() const { return parser_.statistics(); }
+  const serial::ParserStatistics& received() const { return link_.received(); }
 
  private:
-  void handleHello(const Frame& frame);
-  void handleCommand(const Frame& frame, Time now);
+  /// @returns whether the command means something
+  bool obey(const Frame& frame, int ahead, Time now);
   void approach(const DeviceCommand& command, int ahead, Time now);
   /// Share of the torques that the watchdog leaves, 0 to 1.
   double watchdogShare(Time now) const;
@@ -76,19 +74,12 @@ class FirmwareModel {
   PerFinger<MotorVector> torques(Time now) const;
 
   Identity identity_;
-  serial::FrameParser parser_{LineEnd::kDevice, kFrameLayout};
-  FrameBuffer outgoing_{};
-  bool greeted_ = false;  // by a driver of our version
-  bool to_answer_ = false;
-  std::uint8_t state_number_ = 0;
-  std::uint8_t command_number_ = 0;  // of the last command, or what a Hello since has set
+  serial::FirmwareLink link_{identity_.version, kFrameLayout};
   DeviceCommand command_;
   PerFinger<MotorVector> from_{{MotorVector::Zero(), MotorVector::Zero()}};  // when command_ came
   Time reached_{};                    // when the torques of command_ are
-  std::uint8_t obeyed_number_ = 0;    // of command_
   std::optional<Time> last_command_;  // when command_ came
   Time ramp_start_{};                 // of the watchdog
-  Time last_bytes_{};
 };
 
 }  // namespace haptex::exoskeleton

@@ -23,9 +23,10 @@ constexpr serial::FrameLayout kFrameLayout{kProtocolVersion, 9, 43, 13};
 /// Bytes of a State, the longest frame.
 constexpr std::size_t kLongestFrame = serial::kFrameOverhead + kFrameLayout.longestPayload();
 
-/// Writes a frame into the buffer. @returns the part of the buffer that it fills
-/// Numbers beyond the range of their encoding saturate, and a force component that does sets
-/// force_saturated. What is not finite becomes zero, in a force with force_saturated.
+/// Writes a frame into the buffer. Numbers beyond the range of their encoding saturate, and a force
+/// component that does sets force_saturated. What is not finite becomes zero, in a force with
+/// force_saturated.
+/// @returns the part of the buffer that it fills
 Bytes encode(const Identity& identity, std::uint8_t sequence, FrameBuffer& buffer);
 Bytes encode(const DeviceState& state, std::uint8_t sequence, FrameBuffer& buffer);
 Bytes encode(const DeviceCommand& command, std::uint8_t sequence, FrameBuffer& buffer);

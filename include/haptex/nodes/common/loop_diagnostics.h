@@ -1,4 +1,4 @@
-// The diagnostics of a periodic thread.
+// The diagnostics of a periodic thread, and of the driver's end of a serial line.
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
@@ -8,12 +8,20 @@
 
 #include "haptex/realtime/duration_histogram.h"
 #include "haptex/realtime/periodic_thread.h"
+#include "haptex/serial/link_status.h"
 
 namespace haptex::nodes {
 
 /// Adds the quantiles of durations (us). @param what for example "wake-up jitter"
 void addQuantiles(diagnostic_updater::DiagnosticStatusWrapper& status, const std::string& what,
                   const std::string& when, const realtime::DurationHistogram::Counts& counts);
+
+/// Frames that were lost or corrupt, no unit.
+std::uint64_t spoiltFrames(const serial::LinkStatistics& statistics);
+
+/// Adds what the line has counted.
+void addLinkCounts(diagnostic_updater::DiagnosticStatusWrapper& status,
+                   const serial::LinkStatistics& statistics);
 
 /// Whether the loop is in time, whether it has SCHED_FIFO, and its jitter, since the start and
 /// since it was asked before. By one thread.

@@ -21,7 +21,7 @@ namespace haptex::nodes {
 /// Parameters of the node, read once at the start.
 struct TactileDriverParameters {
   std::string port;  ///< ~port: path of a serial port, which need not be there yet
-  /// ~calibration: path of a file, or a name in config/tactile; default kDefaultCalibration
+  /// ~calibration: path of a file, or a name in config/tactile; default representative
   tactile::Calibration calibration;
 
   /// @throws std::exception naming the parameter or file, the value and what is allowed

@@ -10,6 +10,7 @@
 
 #include "haptex/base/clock.h"
 #include "haptex/base/finger.h"
+#include "haptex/serial/firmware_link.h"
 #include "haptex/serial/frame.h"
 #include "haptex/serial/frame_parser.h"
 #include "haptex/tactile/drive/drive_protocol.h"
@@ -29,8 +30,6 @@ class DriveFirmware {
   static constexpr Time kRampStart = std::chrono::milliseconds(14);
   static constexpr Time kSilent = std::chrono::milliseconds(19);
   static constexpr Time kRamp = kSilent - kRampStart;
-  /// The rest of a command that was interrupted for so long may be another driver's.
-  static constexpr Time kInterrupted = std::chrono::milliseconds(10);
 
   explicit DriveFirmware(const DriveIdentity& identity) : identity_(identity) {}
 
@@ -43,7 +42,7 @@ class DriveFirmware {
 
   /// Identity, if a Hello came since the last call; empty otherwise. Valid until the next call that
   /// returns bytes.
-  serial::Bytes answer();
+  serial::Bytes answer() { return link_.answer(identity_); }
 
   /// A state as bytes, numbered; empty before the first handshake.
   serial::Bytes report(Time now);
@@ -57,30 +56,23 @@ class DriveFirmware {
   bool watchdogTripped(Time now) const { return moving_ && now >= ramp_start_ + kRamp; }
 
   /// Counts of what came, and of the commands that were obeyed.
-  const serial::ParserStatistics& received() const { return parser_.statistics(); }
+  const serial::ParserStatistics& received() const { return link_.received(); }
   std::uint64_t obeyed() const { return obeyed_; }
   /// The last one that was obeyed; all zero before.
   const DriveCommand& command() const { return command_; }
 
  private:
-  void handleHello(const serial::Frame& frame);
-  void handleCommand(const serial::Frame& frame, Time now);
+  /// @returns whether the command means something
+  bool obey(const serial::Frame& frame, Time now);
 
   DriveIdentity identity_;
-  serial::FrameParser parser_{serial::LineEnd::kDevice, kDriveLayout};
-  serial::FrameBuffer outgoing_{};
-  bool greeted_ = false;  // by a driver of our version
-  bool to_answer_ = false;
-  std::uint8_t state_number_ = 0;
-  std::uint8_t command_number_ = 0;     // of the last command, or what a Hello since has set
-  std::uint8_t obeyed_number_ = 0;      // of the last command
+  serial::FirmwareLink link_{identity_.version, kDriveLayout};
   base::PerFinger<ArrayDrive> from_{};  // when the last command came
   DriveCommand command_{};
   std::optional<Time> last_command_;  // when it came
   Time ramp_start_{};                 // of the watchdog
   bool moving_ = false;               // by the last command
   std::uint64_t obeyed_ = 0;
-  Time last_bytes_{};
 };
 
 }  // namespace haptex::tactile

@@ -46,10 +46,14 @@ struct DriveCommand {
   base::PerFinger<ArrayDrive> drive;  ///< to be reached along a straight line in kDrivePeriod
 };
 
-constexpr serial::FrameLayout kDriveLayout{kDriveVersion, 8, 2, 2 * 2 * kChannels* kContactors};
+/// Bytes of a command's payload: for both fingers, two for each channel of each contactor.
+constexpr int kDriveCommandPayload = 2 * kContactors * 2 * kChannels;
 
-/// Writes a frame into the buffer. @returns the part of the buffer that it fills
-/// Shares outside of 0 to 1 saturate, and what is not finite becomes zero.
+constexpr serial::FrameLayout kDriveLayout{kDriveVersion, 8, 2, kDriveCommandPayload};
+
+/// Writes a frame into the buffer. Shares outside of 0 to 1 saturate, what is not finite becomes
+/// zero, and of 320 Hz no more is left than 40 Hz leaves of full drive.
+/// @returns the part of the buffer that it fills
 serial::Bytes encode(const DriveIdentity& identity, std::uint8_t sequence,
                      serial::FrameBuffer& buffer);
 serial::Bytes encode(const DriveState& state, std::uint8_t sequence, serial::FrameBuffer& buffer);

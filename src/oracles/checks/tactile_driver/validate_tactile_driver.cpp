@@ -27,12 +27,12 @@ constexpr char kRoom[] = "tactile_driver/";
 constexpr double kRate = 44100.0;  // Hz, of the samples that are looked at
 constexpr Time kReady = milliseconds(250);
 
-/// Every contactor another, up to 24 and 12 um.
-Amplitudes steady() {
+/// Every contactor another, up to 24 and 12 um times the scale.
+Amplitudes steady(double scale = 1.0) {
   Amplitudes amplitudes;
   for (const Finger finger : kFingers) {
     for (int i = 0; i < kContactors; ++i) {
-      amplitudes[finger][i] = {1e-6 * (i + 1), 0.5e-6 * (kContactors - i)};
+      amplitudes[finger][i] = {scale * (1e-6 * (i + 1)), scale * (0.5e-6 * (kContactors - i))};
     }
   }
   return amplitudes;
@@ -147,11 +147,7 @@ void validateCalibration(const Sink& sink) {
   double beyond = 0.0;
   for (const double scale : {0.1, 1.0, 10.0}) {
     ContactorDrive drive(calibration);
-    Amplitudes asked = steady();
-    for (const Finger finger : kFingers) {
-      for (auto& contactor : asked[finger])
-        contactor = {scale * contactor[0], scale * contactor[1]};
-    }
+    const Amplitudes asked = steady(scale);
     drive.setSource([&](Time) { return asked; });
     drive.run(kReady);
     const auto shares = drive.firmware().drive(drive.now());
@@ -221,16 +217,7 @@ void validateDeaths(const Calibration& calibration, const Sink& sink) {
 /// A minute over a line on which everything happens, and how long it takes to recover.
 void validateFrames(const Calibration& calibration, const Sink& sink) {
   ContactorDrive drive(calibration, 11);
-  drive.setSource([](Time now) {
-    Amplitudes amplitudes = steady();
-    const double level = 0.5 + 0.5 * std::sin(3.0 * base::seconds(now));
-    for (const Finger finger : kFingers) {
-      for (auto& contactor : amplitudes[finger]) {
-        contactor = {level * contactor[0], level * contactor[1]};
-      }
-    }
-    return amplitudes;
-  });
+  drive.setSource([](Time now) { return steady(0.5 + 0.5 * std::sin(3.0 * base::seconds(now))); });
   drive.run(kReady);
   const Time end = drive.now() + std::chrono::seconds(60);
   for (const serial::LineFault fault : serial::lineFaults()) {
