@@ -110,7 +110,7 @@ void addExplicit(std::vector<TradeOffPoint>& points) {
   }
 }
 
-/// At which layers meet.
+/// Of the thicknesses at which layers meet.
 void addThicknesses(std::vector<TradeOffPoint>& points) {
   for (double thickness : {0.5, 2.0, 4.0}) {
     points.push_back(pointTo(1e-2, IntegrationMethod::kBdf2, 16, 1));

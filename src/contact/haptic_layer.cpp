@@ -187,6 +187,7 @@ void HapticLayer::step(const Fingertips& fingertips) {
   }
 }
 
+/// Who is in contact, and where.
 void HapticLayer::hold(const Fingertips& fingertips) {
   fingertips_ = fingertips;
   for (const Finger finger : kFingers) {
@@ -197,17 +198,16 @@ void HapticLayer::hold(const Fingertips& fingertips) {
       held.clear();
       continue;
     }
-    const double reach = next->radius + law_.halfThickness();
-    if (whole_cloth_) {
-      present_[finger] =
-          &held.move(*next, whole_cloth_->particles(), whole_cloth_->contact(finger).touched(),
-                     reach, law_.friction());
-    } else if (patch_) {
-      present_[finger] = &held.move(*next, patch_->particles(finger),
-                                    patch_->contact(finger).touched(), reach, law_.friction());
-    } else {
+    if (!whole_cloth_ && !patch_) {
       present_[finger] = &held.follow(*next);
+      continue;
     }
+    const Particles particles =
+        whole_cloth_ ? whole_cloth_->particles() : patch_->particles(finger);
+    const SphereContact& contact =
+        whole_cloth_ ? whole_cloth_->contact(finger) : patch_->contact(finger);
+    present_[finger] = &held.move(*next, particles, contact.touched(),
+                                  next->radius + law_.halfThickness(), law_.friction());
   }
 }
 

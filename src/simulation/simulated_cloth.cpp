@@ -65,7 +65,7 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
   makeIntegrators();
 }
 
-/// Implicit steps keep what their contacts say.
+/// Of explicit steps alone: implicit ones keep their contacts exactly.
 void SimulatedCloth::setPenalty(double stiffness) {
   for (const StepPlan& plan : plans_) {
     if (!cloth::isImplicit(plan.step.method)) continue;

@@ -35,11 +35,13 @@ struct ContactPoint {
 
 /// What one fingertip feels after a step. World frame. The force is the cloth's on the fingertip:
 ///   force(p, v) = force - stiffness (p - position) - damping (v - velocity)
+/// While the cloth holds the fingertip (HeldFingertip) the force is that of where it is held, and
+/// stiffness and damping are zero.
 struct FingertipContact {
   bool touching = false;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();      ///< N
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< m, of the fingertip
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< m/s
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< m, where the person has it
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< m/s, likewise
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, symmetric, positive semidefinite
   Eigen::Matrix3d damping = Eigen::Matrix3d::Zero();    ///< N.s/m, likewise
 
@@ -68,7 +70,7 @@ class HapticLayer {
   static constexpr std::size_t kMaxContactPoints = 1024;
 
   /// @param mesh, fabric, effects those of the large-scale layer
-  /// @param obstacles of the scene; patches touch them if effects has contacts
+  /// @param obstacles of the scene; patches touch those without mass if effects has contacts
   /// @throws std::invalid_argument what requireTouchable(), cloth::Cloth or PlacedObstacles throws,
   ///   or if the mesh has several panels
   HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric, const cloth::ModelledEffects& effects,

@@ -36,11 +36,14 @@ class HeldFingertip {
   /// Where there was no cloth around it: it is where the person has it.
   const Fingertip& follow(const Fingertip& next);
   /// There are other particles now: the next move() looks at all.
-  /// @param place m, earlier, from where it is to look for them: there was no cloth around it on
-  /// the
-  ///   way because nobody had asked for it yet; not of one that is held. None: from where it is.
+  /// @param place m, earlier, from where it is to look for them: nobody had asked yet for the cloth
+  ///   on its way from there. Not of one that is held. None: from where it is.
   void sweepFrom(const std::optional<Eigen::Vector3d>& place);
-  void clear() { held_.reset(); }
+  /// It is away; the next one is not swept.
+  void clear() {
+    held_.reset();
+    is_held_ = false;
+  }
 
   const std::optional<Fingertip>& held() const { return held_; }
   bool isHeld() const { return is_held_; }

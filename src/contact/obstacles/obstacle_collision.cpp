@@ -242,7 +242,8 @@ void ObstacleCollision::resolve(const cloth::Cloth& cloth, cloth::ClothState& st
   }
 }
 
-/// @param from m, where the particle has been @return whether it had to be moved
+/// @param from m, where the particle has been
+/// @return whether it had to be moved
 bool ObstacleCollision::bringBack(double mass, const Vector3d& from, double h,
                                   PlacedObstacle& obstacle, Vector3d& position,
                                   Vector3d& velocity) {

@@ -92,50 +92,55 @@ bool ObstacleContact::touch(const PlacedObstacles::Body& body, const Nearest& ne
   return true;
 }
 
-const std::vector<TouchedParticle>& ObstacleContact::evaluate(const Particles& particles) {
-  touched_.clear();
-  Nearest nearest;
-  TouchedParticle touched;
+template <typename Visit>
+void ObstacleContact::visitAll(const Particles& particles, const Visit& visit) {
   for (std::size_t b = 0; b < obstacles_.bodies().size(); ++b) {
     const PlacedObstacles::Body& body = obstacles_.bodies()[b];
     for (int i = 0; i < particles.count; ++i) {
       const Vector3d own = body.to_own * particles.positions[i];
-      Place& place = places_[b * particles_ + i];
-      if (!isNear(body, own, place, nearest)) continue;
-      if (!touch(body, nearest, place, own, particles.areas[i], touched)) continue;
-      touched.particle = i;
-      touched_.push_back(touched);
+      visit(body, i, own, places_[b * particles_ + i]);
     }
   }
+}
+
+const std::vector<TouchedParticle>& ObstacleContact::evaluate(const Particles& particles) {
+  touched_.clear();
+  Nearest nearest;
+  TouchedParticle touched;
+  const auto add = [&](const PlacedObstacles::Body& body, int particle, const Vector3d& own,
+                       Place& place) {
+    if (!isNear(body, own, place, nearest)) return;
+    if (!touch(body, nearest, place, own, particles.areas[particle], touched)) return;
+    touched.particle = particle;
+    touched_.push_back(touched);
+  };
+  visitAll(particles, add);
   return touched_;
 }
 
 void ObstacleContact::commit(const Particles& particles) {
   Nearest nearest;
   TouchedParticle touched;
-  for (std::size_t b = 0; b < obstacles_.bodies().size(); ++b) {
-    const PlacedObstacles::Body& body = obstacles_.bodies()[b];
-    for (int i = 0; i < particles.count; ++i) {
-      const Vector3d own = body.to_own * particles.positions[i];
-      Place& place = places_[b * particles_ + i];
-      if (!isNear(body, own, place, nearest)) {
-        place.tracked = place.holds = false;
-        continue;
-      }
-      const bool touches = touch(body, nearest, place, own, particles.areas[i], touched);
-      if (nearest.on_side) {
-        place.surface = nearest.surface;
-        place.normal = nearest.normal;
-      }
-      place.tracked = true;
-      if (touches && (!place.holds || touched.slips)) {
-        // The spring that is left after the slip pulls with exactly the friction.
-        const double sticking = sticking_ * particles.areas[i];
-        place.anchor = own + body.to_own.linear() * touched.friction / sticking;
-      }
-      place.holds = touches;
+  const auto remember = [&](const PlacedObstacles::Body& body, int particle, const Vector3d& own,
+                            Place& place) {
+    if (!isNear(body, own, place, nearest)) {
+      place.tracked = place.holds = false;
+      return;
     }
-  }
+    const double area = particles.areas[particle];
+    const bool touches = touch(body, nearest, place, own, area, touched);
+    if (nearest.on_side) {
+      place.surface = nearest.surface;
+      place.normal = nearest.normal;
+    }
+    place.tracked = true;
+    if (touches && (!place.holds || touched.slips)) {
+      // The spring that is left after the slip pulls with exactly the friction.
+      place.anchor = own + body.to_own.linear() * touched.friction / (sticking_ * area);
+    }
+    place.holds = touches;
+  };
+  visitAll(particles, remember);
 }
 
 }  // namespace haptex::contact

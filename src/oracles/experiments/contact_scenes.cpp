@@ -16,20 +16,34 @@ using base::kFingers;
 using contact::Fingertip;
 using Eigen::Vector3d;
 
-HapticLoopSettings sampleAt(const material::Fabric& fabric, double large_scale_rate, int cells) {
+/// A square that nothing holds, without gravity.
+HapticLoopSettings sheetOf(const material::Fabric& fabric, double side, int cells) {
   HapticLoopSettings settings;
-  settings.mesh = mesh::makeRectangle(kSampleSide, kSampleSide, cells, cells,
-                                      mesh::Triangulation::kAlternating);
+  settings.mesh = mesh::makeRectangle(side, side, cells, cells, mesh::Triangulation::kAlternating);
   settings.fabric = fabric;
   settings.effects.viscosity = true;
   settings.effects.bending = true;
-  settings.large_scale_step =
-      std::round(1.0 / large_scale_rate / settings.haptics.time_step) * settings.haptics.time_step;
   settings.step.newton_iterations = 4;
   // What the linear solves leave open is not what these scenes are about, and at 25 Hz 1e-6 can
   // keep the released sample in a small cycle.
   settings.step.tolerance = 1e-10;
   return settings;
+}
+
+HapticLoopSettings sampleAt(const material::Fabric& fabric, double large_scale_rate, int cells) {
+  HapticLoopSettings settings = sheetOf(fabric, kSampleSide, cells);
+  settings.large_scale_step =
+      std::round(1.0 / large_scale_rate / settings.haptics.time_step) * settings.haptics.time_step;
+  return settings;
+}
+
+/// The index finger above the origin.
+/// @param height m, of its centre
+Fingertip fingerAbove(double height) {
+  Fingertip finger;
+  finger.radius = kIndexRadius;
+  finger.position = {0.0, 0.0, height};
+  return finger;
 }
 
 }  // namespace
@@ -173,37 +187,24 @@ Eigen::Vector2d RefinedCloth::fabricPosition(Finger finger) const {
 }
 
 HapticLoopSettings sheetOnPlate(const TableSettings& settings) {
-  constexpr double kTouched = 0.02;  // m, the side of a square that a patch covers at least
+  constexpr double kTouched = 0.02;    // m, the side of a square that a patch covers at least
+  constexpr double kThickness = 0.02;  // m, of the plate
   const double cell = settings.side / settings.cells;
-  HapticLoopSettings loop;
-  loop.mesh = mesh::makeRectangle(settings.side, settings.side, settings.cells, settings.cells,
-                                  mesh::Triangulation::kAlternating);
+  HapticLoopSettings loop = sheetOf(settings.fabric, settings.side, settings.cells);
   for (Vector3d& place : loop.mesh.initial_positions) {
     place = {-place.z() - 0.5 * settings.side, place.y(), 0.0};
   }
-  loop.fabric = settings.fabric;
-  loop.effects.viscosity = true;
-  loop.effects.bending = true;
   loop.effects.contacts = true;
   loop.effects.gravity = {0.0, 0.0, -base::kStandardGravity};
-  loop.step.newton_iterations = 4;
-  loop.step.tolerance = 1e-10;
   loop.haptics.refinement = settings.refinement;
   loop.haptics.margin = 0.5 * kTouched;
   loop.haptics.most_elements = static_cast<int>(2.0 * std::pow(kTouched / cell + 1.0, 2));
-  const double down = contact::ObstacleCollision::kOffset + 0.5 * settings.plate_thickness;
-  mesh::Obstacle plate{"plate", mesh::ObstacleBox{{0.4, 0.4, settings.plate_thickness}},
+  const double down = contact::ObstacleCollision::kOffset + 0.5 * kThickness;
+  mesh::Obstacle plate{"plate", mesh::ObstacleBox{{0.4, 0.4, kThickness}},
                        Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, -down))};
   plate.friction = settings.plate_friction;
   loop.obstacles = {plate};
   return loop;
-}
-
-Fingertip fingerAbove(double height) {
-  Fingertip finger;
-  finger.radius = kIndexRadius;
-  finger.position = {0.0, 0.0, height};
-  return finger;
 }
 
 Fingertip press(HapticLoop& loop, double height, double seconds) {

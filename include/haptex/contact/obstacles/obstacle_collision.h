@@ -38,9 +38,8 @@ namespace haptex::contact {
 /// A step allocates nothing, but where such cloth is near to more than ever before.
 class ObstacleCollision {
  public:
-  static constexpr double kOffset = 5e-4;     ///< m
-  static constexpr double kTolerance = 1e-6;  ///< m
-
+  static constexpr double kOffset = 5e-4;         ///< m
+  static constexpr double kTolerance = 1e-6;      ///< m
   static constexpr std::size_t kMostBodies = 16;  ///< with mass
 
   /// @param cloth the one that is stepped, with contacts among its effects; its integrators are to
@@ -54,8 +53,8 @@ class ObstacleCollision {
 
   /// Takes a step as cloth::Integrator::step(), from the obstacles' poses at the state's time to
   /// those at its end, and keeps the particles out of them.
-  /// @throws what Integrator::step() throws, and the constructor if the fabric has lost its
-  /// friction
+  /// @throws what Integrator::step() throws, and what requireFriction() does for a fabric that was
+  ///   set since
   cloth::StepReport step(cloth::Cloth& cloth, cloth::Integrator& integrator,
                          cloth::ClothState& state, double time_step);
 

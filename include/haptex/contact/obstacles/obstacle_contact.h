@@ -11,7 +11,8 @@
 
 namespace haptex::contact {
 
-/// The obstacles of a scene where they are at one time.
+/// The obstacles of a scene where they are at one time, without those that have mass: where these
+/// are, the large-scale layer alone knows.
 class PlacedObstacles {
  public:
   struct Body {
@@ -60,7 +61,8 @@ class ObstacleContact {
   /// Particles that touch an obstacle, once for each, and the forces on them; normals point out of
   /// the obstacle.
   const std::vector<TouchedParticle>& evaluate(const Particles& particles);
-  /// The same, then moves the anchors and remembers on which side particles are.
+  /// Where the particles are after the step: moves the anchors as far as they slip, and remembers
+  /// on which side they are.
   void commit(const Particles& particles);
   /// Of the last evaluate().
   const std::vector<TouchedParticle>& touched() const { return touched_; }
@@ -86,6 +88,9 @@ class ObstacleContact {
     Eigen::Vector3d normal, surface;
     bool on_side;  // false: it is behind the plane that is remembered
   };
+  /// Calls visit(obstacle, particle, where that is in the obstacle's frame, m, its place) for all.
+  template <typename Visit>
+  void visitAll(const Particles& particles, const Visit& visit);
   bool isNear(const PlacedObstacles::Body& body, const Eigen::Vector3d& own, Place& place,
               Nearest& nearest) const;
   bool touch(const PlacedObstacles::Body& body, const Nearest& nearest, const Place& place,

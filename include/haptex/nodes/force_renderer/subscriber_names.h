@@ -37,8 +37,10 @@ class SubscriberNames {
 };
 
 /// Advertises a topic of which only the latest message counts, and keeps the names of its
-/// subscribers. @param names has to outlive the publisher @param changed called when a subscriber
-/// has come or gone, from the node's callback queue; names has been told before
+/// subscribers.
+/// @param names   has to outlive the publisher
+/// @param changed called when a subscriber has come or gone, from the node's callback queue; names
+///   has been told before
 template <typename Message, typename Changed>
 ros::Publisher advertiseLatest(ros::NodeHandle& node, const std::string& topic,
                                SubscriberNames& names, const Changed& changed) {

@@ -15,8 +15,10 @@ namespace haptex::oracles {
 /// along the line from the centre with the pressure p(radius + half thickness - s); it is held by
 /// the fingertip's friction, which has stuck or slipped all the way down (return mapping); and the
 /// plate holds it with the pressure of the compression curve at the strain w / half thickness. w is
-/// where the three are in equilibrium across the plate. Each ring is followed in kSteps steps of
-/// descent, and the force is the integral of the plate's pressure over the sheet.
+/// where the three are in equilibrium across the plate. Each ring is followed down in small steps,
+/// and the force is the integral of the plate's pressure over the rings.
+/// @param fabric with compression @param law of that fabric
+/// @param radius m, of the fingertip, finite and > 0
 /// @param height m, of the fingertip's centre above the middle surface of the sheet before it
 ///   yields, > 0 and at most radius + half thickness
 /// @throws std::invalid_argument naming what is out of range

@@ -75,11 +75,10 @@ class RefinedCloth {
 /// Fabric on a horizontal plate, under one finger.
 struct TableSettings {
   material::Fabric fabric;
-  double side = 0.1;              ///< m, of the square sheet
-  int cells = 32;                 ///< along each side
-  int refinement = 2;             ///< of its patches
-  double plate_friction = 0.2;    ///< of the fabric on the plate
-  double plate_thickness = 0.02;  ///< m
+  double side = 0.1;            ///< m, of the square sheet
+  int cells = 32;               ///< along each side
+  int refinement = 2;           ///< of its patches
+  double plate_friction = 0.2;  ///< of the fabric on the plate
 };
 
 /// The sheet lies where cloth rests on the plate, in the plane z = 0 with its middle in the origin,
@@ -87,19 +86,17 @@ struct TableSettings {
 /// of 10 mm touches.
 HapticLoopSettings sheetOnPlate(const TableSettings& settings);
 
-/// The index finger above the middle of the sheet.
+/// The index finger comes straight down on the middle of the sheet, from the touch to a height
+/// within `seconds`, and rests for 0.3 s.
 /// @param height m, of its centre above the plane z = 0
-contact::Fingertip fingerAbove(double height);
-
-/// Comes straight down from the touch to a height within `seconds`, and rests for 0.3 s.
 /// @return the fingertip, for further steps of the loop
 contact::Fingertip press(HapticLoop& loop, double height, double seconds);
 
 /// Presses until the finger is `depth` (m) in fabric and pulp, and drags the sheet over the plate
-/// by 8 mm. @param velocity m/s, along the plate
-/// @return over the second half of the way the mean drag over that of the force on the plate: of
-/// the
-///   finger, and of the sheet's weight
+/// by 8 mm.
+/// @param velocity m/s, along the plate
+/// @return over the second half of the way the mean drag, over the mean of what presses on the
+///   plate, the finger and the sheet's weight
 double frictionOfDrag(const TableSettings& settings, double depth, const Eigen::Vector3d& velocity);
 
 /// N, that the cloth's layer has the index finger feel.

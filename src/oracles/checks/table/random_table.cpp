@@ -15,8 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPressTolerance = 0.01;
-
 /// A woven fabric with another compression curve and friction: the sheet of the exact result does
 /// not stretch, and a knit errs by up to 1.3 %.
 material::Fabric drawFabric(const std::string& config_directory, Random& random) {
@@ -52,8 +50,7 @@ void randomTablePress(const std::string& config_directory, Random& random, const
   CaseName name("table", "press");
   name.with(table.fabric.name).with("thickness", table.fabric.compression->thickness);
   name.with("depth", depth).with("speed", speed).with("cells", table.cells);
-  sink(base::relativeTo(exact, name.text(), exact, feltByIndex(loop).z(),
-                        base::unlessSanitized(kPressTolerance, 0.1)));
+  sink(base::relativeTo(exact, name.text(), exact, feltByIndex(loop).z(), pressTolerance()));
 }
 
 /// The whole sheet follows the finger at last. What resists is the plate's friction with the force

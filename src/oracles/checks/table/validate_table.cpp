@@ -25,8 +25,7 @@ void validatePress(const material::Fabric& fabric, const Sink& sink) {
     const double exact = supportedPressForce(fabric, law, kIndexRadius, height);
     const std::string name =
         "table/press/" + fabric.name + "/" + std::to_string(std::lround(depth * 1e6)) + "um";
-    sink(base::relativeTo(exact, name, exact, feltByIndex(loop).z(),
-                          base::unlessSanitized(0.01, 0.1)));
+    sink(base::relativeTo(exact, name, exact, feltByIndex(loop).z(), pressTolerance()));
   }
 }
 
@@ -43,6 +42,8 @@ void validateDrag(const material::Fabric& fabric, const Sink& sink) {
 }
 
 }  // namespace
+
+double pressTolerance() { return base::unlessSanitized(0.01, 0.1); }
 
 double dragTolerance(double speed) { return 0.005 + 1.5 * speed; }
 

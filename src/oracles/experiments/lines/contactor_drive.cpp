@@ -66,7 +66,8 @@ void ContactorDrive::step() {
   to_driver_.send(firmware_.report(now_), now_);
 }
 
-/// What was sent, in the steps of the line.
+/// Counts what the electronics obey and the driver had not sent, as the line rounds both.
+/// @param before firmware_.obeyed() at the last look
 void ContactorDrive::compareObeyed(std::uint64_t before) {
   const auto inSteps = [](const tactile::DriveCommand& command) {
     serial::FrameBuffer buffer;

@@ -35,7 +35,8 @@ class ContactorDrive {
   /// The cable is out, or in again.
   void unplug(bool out) { open_ = !out; }
 
-  /// The step by step, as long as the duration says. @param observe after every step, may be empty
+  /// Takes steps for so long.
+  /// @param observe called after every step; may be empty
   void run(Time duration, const std::function<void()>& observe = {});
 
   Time now() const { return now_; }
