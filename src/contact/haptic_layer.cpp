@@ -144,10 +144,13 @@ void HapticLayer::receive(const std::vector<Vector3d>& positions,
   const bool first = !motion_.hasState();
   motion_.receive(positions, period, time);
   if (whole_cloth_) whole_cloth_->receive(positions, velocities, period);
-  if (first && patch_) patch_->start(motion_);
+  if (!first || !patch_) return;
+  obstacles_.moveTo(motion_.time());
+  patch_->start(motion_);
 }
 
 std::unique_ptr<Patch> HapticLayer::exchange(std::unique_ptr<Patch> next) {
+  obstacles_.moveTo(motion_.time());
   if (next && patch_) {
     next->goOnFrom(*patch_, motion_);
   } else if (next) {
@@ -198,7 +201,7 @@ void HapticLayer::hold(const Fingertips& fingertips) {
       held.clear();
       continue;
     }
-    if (!whole_cloth_ && !patch_) {
+    if (!motion_.hasState() || (!whole_cloth_ && !patch_)) {
       present_[finger] = &held.follow(*next);
       continue;
     }

@@ -45,7 +45,8 @@ TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
     layer.exchange(std::move(first));
     for (int i = 0; i < 50; ++i) layer.step({index, thumb});
     touched = layer.contacts()[base::Finger::kIndex].touching &&
-              layer.contacts()[base::Finger::kThumb].touching;
+              layer.contacts()[base::Finger::kThumb].touching &&
+              (!patches || layer.patch()->touchesObstacle());
     layer.receive(mesh.initial_positions, rest, 0.02);
     std::unique_ptr<Patch> old = layer.exchange(std::move(second));
     for (int i = 0; i < 50; ++i) layer.step({index, i % 2 == 0 ? thumb : unsound});

@@ -47,6 +47,18 @@ TEST_F(HapticLayerTest, HasNoContactBeforeTheFirstState) {
   EXPECT_TRUE(layer_.contacts()[Finger::kIndex].touching);
 }
 
+TEST_F(HapticLayerTest, NothingHoldsAFingertipBeforeTheFirstState) {
+  HapticSettings settings;
+  settings.layer = HapticSettings::Layer::kWholeCloth;
+  HapticLayer whole(mesh_, wool(), {true, Vector3d::Zero()}, settings);
+  for (const double x : {0.02, 0.01, 0.0, -0.01}) {  // through the origin
+    Fingertip tip = pressingMiddle();
+    tip.position = {x, 0.0, 0.0};
+    whole.step({tip, std::nullopt});
+    EXPECT_EQ(whole.held(Finger::kIndex)->position, tip.position);
+  }
+}
+
 TEST_F(HapticLayerTest, WhatTheFingertipFeelsIsWhatItsPointsCarry) {
   receiveRest();
   step({pressingMiddle(), std::nullopt}, 300);

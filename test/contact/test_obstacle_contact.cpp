@@ -33,8 +33,9 @@ cloth::ModelledEffects amongObstacles() {
 class OnObstacles {
  public:
   explicit OnObstacles(std::vector<mesh::Obstacle> obstacles,
-                       const material::Fabric& fabric = wool())
-      : fabric_(fabric), layer_(mesh_, fabric_, amongObstacles(), {}, std::move(obstacles)) {
+                       const material::Fabric& fabric = wool(),
+                       const cloth::ModelledEffects& effects = amongObstacles())
+      : fabric_(fabric), layer_(mesh_, fabric_, effects, {}, std::move(obstacles)) {
     layer_.exchange(
         layer_.preparePatch(trianglesAround(mesh_, {0.02, 0.02}, 0.015), nothingAttached(mesh_)));
     layer_.receive(mesh_.initial_positions, atRest(mesh_), 0.02);
@@ -106,10 +107,30 @@ TEST(ObstacleContact, NothingIsFeltOfAnObstacleThatTheSceneDoesNotModelOrThatIsF
   mesh::Obstacle far = plate();
   far.pose.translation().x() -= 0.05;
   OnObstacles with({far});
+  cloth::ModelledEffects alone = amongObstacles();
+  alone.contacts = false;
+  OnObstacles not_modelled({plate()}, wool(), alone);
   for (int i = 0; i < 20; ++i) {
     const Fingertip tip = pressing(without.law(), kSmallSampleMiddle, 1e-4 * i);
-    EXPECT_EQ(without.press(tip, 5).force, with.press(tip, 5).force);
+    const Vector3d force = without.press(tip, 5).force;
+    EXPECT_EQ(with.press(tip, 5).force, force);
+    EXPECT_EQ(not_modelled.press(tip, 5).force, force);
   }
+}
+
+TEST(ObstacleContact, APatchBeginsAmongObstaclesWhereTheyAreThen) {
+  // At time 0 the plate is 1.5 mm before the sheet, which it has passed long before the patch.
+  mesh::Obstacle passing = plate();
+  passing.pose.translation().x() += 0.0215 + kOffset;
+  passing.motion = mesh::ObstacleDrift{{-0.1, 0.0, 0.0}};
+  const mesh::ClothMesh mesh = smallSample();
+  HapticLayer layer(mesh, wool(), amongObstacles(), {}, {passing});
+  layer.receive(mesh.initial_positions, atRest(mesh), 0.02, 1.0);
+  layer.exchange(
+      layer.preparePatch(trianglesAround(mesh, {0.02, 0.02}, 0.015), nothingAttached(mesh)));
+  for (int i = 0; i < 5; ++i) layer.step({});
+  EXPECT_FALSE(layer.patch()->touchesObstacle());
+  for (const Vector3d& place : layer.patch()->positions()) EXPECT_NEAR(place.x(), 0.0, 1e-9);
 }
 
 TEST(ObstacleContact, AThinObstacleAndASurfaceLetNothingThrough) {
