@@ -196,8 +196,12 @@ void SimulatedCloth::runAdaptiveSubsteps(double duration) {
 
 cloth::StepReport SimulatedCloth::runSubstep(double duration) {
   cloth::Integrator& integrator = integrators_[plan_];
-  return collision_ ? collision_->step(cloth_, integrator, state_, duration)
-                    : integrator.step(cloth_, state_, duration);
+  cloth::ClothState& state = part_ ? part_->begin(cloth_, state_) : state_;
+  const cloth::StepReport report = collision_
+                                       ? collision_->step(computed(), integrator, state, duration)
+                                       : integrator.step(computed(), state, duration);
+  if (part_ && report.accepted) part_->end(state_);
+  return report;
 }
 
 void SimulatedCloth::use(std::size_t plan) {
@@ -223,6 +227,8 @@ void SimulatedCloth::relieve() {
 }
 
 void SimulatedCloth::reset() {
+  excluded_.clear();
+  part_.reset();
   cloth_.releaseAll();
   cloth_.setPointLoads({});
   loaded_ = false;
@@ -253,7 +259,7 @@ void SimulatedCloth::makeIntegrators() {
   lengths_.clear();
   bool several = false, adaptive = false;
   for (const StepPlan& plan : plans_) {
-    integrators_.emplace_back(cloth_, plan.step);
+    integrators_.emplace_back(computed(), plan.step);
     lengths_.emplace_back();
     if (plan.adaptive) lengths_.back().emplace(cloth_, plan.step.method, *plan.adaptive);
     several = several || plan.substeps > 1 || plan.adaptive;

@@ -1,4 +1,5 @@
 // What changes a SimulatedCloth between two steps.
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -12,23 +13,36 @@ namespace haptex::simulation {
 
 using base::refuse;
 
+namespace {
+
+/// What SimulatedCloth::excluded() says of a particle.
+enum Excluded : char { kIncluded, kWasFree, kWasAttached };
+
+}  // namespace
+
 void SimulatedCloth::setFabric(material::Fabric fabric) {
   if (collision_) collision_->requireFriction(fabric);
   cloth_.setFabric(std::move(fabric));
   cloth_.forget(state_);
-  if (!cloth_.forces().pairs().empty()) makeIntegrators();
+  if (part_) {
+    compute(std::move(excluded_));
+  } else if (!cloth_.forces().pairs().empty()) {
+    makeIntegrators();
+  }
   wake();
 }
 
 void SimulatedCloth::setPointLoads(const std::vector<cloth::PointLoad>& loads) {
   const bool changes = !loads.empty() || loaded_;
   cloth_.setPointLoads(loads);
+  if (part_) part_->setPointLoads(loads);
   loaded_ = !loads.empty();
   if (changes) wake();
 }
 
 void SimulatedCloth::setExternalForce(std::uint32_t particle, const Eigen::Vector3d& force) {
   cloth_.setExternalForce(static_cast<int>(particle), force);
+  if (part_) part_->setExternalForce(static_cast<int>(particle), force);
   pushed_ = true;
   wake();
 }
@@ -72,19 +86,22 @@ void SimulatedCloth::requireHeld(int particle, const Eigen::Vector3d* position,
                                  const Eigen::Vector3d* velocity) const {
   const std::optional<cloth::AttachmentPath>& path = cloth_.attachments()[particle];
   if (!path) return;
+  const char* first = excluded_.empty() || excluded_[particle] == 0 ? "release" : "include";
   const auto require = [&](const char* what, const Eigen::Vector3d& wanted,
                            const Eigen::Vector3d& held, const char* unit) {
     if ((wanted - held).norm() <= scene::kHeldTolerance) return;
     refuse("particle ", particle, " is attached: allowed is its ", what, " (", held.x(), ", ",
            held.y(), ", ", held.z(), ") ", unit, ", not (", wanted.x(), ", ", wanted.y(), ", ",
-           wanted.z(), "), or release it first");
+           wanted.z(), "), or ", first, " it first");
   };
   if (position != nullptr) require("place", *position, path->position(state_.time), "m");
   if (velocity != nullptr) require("velocity", *velocity, state_.velocities[particle], "m/s");
 }
 
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
-  for (const int particle : requireSome(particles)) {
+  const std::vector<int> indices = requireSome(particles);
+  requireIncluded(indices);
+  for (const int particle : indices) {
     cloth_.attach(particle, {state_.positions[particle], Eigen::Vector3d::Zero(), state_.time, 0});
   }
   wake();
@@ -93,6 +110,7 @@ void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,
                             const std::vector<Eigen::Vector3d>& places) {
   const std::vector<int> indices = requireSome(particles);
+  requireIncluded(indices);
   requireOneEach("positions", places.size(), indices.size(), "none to attach them where they are");
   requireAllWithin("positions", places, kMaxCoordinate, "m");
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -128,6 +146,66 @@ void SimulatedCloth::release(const std::vector<std::uint32_t>& particles) {
   wake();
 }
 
+void SimulatedCloth::exclude(const std::vector<std::uint32_t>& particles) {
+  const std::vector<int> indices = requireSome(particles);
+  std::vector<char> excluded = excluded_;
+  excluded.resize(cloth_.particleCount(), kIncluded);
+  for (const int particle : indices) {
+    if (excluded[particle] != kIncluded) continue;
+    excluded[particle] = cloth_.isAttached(particle) ? kWasAttached : kWasFree;
+  }
+  if (std::find(excluded.begin(), excluded.end(), kIncluded) == excluded.end()) {
+    refuse("all ", excluded.size(),
+           " particles would be excluded: allowed are all but one; to stop all, pause");
+  }
+  compute(std::move(excluded));
+  for (const int particle : indices) {
+    state_.velocities[particle].setZero();
+    cloth_.attach(particle, {state_.positions[particle], Eigen::Vector3d::Zero(), state_.time, 0});
+  }
+  wake();
+}
+
+void SimulatedCloth::include(const std::vector<std::uint32_t>& particles) {
+  requireParticles(particles, cloth_.particleCount());
+  if (excluded_.empty()) return;
+  std::vector<std::uint32_t> indices = particles;
+  if (particles.empty()) {
+    indices.resize(cloth_.particleCount());
+    std::iota(indices.begin(), indices.end(), 0u);
+  }
+  std::vector<char> excluded = excluded_;
+  for (const std::uint32_t particle : indices) {
+    if (excluded[particle] == kWasFree) cloth_.release(static_cast<int>(particle));
+    excluded[particle] = kIncluded;
+  }
+  compute(std::move(excluded));
+  wake();
+}
+
+/// @param excluded per particle
+void SimulatedCloth::compute(std::vector<char> excluded) {
+  std::vector<char> included(excluded.size());
+  std::transform(excluded.begin(), excluded.end(), included.begin(),
+                 [](char state) { return state == kIncluded; });
+  if (std::find(included.begin(), included.end(), 0) == included.end()) {
+    excluded.clear();
+    part_.reset();
+  } else {
+    part_ = cloth::ClothPart(cloth_, included);
+  }
+  excluded_ = std::move(excluded);
+  makeIntegrators();
+}
+
+void SimulatedCloth::requireIncluded(const std::vector<int>& particles) const {
+  for (std::size_t i = 0; !excluded_.empty() && i < particles.size(); ++i) {
+    if (excluded_[particles[i]] == kIncluded) continue;
+    refuse(element("particles", i), " = ", particles[i],
+           " is excluded from the computation: allowed are included particles; include it first");
+  }
+}
+
 std::vector<cloth::JacobianBlock> SimulatedCloth::jacobian(
     const std::vector<std::uint32_t>& particles) const {
   return cloth_.jacobian(state_, requireSome(particles));
@@ -142,6 +220,7 @@ std::vector<int> SimulatedCloth::requireSome(const std::vector<std::uint32_t>& p
 std::vector<int> SimulatedCloth::requireAttached(
     const std::vector<std::uint32_t>& particles) const {
   const std::vector<int> indices = requireSome(particles);
+  requireIncluded(indices);
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (!cloth_.isAttached(indices[i])) {
       refuse(element("particles", i), " = ", indices[i],

@@ -51,6 +51,24 @@ TEST(StepPlanAllocation, AdaptiveStepsAllocateNothing) {
   }
 }
 
+TEST(StepPlanAllocation, StepsOfAPartAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  SimulatedCloth simulation = plannedSimulation(severalPlans(), true);
+  simulation.exclude({0, 1, 5, 6});
+  const std::size_t plans = severalPlans().size();
+  const long before = allocations;
+  bool accepted = true;
+  for (int i = 0; i < 40; ++i) {
+    simulation.use(static_cast<std::size_t>(i) % plans);
+    simulation.setPointLoads({});
+    accepted = simulation.step() && accepted;
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_TRUE(accepted);
+}
+
 TEST(StepPlanAllocation, ExternalForcesComeAndEndWithoutAllocation) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer brings its own malloc";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/cloth_part.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/cloth/dynamics/rest_detector.h"
 #include "haptex/cloth/dynamics/step_length_control.h"
@@ -110,7 +111,7 @@ class SimulatedCloth {
   const QualityController* controller() const { return controller_ ? &*controller_ : nullptr; }
 
   /// Positions, velocities, attachments, bodies and time as at the start, without loads or external
-  /// forces. The fabric stays.
+  /// forces, with all particles. The fabric stays.
   void reset();
 
   /// Takes effect in the next step; positions and velocities stay.
@@ -162,6 +163,21 @@ class SimulatedCloth {
   /// @throws std::invalid_argument also if one is not attached
   void release(const std::vector<std::uint32_t>& particles);
 
+  /// Takes particles out of the computation: they stand still where they are, attached, and what
+  /// only they would need is not computed. Obstacles and loads go through them. Those that are
+  /// excluded stay so.
+  /// @throws std::invalid_argument also if none would be left, or what cloth::ClothPart throws
+  void exclude(const std::vector<std::uint32_t>& particles);
+
+  /// Takes them in again, from rest where they are, with the friction inside of the fabric that
+  /// they had; those that were attached before are attached there. Those that are included stay so.
+  /// @param particles empty: all
+  /// @throws std::invalid_argument if one does not exist or is named twice
+  void include(const std::vector<std::uint32_t>& particles);
+
+  /// Per particle, nonzero where it is excluded; empty: none is.
+  const std::vector<char>& excluded() const { return excluded_; }
+
   /// Exact Jacobian blocks of the rows of some particles, in the present state.
   /// @throws std::invalid_argument if there is none, one does not exist or is named twice
   std::vector<cloth::JacobianBlock> jacobian(const std::vector<std::uint32_t>& particles) const;
@@ -169,6 +185,9 @@ class SimulatedCloth {
  private:
   std::vector<int> requireSome(const std::vector<std::uint32_t>& particles) const;
   std::vector<int> requireAttached(const std::vector<std::uint32_t>& particles) const;
+  void requireIncluded(const std::vector<int>& particles) const;
+  void compute(std::vector<char> excluded);
+  cloth::Cloth& computed() { return part_ ? part_->cloth() : cloth_; }
   void requireHeld(int particle, const Eigen::Vector3d* position,
                    const Eigen::Vector3d* velocity) const;
   /// What a step changes beside what the integrators remember.
@@ -191,8 +210,10 @@ class SimulatedCloth {
   void sleepIfResting();
 
   cloth::Cloth cloth_;
-  bool loaded_ = false;                            // with point loads
-  bool pushed_ = false;                            // external forces have been set
+  std::vector<char> excluded_;            // whether it was attached before, too; empty: none is
+  std::optional<cloth::ClothPart> part_;  // that is computed instead of cloth_, if any is excluded
+  bool loaded_ = false;                   // with point loads
+  bool pushed_ = false;                   // external forces have been set
   std::vector<Eigen::Vector3d> start_velocities_;  // m/s; empty: at rest
   double start_time_;                              // s
   cloth::ClothState state_;

@@ -39,6 +39,14 @@ std::size_t ForceSum::memorySize() const {
   return size;
 }
 
+std::vector<std::vector<int>> ForceSum::memoryOwners() const {
+  std::vector<std::vector<int>> all;
+  for (const auto& force : forces_) {
+    for (std::vector<int>& owners : force->memoryOwners()) all.push_back(std::move(owners));
+  }
+  return all;
+}
+
 void ForceSum::forget(const Positions& positions, double* memory) const {
   for (const auto& force : forces_) {
     force->forget(positions, memory);

@@ -59,6 +59,14 @@ void MembraneFriction::bind(const linear::SymmetricBlockMatrix& matrix) {
   bindElements(matrix, elements_);
 }
 
+std::vector<std::vector<int>> MembraneFriction::memoryOwners() const {
+  std::vector<std::vector<int>> owners;
+  for (const MembraneElement& element : elements_) {
+    owners.insert(owners.end(), 3, {element.particles.begin(), element.particles.end()});
+  }
+  return owners;
+}
+
 void MembraneFriction::forget(const Positions& positions, double* memory) const {
   for (const MembraneElement& element : elements_) {
     const MembraneStrain strain = greenStrain(element, positions);

@@ -57,6 +57,7 @@ class Cloth {
   const mesh::ClothMesh& mesh() const { return mesh_; }
   /// The first one, and the only one of a sheet.
   const material::Fabric& fabric() const { return fabrics_.front(); }
+  const std::vector<material::Fabric>& fabrics() const { return fabrics_; }
   const ModelledEffects& effects() const { return effects_; }
   std::size_t particleCount() const { return masses_.size(); }
   /// Lumped particle masses (kg): a third of each adjacent triangle.

@@ -19,6 +19,7 @@ class ConstantForces final : public Force {
 
   /// @param other of as many particles
   void copyUserForces(const ConstantForces& other) { set_ = other.set_; }
+  const std::vector<Eigen::Vector3d>& userForces() const { return set_; }  ///< N, one per particle
   /// @param force N, finite, of a particle that exists
   void set(int particle, const Eigen::Vector3d& force);
 

@@ -90,6 +90,9 @@ class Force {
   virtual std::size_t memorySize() const { return 0; }
   /// Writes the memory of a cloth that has rested here for ever.
   virtual void forget(const Positions& positions, double* memory) const;
+  /// The particles that each number of the memory is about, in the order of the element's corners.
+  /// Allocates.
+  virtual std::vector<std::vector<int>> memoryOwners() const { return {}; }
   /// Lets the memory follow the positions, at the end of every step.
   virtual void remember(const Positions& positions, double* memory) const;
 

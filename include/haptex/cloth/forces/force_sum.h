@@ -41,9 +41,20 @@ class ForceSum final : public Force {
     return const_cast<AForce*>(std::as_const(*this).find<AForce>());
   }
 
+  /// All forces of a kind, in their order.
+  template <typename AForce>
+  std::vector<const AForce*> findAll() const {
+    std::vector<const AForce*> found;
+    for (const auto& force : forces_) {
+      if (const auto* one = dynamic_cast<const AForce*>(force.get())) found.push_back(one);
+    }
+    return found;
+  }
+
   std::vector<std::array<int, 2>> pairs() const override;
   void bind(const linear::SymmetricBlockMatrix& matrix) override;
   std::size_t memorySize() const override;
+  std::vector<std::vector<int>> memoryOwners() const override;
   void forget(const Positions& positions, double* memory) const override;
   void remember(const Positions& positions, double* memory) const override;
   void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;

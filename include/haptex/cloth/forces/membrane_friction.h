@@ -35,6 +35,7 @@ class MembraneFriction final : public Force {
 
   /// Per element the works of weft and warp, J/m^2, and the plastic shear.
   std::size_t memorySize() const override { return 3 * elements_.size(); }
+  std::vector<std::vector<int>> memoryOwners() const override;
   /// To those with which weft and warp are on their curves, as if they had been stretched to here
   /// from rest, and shear meets no friction.
   void forget(const Positions& positions, double* memory) const override;

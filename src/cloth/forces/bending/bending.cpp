@@ -29,7 +29,7 @@ void requireRigidity(const char* name, double value) {
 
 Bending::Bending(const mesh::ClothMesh& mesh, const material::BendingRigidity& rigidity,
                  const BendingSettings& settings)
-    : diagonal_(mesh.rest_coordinates.size(), 0.0) {
+    : model_(settings.model), diagonal_(mesh.rest_coordinates.size(), 0.0) {
   requireRigidity("weft", rigidity.weft);
   requireRigidity("warp", rigidity.warp);
   if (!settings.rest_curvature.allFinite()) {
@@ -43,7 +43,10 @@ Bending::Bending(const mesh::ClothMesh& mesh, const material::BendingRigidity& r
     stiffnesses = fitStiffnesses(found, plate);
     if (stiffnesses) addFittedHinges(found, *stiffnesses);
   }
-  if (!stiffnesses) addCurvatureHinges(mesh, plate);
+  if (!stiffnesses) {
+    model_ = BendingModel::kQuadratic;
+    addCurvatureHinges(mesh, plate);
+  }
   couple(mesh);
   if (!settings.rest_curvature.isZero(0.0)) {
     rest_.emplace(mesh, hinges_, corners_, settings.rest_curvature);

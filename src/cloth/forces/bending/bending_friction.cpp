@@ -59,6 +59,17 @@ void BendingFriction::bind(const linear::SymmetricBlockMatrix& matrix) {
   }
 }
 
+std::vector<std::vector<int>> BendingFriction::memoryOwners() const {
+  std::vector<std::vector<int>> owners;
+  for (const NormalHinges::NormalHinge& hinge : hinges_.hinges()) {
+    std::vector<int>& corners = owners.emplace_back();
+    for (int i = hinge.begin; i < hinge.end; ++i) {
+      corners.push_back(hinges_.corners()[i].particle);
+    }
+  }
+  return owners;
+}
+
 void BendingFriction::forget(const Positions& positions, double* plastic) const {
   for (std::size_t h = 0; h < elements_.size(); ++h) {
     plastic[h] = hinges_.frame(hinges_.hinges()[h], positions).bend();

@@ -60,6 +60,8 @@ class Bending final : public Force {
   /// @param particles of that mesh, for every one of this, ascending
   void renumber(const std::vector<int>& particles);
 
+  /// That of its hinges, which is kQuadratic where kLinear is not exact.
+  BendingModel model() const { return model_; }
   const std::vector<Hinge>& hinges() const { return hinges_; }
   const std::vector<HingeCorner>& corners() const { return corners_; }
   /// Null if there is none.
@@ -90,6 +92,7 @@ class Bending final : public Force {
   void addCurvatureHinges(const mesh::ClothMesh& mesh, const PlateRigidity& rigidity);
   void couple(const mesh::ClothMesh& mesh);
 
+  BendingModel model_;
   std::vector<Hinge> hinges_;
   std::vector<HingeCorner> corners_;
   std::optional<RestCurvature> rest_;

@@ -46,6 +46,7 @@ class BendingFriction final : public Force {
 
   /// The plastic bend of every hinge with friction, m.
   std::size_t memorySize() const override { return elements_.size(); }
+  std::vector<std::vector<int>> memoryOwners() const override;
   /// To those with which there is no friction at these positions.
   void forget(const Positions& positions, double* plastic) const override;
   /// Lets the plastic bends follow what exceeds the yield. Takes the energy
