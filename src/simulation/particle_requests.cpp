@@ -1,5 +1,9 @@
 #include "haptex/simulation/particle_requests.h"
 
+#include <Eigen/Geometry>
+#include <cmath>
+#include <sstream>
+
 #include "haptex/base/require.h"
 
 namespace haptex::simulation {
@@ -10,6 +14,17 @@ using base::refuse;
 
 bool isWithin(const Eigen::Vector3d& vector, double limit) {
   return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= limit;
+}
+
+constexpr double kBorder = 1e-9;  // m, around a region, against rounding
+
+void requireExtent(const char* name, const std::vector<double>& extent) {
+  const bool two = extent.size() == 2;
+  if (two && std::isfinite(extent[0]) && std::isfinite(extent[1]) && extent[0] <= extent[1]) return;
+  std::ostringstream numbers;
+  for (std::size_t i = 0; i < extent.size(); ++i) numbers << (i > 0 ? ", " : "") << extent[i];
+  refuse("region: ", name, " = [", numbers.str(),
+         "] m: allowed are two finite numbers, the first not larger, for weft and for warp");
 }
 
 }  // namespace
@@ -32,6 +47,29 @@ void requireParticles(const std::vector<std::uint32_t>& particles, std::size_t c
     }
     named[particle] = true;
   }
+}
+
+std::vector<std::uint32_t> selectedParticles(const mesh::ClothMesh& mesh,
+                                             const std::vector<std::uint32_t>& particles,
+                                             const std::vector<double>& weft,
+                                             const std::vector<double>& warp) {
+  const std::size_t count = mesh.rest_coordinates.size();
+  requireParticles(particles, count);
+  std::vector<std::uint32_t> selected = particles;
+  if (!weft.empty() || !warp.empty()) {
+    requireExtent("weft", weft);
+    requireExtent("warp", warp);
+    std::vector<bool> named(count, false);
+    for (const std::uint32_t particle : particles) named[particle] = true;
+    const Eigen::AlignedBox2d region(Eigen::Vector2d(weft[0] - kBorder, warp[0] - kBorder),
+                                     Eigen::Vector2d(weft[1] + kBorder, warp[1] + kBorder));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (named[i] || !region.contains(mesh.rest_coordinates[i])) continue;
+      selected.push_back(static_cast<std::uint32_t>(i));
+    }
+    if (selected.empty()) refuse("no particle lies in the region: allowed is at least one");
+  }
+  return selected;
 }
 
 void requireOneEach(const char* name, std::size_t size, std::size_t count,

@@ -11,7 +11,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point, Vector3
 from haptex.msg import ClothMesh, ClothState, ContactForces, ExternalForces
 from haptex.srv import (AttachParticles, GetJacobian, MoveParticles, QueryBudget, ReleaseParticles,
-                        SaveState, SetFabric, SetState, StepCloth)
+                        SaveState, SelectParticles, SetFabric, SetState, StepCloth)
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import MarkerArray
@@ -40,7 +40,8 @@ class ClothSimulation(unittest.TestCase):
                     'set_fabric': SetFabric, 'attach': AttachParticles, 'move': MoveParticles,
                     'release': ReleaseParticles, 'get_jacobian': GetJacobian,
                     'query_budget': QueryBudget, 'set_state': SetState,
-                    'save_state': SaveState}
+                    'save_state': SaveState, 'exclude': SelectParticles,
+                    'include': SelectParticles}
         for name, service in services.items():
             rospy.wait_for_service('cloth/' + name, WAIT)
             setattr(cls, name, rospy.ServiceProxy('cloth/' + name, service))
@@ -396,6 +397,46 @@ class ClothSimulation(unittest.TestCase):
             self.refused(self.save_state, os.path.join(directory, 'none', 'a.state'),
                          says='cannot be written: No such file or directory')
         self.refused(self.save_state, 'three_steps.state', says='allowed are absolute paths')
+
+    def test_excludes_and_includes_particles(self):
+        self.accepted(self.step(steps=20))
+        start = self.state()
+        half = [i for i in range(PARTICLES) if i // 33 < 16]  # the lower rows
+        answer = self.accepted(self.exclude([], [0.0, 0.2], [0.0, 0.2 * 15 / 32]))
+        self.assertEqual(answer.message, f'{len(half)} particles of {PARTICLES} excluded')
+        excluded = self.state()
+        self.assertEqual(list(excluded.excluded), half)
+        self.assertTrue(set(half) <= set(excluded.attached))
+        self.assertEqual(excluded.positions, start.positions)
+        self.accepted(self.step(steps=20))
+        moved = self.state()
+        self.assertEqual(moved.positions[:len(half)], start.positions[:len(half)])
+        self.assertNotEqual(moved.positions[len(half):], start.positions[len(half):])
+        self.accepted(self.include([CORNER], [], []))
+        self.assertEqual(list(self.state().excluded), half[1:])
+        self.accepted(self.include([], [], []))
+        included = self.state()
+        self.assertEqual(included.positions, moved.positions)
+        self.assertEqual(len(included.excluded), 0)
+        self.assertEqual(included.attached, start.attached)
+        self.accepted(self.step(steps=20))
+        self.assertNotEqual(self.state().positions[CORNER], moved.positions[CORNER])
+
+    def test_refuses_to_exclude(self):
+        self.refuses_particles(lambda particles: self.exclude(particles, [], []))
+        self.refused(self.include, [PARTICLES], [], [], says='does not exist')
+        for weft, warp, says in (
+                ([0.0], [0.0, 0.1], 'region: weft = [0] m: allowed are two finite numbers'),
+                ([0.0, 0.1], [], 'region: warp = [] m'),
+                ([0.0, NAN], [0.0, 0.1], 'region: weft = [0, nan] m'),
+                ([0.1, 0.0], [0.0, 0.1], 'region: weft = [0.1, 0] m'),
+                ([0.5, 0.6], [0.0, 0.1], 'no particle lies in the region'),
+                ([0.0, 1.0], [0.0, 1.0], f'all {PARTICLES} particles would be excluded')):
+            self.refused(self.exclude, [], weft, warp, says=says)
+        self.accepted(self.exclude([CORNER, TOP_CORNER], [], []))
+        for call in (lambda: self.release([TOP_CORNER]), lambda: self.attach(WORLD, [CORNER], []),
+                     lambda: self.move(WORLD, [TOP_CORNER], Vector3(), 1)):
+            self.refused(call, says='is excluded from the computation')
 
     def test_heartbeat_goes_on_while_paused(self):
         beats = []

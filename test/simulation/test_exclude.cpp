@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "haptex/scene/scene.h"
 #include "haptex/scene/scene_fabric.h"
+#include "haptex/simulation/particle_requests.h"
 #include "step_plans.h"
 
 namespace haptex::simulation::test_exclude {
@@ -167,6 +170,39 @@ TEST(Exclude, BadRequestsChangeNothing) {
   expectRefused([](auto& cloth) { cloth.move({1}, Vector3d::Zero(), 0.0); }, excluded);
   expectRefused([](auto& cloth) { cloth.setState({1}, {Vector3d::Zero()}, {}); },
                 "or include it first");
+}
+
+using Particles = std::vector<std::uint32_t>;
+
+/// 4 x 2 cells of 10 mm.
+const mesh::ClothMesh kSheet =
+    mesh::makeRectangle(0.04, 0.02, 4, 2, mesh::Triangulation::kAlternating);
+
+TEST(SelectedParticles, AreThoseNamedAndThoseInTheRegionWithItsBorders) {
+  EXPECT_EQ(selectedParticles(kSheet, {7, 2}, {}, {}), (Particles{7, 2}));
+  EXPECT_EQ(selectedParticles(kSheet, {}, {}, {}), Particles{});
+  EXPECT_EQ(selectedParticles(kSheet, {}, {0.01, 0.03}, {0.0, 0.01}),
+            (Particles{1, 2, 3, 6, 7, 8}));
+  EXPECT_EQ(selectedParticles(kSheet, {8, 0}, {0.03, 0.04}, {0.01, 0.01}), (Particles{8, 0, 9}));
+}
+
+TEST(SelectedParticles, AreRefusedWithWhatIsAllowed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto expectRefused = [](const Particles& particles, const std::vector<double>& weft,
+                                const std::vector<double>& warp, const std::string& expected) {
+    try {
+      selectedParticles(kSheet, particles, weft, warp);
+      FAIL() << "accepted, instead of: " << expected;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+    }
+  };
+  expectRefused({15}, {}, {}, "particles[0] = 15 does not exist: allowed are 0 to 14");
+  expectRefused({1, 1}, {}, {}, "is named twice");
+  expectRefused({1}, {0.0, 0.1}, {}, "region: warp = [] m: allowed are two finite numbers");
+  expectRefused({1}, {0.0, nan}, {0.0, 0.1}, "region: weft = [0, nan] m");
+  expectRefused({1}, {0.2, 0.1}, {0.0, 0.1}, "region: weft = [0.2, 0.1] m");
+  expectRefused({}, {0.5, 0.6}, {0.0, 0.1}, "no particle lies in the region");
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "haptex/mesh/mesh.h"
+
 namespace haptex::simulation {
 
 /// "array[index]"
@@ -16,6 +18,15 @@ std::string element(const std::string& array, std::size_t index);
 /// @throws std::invalid_argument naming the first of `particles` that does not exist or is named
 ///   twice
 void requireParticles(const std::vector<std::uint32_t>& particles, std::size_t count);
+
+/// Those that are named, then, ascending, the others whose rest coordinates lie in a region.
+/// @param weft, warp from and to (m), borders included; both empty: no region
+/// @throws std::invalid_argument also if an extent has not two finite numbers, the first not
+///   larger than the second, or there is a region and no particle is named or lies in it
+std::vector<std::uint32_t> selectedParticles(const mesh::ClothMesh& mesh,
+                                             const std::vector<std::uint32_t>& particles,
+                                             const std::vector<double>& weft,
+                                             const std::vector<double>& warp);
 
 /// @param size  of the array `name` @param count what it has to have, one for each particle
 /// @param instead what else would be allowed, for example "none"; may be empty

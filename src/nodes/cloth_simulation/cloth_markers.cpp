@@ -18,6 +18,7 @@ namespace {
 enum MarkerIndex { kClothIndex, kEdgesIndex, kParticlesIndex, kScaleIndex, kFirstLabelIndex };
 
 constexpr int kScaleCells = 64;
+const Eigen::Vector3f kExcludedColour(0.62F, 0.62F, 0.62F);
 
 std::vector<std::array<int, 2>> uniqueEdges(const std::vector<std::array<int, 3>>& triangles) {
   std::vector<std::array<int, 2>> edges;
@@ -148,7 +149,12 @@ void ClothMarkers::computeStrainColours(const simulation::SimulatedCloth& simula
       particle_areas_[particle] += element.area;
     }
   }
+  const std::vector<char>& excluded = simulation.excluded();
   for (std::size_t i = 0; i < colours_.size(); ++i) {
+    if (!excluded.empty() && excluded[i] != 0) {
+      colours_[i] = kExcludedColour;
+      continue;
+    }
     const double strain = particle_strains_[i] / particle_areas_[i];
     colours_[i] = viridis(strainFraction(strain, full_scale_));
   }
@@ -183,12 +189,15 @@ void ClothMarkers::updateCloth(const simulation::SimulatedCloth& simulation) {
 void ClothMarkers::updateAttachments(const simulation::SimulatedCloth& simulation) {
   using visualization_msgs::Marker;
   const std::vector<Eigen::Vector3d>& positions = simulation.state().positions;
-  const auto& attachments = simulation.cloth().attachments();
+  const std::vector<char>& excluded = simulation.excluded();
+  const auto held = [&, &attachments = simulation.cloth().attachments()](std::size_t particle) {
+    return attachments[particle] && (excluded.empty() || excluded[particle] == 0);
+  };
   Marker& bars = markers_.markers[kEdgesIndex];
   bars.points.clear();
   joined_.assign(positions.size(), false);
   for (const auto& [first, second] : edges_) {
-    if (!attachments[first] || !attachments[second]) continue;
+    if (!held(first) || !held(second)) continue;
     bars.points.push_back(pointMessage(positions[first]));
     bars.points.push_back(pointMessage(positions[second]));
     joined_[first] = joined_[second] = true;
@@ -196,7 +205,7 @@ void ClothMarkers::updateAttachments(const simulation::SimulatedCloth& simulatio
   Marker& particles = markers_.markers[kParticlesIndex];
   particles.points.clear();
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (attachments[i] && !joined_[i]) particles.points.push_back(pointMessage(positions[i]));
+    if (held(i) && !joined_[i]) particles.points.push_back(pointMessage(positions[i]));
   }
   deleteIfEmpty(bars);
   deleteIfEmpty(particles);

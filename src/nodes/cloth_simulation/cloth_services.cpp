@@ -12,6 +12,7 @@
 #include "haptex/nodes/common/config_files.h"
 #include "haptex/nodes/common/service_answer.h"
 #include "haptex/scene/cloth_state_file.h"
+#include "haptex/simulation/particle_requests.h"
 
 namespace haptex::nodes {
 namespace {
@@ -20,6 +21,14 @@ constexpr std::uint32_t kMaxSteps = 100000;
 
 std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string excludedOf(const simulation::SimulatedCloth& simulation) {
+  const std::vector<char>& excluded = simulation.excluded();
+  const std::size_t included =
+      static_cast<std::size_t>(std::count(excluded.begin(), excluded.end(), 0));
+  return counted(excluded.size() - included, "particle") + " of " +
+         std::to_string(simulation.cloth().particleCount()) + " excluded";
 }
 
 }  // namespace
@@ -32,6 +41,8 @@ void ClothNode::advertiseServices() {
                node_.advertiseService("cloth/attach", &ClothNode::attach, this),
                node_.advertiseService("cloth/move", &ClothNode::move, this),
                node_.advertiseService("cloth/release", &ClothNode::release, this),
+               node_.advertiseService("cloth/exclude", &ClothNode::exclude, this),
+               node_.advertiseService("cloth/include", &ClothNode::include, this),
                node_.advertiseService("cloth/get_jacobian", &ClothNode::getJacobian, this),
                node_.advertiseService("cloth/set_state", &ClothNode::setState, this),
                node_.advertiseService("cloth/save_state", &ClothNode::saveState, this),
@@ -122,6 +133,30 @@ bool ClothNode::release(ReleaseParticles::Request& request, ReleaseParticles::Re
     loop_.execute(
         [&](simulation::SimulatedCloth& simulation) { simulation.release(request.particles); });
     return "released " + counted(request.particles.size(), "particle");
+  });
+}
+
+bool ClothNode::exclude(SelectParticles::Request& request, SelectParticles::Response& response) {
+  return answer("exclude", response, [&] {
+    std::string left;
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      simulation.exclude(simulation::selectedParticles(simulation.cloth().mesh(), request.particles,
+                                                       request.weft, request.warp));
+      left = excludedOf(simulation);
+    });
+    return left;
+  });
+}
+
+bool ClothNode::include(SelectParticles::Request& request, SelectParticles::Response& response) {
+  return answer("include", response, [&] {
+    std::string left;
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      simulation.include(simulation::selectedParticles(simulation.cloth().mesh(), request.particles,
+                                                       request.weft, request.warp));
+      left = excludedOf(simulation);
+    });
+    return left;
   });
 }
 

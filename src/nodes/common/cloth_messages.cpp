@@ -64,6 +64,11 @@ void fillStateMessage(const simulation::SimulatedCloth& simulation, const ros::T
   for (std::size_t i = 0; i < attachments.size(); ++i) {
     if (attachments[i]) message.attached.push_back(static_cast<std::uint32_t>(i));
   }
+  message.excluded.clear();
+  const std::vector<char>& excluded = simulation.excluded();
+  for (std::size_t i = 0; i < excluded.size(); ++i) {
+    if (excluded[i] != 0) message.excluded.push_back(static_cast<std::uint32_t>(i));
+  }
 }
 
 void restampStateMessage(const simulation::SimulatedCloth& simulation, const ros::Time& stamp,

@@ -85,6 +85,23 @@ TEST(ClothMarkers, ShowAttachedParticlesAndVanishWithThem) {
   EXPECT_EQ(find(without, "attachments", Marker::SPHERE_LIST).action, Marker::DELETE);
 }
 
+TEST(ClothMarkers, ShowExcludedParticlesInGreyWithoutBars) {
+  simulation::SimulatedCloth simulation = simulation::smallSimulation();
+  ClothMarkers markers(simulation.cloth().mesh(), 0.01);
+  simulation.exclude({0, 1, 5});
+  const auto& shown = markers.update(simulation, ros::Time(1));
+  EXPECT_EQ(find(shown, "attachments", Marker::LINE_LIST).points.size(), 2u * 4);
+  EXPECT_EQ(find(shown, "attachments", Marker::SPHERE_LIST).action, Marker::DELETE);
+  const Marker& cloth = find(shown, "cloth", Marker::TRIANGLE_LIST);
+  const auto& triangles = simulation.cloth().mesh().triangles;
+  for (std::size_t i = 0; i < cloth.points.size(); ++i) {
+    const int particle = triangles[i / 3][i % 3];
+    const bool grey =
+        cloth.colors[i].r == cloth.colors[i].g && cloth.colors[i].g == cloth.colors[i].b;
+    EXPECT_EQ(grey, particle == 0 || particle == 1 || particle == 5) << particle;
+  }
+}
+
 TEST(ClothMarkers, AreAllStampedAndInTheFixedFrame) {
   simulation::SimulatedCloth simulation = simulation::smallSimulation();
   ClothMarkers markers(simulation.cloth().mesh(), 0.01);

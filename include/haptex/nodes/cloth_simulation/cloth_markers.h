@@ -18,11 +18,13 @@ namespace haptex::nodes {
 /// Markers of a cloth in the frame kFixedFrame, in namespaces that rviz can switch off singly:
 /// "cloth": triangles coloured by the largest principal Green-Lagrange strain, averaged at the
 ///   particles with the rest areas of the triangles around. rviz does not light triangles that
-///   have colours of their own, so the shading of a fixed light is part of the colours.
+///   have colours of their own, so the shading of a fixed light is part of the colours. Particles
+///   that are excluded from the computation are grey.
 /// "scale": the colours of the last four decades to the full scale with numbers in percent, beside
 ///   the place where the cloth starts.
 /// "obstacles": those that move; the proximity node shows those that rest.
-/// "attachments": attached particles as bars along the edges that join them, or as balls.
+/// "attachments": attached particles that are not excluded as bars along the edges that join them,
+/// or as balls.
 class ClothMarkers {
  public:
   /// @param full_scale strain with the last colour of the scale, finite and > 0

@@ -9,6 +9,7 @@
 #include <haptex/QueryBudget.h>
 #include <haptex/ReleaseParticles.h>
 #include <haptex/SaveState.h>
+#include <haptex/SelectParticles.h>
 #include <haptex/SetFabric.h>
 #include <haptex/SetState.h>
 #include <haptex/StepCloth.h>
@@ -100,6 +101,8 @@ class ClothNode {
   bool attach(AttachParticles::Request& request, AttachParticles::Response& response);
   bool move(MoveParticles::Request& request, MoveParticles::Response& response);
   bool release(ReleaseParticles::Request& request, ReleaseParticles::Response& response);
+  bool exclude(SelectParticles::Request& request, SelectParticles::Response& response);
+  bool include(SelectParticles::Request& request, SelectParticles::Response& response);
   bool getJacobian(GetJacobian::Request& request, GetJacobian::Response& response);
   bool setState(SetState::Request& request, SetState::Response& response);
   bool saveState(SaveState::Request& request, SaveState::Response& response);
