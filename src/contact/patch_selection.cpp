@@ -17,6 +17,13 @@ void PatchSelection::begin() {
   for (int& rounds : apart_) rounds = std::min(rounds + 1, kRests);
 }
 
+void PatchSelection::keep(int element) {
+  const bool exists = element >= 0 && element < static_cast<int>(chosen_.size());
+  if (!exists || !chosen_[element]) return;
+  apart_[element] = 0;
+  wanted_[element] = 1;
+}
+
 void PatchSelection::add(int element, double distance, int rank, const HapticSettings& settings) {
   const bool stays = chosen_[element];
   const double reach = settings.margin + (stays ? kHysteresis : 0.0);

@@ -2,11 +2,14 @@
 
 namespace haptex::simulation {
 
-bool PatchSupply::ask(const contact::Fingertips& fingertips, double seconds, const Search& search) {
+bool PatchSupply::ask(const LoopView& view, const Search& search) {
   selection_.begin();
-  for (const std::optional<contact::Fingertip>& fingertip : fingertips.values) {
+  for (const cloth::PointLoad& load : view.loads) selection_.keep(load.triangle);
+  for (const std::optional<contact::Fingertip>& fingertip : view.fingertips.values) {
     if (!fingertip) continue;
-    if (!search(contact::searchVolume(*fingertip, seconds, settings_), selection_)) return false;
+    const contact::SearchVolume volume =
+        contact::searchVolume(*fingertip, view.state_period, settings_);
+    if (!search(volume, selection_)) return false;
   }
   if (selection_.finish()) outdated_ = true;
   return true;

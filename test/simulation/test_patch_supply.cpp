@@ -14,8 +14,9 @@ using base::Finger;
 class PatchSupplyTest : public testing::Test {
  protected:
   PatchSupplyTest() {
-    index_[Finger::kIndex].emplace();
-    index_[Finger::kIndex]->radius = 7.5e-3;
+    index_.fingertips[Finger::kIndex].emplace();
+    index_.fingertips[Finger::kIndex]->radius = 7.5e-3;
+    index_.state_period = 0.01;
   }
 
   /// A search that finds these triangles, the nearest first, and counts how often it was asked.
@@ -37,7 +38,7 @@ class PatchSupplyTest : public testing::Test {
       mesh_, material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), {}, {}};
   const std::vector<char> nothing_attached_ = std::vector<char>(mesh_.rest_coordinates.size(), 0);
   PatchSupply supply_{{}, mesh_.triangles.size()};
-  contact::Fingertips index_;
+  LoopView index_;
   int asked_ = 0;
   Eigen::Vector3d last_end_ = Eigen::Vector3d::Zero();
 };
@@ -45,43 +46,43 @@ class PatchSupplyTest : public testing::Test {
 TEST_F(PatchSupplyTest, PreparesAPatchWhenTheAnswerHasChanged) {
   supply_.setAttached(nothing_attached_);
   EXPECT_FALSE(supply_.isOutdated()) << "there is nothing yet";
-  EXPECT_TRUE(supply_.ask(index_, 0.01, finds({40, 41, 42, 43, 56, 57, 58, 59})));
+  EXPECT_TRUE(supply_.ask(index_, finds({40, 41, 42, 43, 56, 57, 58, 59})));
   ASSERT_TRUE(supply_.isOutdated());
   const auto patch = supply_.prepare(layer_);
   ASSERT_NE(patch, nullptr);
   EXPECT_EQ(supply_.triangles().size(), 8u);
   EXPECT_FALSE(supply_.isOutdated());
-  EXPECT_TRUE(supply_.ask(index_, 0.01, finds({40, 41, 42, 43, 56, 57, 58, 59})));
+  EXPECT_TRUE(supply_.ask(index_, finds({40, 41, 42, 43, 56, 57, 58, 59})));
   EXPECT_FALSE(supply_.isOutdated());
 }
 
 TEST_F(PatchSupplyTest, AsksForEveryFingertipThatIsThereWhereItWillBe) {
-  contact::Fingertips fingertips = index_;
-  fingertips[Finger::kIndex]->velocity = {0.1, 0.0, 0.0};
-  EXPECT_TRUE(supply_.ask(fingertips, 0.02, finds({})));
+  index_.state_period = 0.02;
+  index_.fingertips[Finger::kIndex]->velocity = {0.1, 0.0, 0.0};
+  EXPECT_TRUE(supply_.ask(index_, finds({})));
   EXPECT_EQ(asked_, 1);
   EXPECT_NEAR(last_end_.x(), 2e-3, 1e-15);
-  fingertips[Finger::kThumb] = fingertips[Finger::kIndex];
-  EXPECT_TRUE(supply_.ask(fingertips, 0.02, finds({})));
+  index_.fingertips[Finger::kThumb] = index_.fingertips[Finger::kIndex];
+  EXPECT_TRUE(supply_.ask(index_, finds({})));
   EXPECT_EQ(asked_, 3);
 }
 
 TEST_F(PatchSupplyTest, AFailedSearchChangesNothing) {
   supply_.setAttached(nothing_attached_);
-  supply_.ask(index_, 0.01, finds({40, 41}));
+  supply_.ask(index_, finds({40, 41}));
   supply_.prepare(layer_);
   const auto fails = [](const contact::SearchVolume&, contact::PatchSelection& selection) {
     selection.add(7, 0.0, 0, {});
     return false;
   };
-  EXPECT_FALSE(supply_.ask(index_, 0.01, fails));
+  EXPECT_FALSE(supply_.ask(index_, fails));
   EXPECT_FALSE(supply_.isOutdated());
   EXPECT_EQ(supply_.triangles(), (std::vector<int>{40, 41}));
 }
 
 TEST_F(PatchSupplyTest, AnAttachmentAsksForAnotherPatch) {
   supply_.setAttached(nothing_attached_);
-  supply_.ask(index_, 0.01, finds({40, 41, 42}));
+  supply_.ask(index_, finds({40, 41, 42}));
   supply_.prepare(layer_);
   supply_.setAttached(nothing_attached_);
   EXPECT_FALSE(supply_.isOutdated());
@@ -91,11 +92,26 @@ TEST_F(PatchSupplyTest, AnAttachmentAsksForAnotherPatch) {
   EXPECT_TRUE(supply_.isOutdated());
 }
 
+TEST_F(PatchSupplyTest, WhatIsTouchedStaysWhereverTheLargeScaleClothIs) {
+  supply_.setAttached(nothing_attached_);
+  supply_.ask(index_, finds({40, 41, 42}));
+  supply_.prepare(layer_);
+  for (const int triangle : {41, 50, 1000}) {  // the last one of a larger mesh
+    index_.loads.push_back({triangle, Eigen::Vector3d(1, 0, 0), Eigen::Vector3d::Zero(),
+                            Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()});
+  }
+  supply_.ask(index_, finds({42, 43}));
+  EXPECT_EQ(supply_.triangles(), (std::vector<int>{41, 42, 43}));
+  index_.loads.clear();
+  supply_.ask(index_, finds({42, 43}));
+  EXPECT_EQ(supply_.triangles(), (std::vector<int>{42, 43}));
+}
+
 TEST_F(PatchSupplyTest, NothingNearIsNoPatch) {
   supply_.setAttached(nothing_attached_);
-  supply_.ask(index_, 0.01, finds({40, 41}));
+  supply_.ask(index_, finds({40, 41}));
   supply_.prepare(layer_);
-  supply_.ask(index_, 0.01, finds({}));
+  supply_.ask(index_, finds({}));
   ASSERT_TRUE(supply_.isOutdated());
   EXPECT_EQ(supply_.prepare(layer_), nullptr);
 }

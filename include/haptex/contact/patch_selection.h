@@ -38,8 +38,12 @@ class PatchSelection {
   explicit PatchSelection(std::size_t elements)
       : chosen_(elements, 0), wanted_(elements, 0), apart_(elements, kRests) {}
 
-  // One round: begin(), add() for everything that a query of searchVolume() found, finish().
+  // One round: begin(), keep() for what a fingertip touches, add() for everything that a query of
+  // searchVolume() found, finish().
   void begin();
+  /// An element that a fingertip touches in the patch stays, wherever the large-scale cloth has it.
+  /// Nothing else comes in by this.
+  void keep(int element);
   /// @param element  in [0, elements)
   /// @param distance m, from the search volume
   /// @param rank     how many are nearer to this fingertip

@@ -9,6 +9,7 @@
 
 #include "haptex/contact/haptic_layer.h"
 #include "haptex/contact/patch_selection.h"
+#include "haptex/simulation/force_loop.h"
 
 namespace haptex::simulation {
 
@@ -22,9 +23,10 @@ class PatchSupply {
   /// Adds what is near a volume to the selection. @returns false if that is not known
   using Search = std::function<bool(const contact::SearchVolume&, contact::PatchSelection&)>;
   /// A round about both fingertips. One whose search fails changes nothing.
-  /// @param seconds for which fingertips are predicted
+  /// @param view of the force loop: where the fingertips are, what they touch, and the period for
+  ///   which they are predicted
   /// @returns whether every search was answered
-  bool ask(const contact::Fingertips& fingertips, double seconds, const Search& search);
+  bool ask(const LoopView& view, const Search& search);
 
   /// Which particles of the large-scale mesh are attached, nonzero where they are.
   void setAttached(const std::vector<char>& attached);

@@ -156,7 +156,7 @@ void PatchSupplier::ask(const simulation::LoopView& view) {
                              contact::PatchSelection& selection) {
     return askAbout(volume, selection);
   };
-  if (!supply_->ask(view.fingertips, view.state_period, search)) return;
+  if (!supply_->ask(view, search)) return;
   const Time end = realtime::steadyNow();
   failed_ = false;
   loop_.reportAnswer(true);

@@ -139,17 +139,15 @@ void HapticLoop::sendLoads() {
 void HapticLoop::supplyPatch() {
   const simulation::LoopView& view = force_loop_.view();
   hierarchy_.refit(sent_.positions);
-  supply_.ask(view.fingertips, view.state_period,
-              [&](const contact::SearchVolume& volume, contact::PatchSelection& selection) {
-                hierarchy_.query(
-                    proximity::Cursor::capsule(volume.begin, volume.end, volume.radius),
-                    {volume.distance, volume.count}, near_);
-                for (std::size_t rank = 0; rank < near_.size(); ++rank) {
-                  selection.add(near_[rank].triangle, near_[rank].distance, static_cast<int>(rank),
-                                settings_.haptics);
-                }
-                return true;
-              });
+  supply_.ask(view, [&](const contact::SearchVolume& volume, contact::PatchSelection& selection) {
+    hierarchy_.query(proximity::Cursor::capsule(volume.begin, volume.end, volume.radius),
+                     {volume.distance, volume.count}, near_);
+    for (std::size_t rank = 0; rank < near_.size(); ++rank) {
+      selection.add(near_[rank].triangle, near_[rank].distance, static_cast<int>(rank),
+                    settings_.haptics);
+    }
+    return true;
+  });
   supply_.setAttached(sent_.attached);
   if (!supply_.isOutdated()) return;
   auto update = std::make_unique<simulation::LayerUpdate>();
