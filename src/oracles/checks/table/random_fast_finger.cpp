@@ -101,7 +101,8 @@ void randomFastFinger(const std::string& config_directory, Random& random, const
     FastFinger index(target.place, direction, kIndexRadius, speed, beyond);
     FastFinger thumb(target.place, -direction, kThumbRadius, speed, beyond);
     HapticLoop loop(target.sample);
-    double least = 1.0, along = 0.0, largest = 0.0;
+    double least = 1.0, along = 0.0;
+    bool touched = false;
     const int ticks = static_cast<int>((kFrom + beyond) / speed * 1e3) + 120;
     for (int tick = -200; tick < ticks; ++tick) {
       if (tick >= 0) index.step();
@@ -115,16 +116,16 @@ void randomFastFinger(const std::string& config_directory, Random& random, const
         least = std::min(least, thumb.opposition(loop, Finger::kThumb));
         along = std::max(along, thumb.along(loop, Finger::kThumb));
       }
-      largest = std::max(largest, feltByIndex(loop).norm());
+      touched = touched || loop.layer().contacts()[Finger::kIndex].touching;
     }
     CaseName name("table", "fast");
     name.with(target.name).with(fabric.name).with(both ? "both" : "index").with("speed", speed);
     name.with("beyond", beyond);
-    // Felt at all, and never away from where it came from, but for friction.
-    const double error = largest < kNothing ? NAN : along;
+    // Touched at all, and never pushed away from where it came from, but by friction.
+    const double error = touched ? along : NAN;
     sink({name.text() + "/along", 0.0, along, error, kDragged});
     if (target.name != "plate" && speed > kUndragged) continue;
-    sink({name.text() + "/cosine", 1.0, least, largest < kNothing ? NAN : 1.0 - least, 1.0});
+    sink({name.text() + "/cosine", 1.0, least, touched ? 1.0 - least : NAN, 1.0});
   }
 }
 
