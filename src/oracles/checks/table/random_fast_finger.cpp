@@ -111,10 +111,10 @@ void randomFastFinger(const std::string& config_directory, Random& random, const
       if (both) fingertips[Finger::kThumb] = thumb.finger();
       loop.step(fingertips);
       least = std::min(least, index.opposition(loop, Finger::kIndex));
-      along = std::max(along, index.along(loop, Finger::kIndex));
+      along = base::largerOrNaN(along, index.along(loop, Finger::kIndex));
       if (both) {
         least = std::min(least, thumb.opposition(loop, Finger::kThumb));
-        along = std::max(along, thumb.along(loop, Finger::kThumb));
+        along = base::largerOrNaN(along, thumb.along(loop, Finger::kThumb));
       }
       touched = touched || loop.layer().contacts()[Finger::kIndex].touching;
     }
