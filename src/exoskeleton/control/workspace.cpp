@@ -1,6 +1,5 @@
 #include "haptex/exoskeleton/control/workspace.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 
@@ -12,23 +11,22 @@ double distanceToWorkspaceRim(const Vector3d& place) {
   return 0.5 * kWorkspaceSide - (place - kWorkspaceMiddle).cwiseAbs().maxCoeff();
 }
 
-ReachRim::ReachRim(const std::string& urdf, Finger finger) : kinematics_(urdf, finger) {
-  const FingertipReach reach(urdf, finger);
-  lowest_ = reach.lowest();
-  highest_ = reach.highest();
-}
+ReachRim::ReachRim(const std::string& urdf, Finger finger)
+    : kinematics_(urdf, finger), reach_(urdf, finger) {}
 
 double ReachRim::distance(const JointVector& joint_angles) {
+  const Configuration configuration = kinematics_.configuration(joint_angles);
+  if (configuration.singular) return 0.0;
   const MotorVector angles = kinematics_.motorAngles(joint_angles);
-  if (kinematics_.configuration(joint_angles).singular) return 0.0;
-  // Row i is the gradient of the angle of motor i over the place of the fingertip.
-  const Eigen::Matrix3d gradients = kinematics_.motorJacobian(joint_angles).inverse();
+  const Vector3d tip = kinematics_.fingertip(joint_angles).translation();
   double nearest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kMotors; ++i) {
-    const double left = std::min(angles[i] - lowest_[i], highest_[i] - angles[i]);
-    nearest = std::min(nearest, left / gradients.row(i).norm());
+  for (int motor = 0; motor < kMotors; ++motor) {
+    for (const double limit : {reach_.lowest()[motor], reach_.highest()[motor]}) {
+      const Vector3d place = reach_.nearestHolding(motor, limit, tip, angles).position;
+      nearest = std::min(nearest, (place - tip).norm());
+    }
   }
-  return nearest;
+  return configuration.within_limits ? nearest : -nearest;
 }
 
 std::vector<Vector3d> ReachRim::surface(int cells) {
@@ -37,7 +35,8 @@ std::vector<Vector3d> ReachRim::surface(int cells) {
     MotorVector share = MotorVector::Constant(high ? 1.0 : 0.0);
     share[(fixed + 1) % kMotors] = static_cast<double>(i) / cells;
     share[(fixed + 2) % kMotors] = static_cast<double>(j) / cells;
-    const MotorVector angles = lowest_ + share.cwiseProduct(highest_ - lowest_);
+    const MotorVector angles =
+        reach_.lowest() + share.cwiseProduct(reach_.highest() - reach_.lowest());
     return kinematics_.fingertip(kinematics_.jointAngles(angles)).translation();
   };
   for (int face = 0; face < 2 * kMotors; ++face) {

@@ -26,8 +26,8 @@ class ReachRim {
   /// @throws std::invalid_argument as FingerKinematics
   ReachRim(const std::string& urdf, Finger finger);
 
-  /// m, by which the fingertip has to move at least until a joint is at a limit, to first order in
-  /// that way; zero in a singular pose, negative with a joint outside of its limits.
+  /// m, to the nearest place of the fingertip with a joint at a limit; zero in a singular pose, as
+  /// negative with a joint outside of its limits.
   double distance(const JointVector& joint_angles);
 
   /// Corners of triangles (m, in hand_base), three by three: the places of the fingertip with one
@@ -36,7 +36,7 @@ class ReachRim {
 
  private:
   FingerKinematics kinematics_;
-  MotorVector lowest_, highest_;  // rad
+  FingertipReach reach_;
 };
 
 /// Whether to warn of a rim: from closer than `enter` (m) on until farther than `leave` (m), so
