@@ -3,7 +3,7 @@
 
 #include "controlled_device.h"
 #include "haptex/exoskeleton/emulator/hand_path.h"
-#include "haptex/oracles/experiments/turning_hand.h"
+#include "haptex/oracles/experiments/device/turning_hand.h"
 
 namespace haptex::exoskeleton::test_turning_hand {
 namespace {
@@ -35,6 +35,29 @@ TEST(TurningHand, WhereNothingHoldsItTheWeightIsFelt) {
     EXPECT_GT(found[finger].still, kWeight) << name(finger);
     EXPECT_GT(found[finger].turning, kWeight) << name(finger);
   }
+}
+
+TEST(TurningHand, TheWeightIsHeldOnlyWhereForcesAreRendered) {
+  ControlledDevice device = rendering(Eigen::Vector3d::Zero());
+  const auto live = [&](int milliseconds) {
+    for (int i = 0; i < milliseconds; ++i) {
+      device.controller.setGravity(kDown * base::kStandardGravity, device.now);
+      device.tick();
+    }
+  };
+  live(200);
+  EXPECT_EQ(device.controller.gravity(), kDown * base::kStandardGravity);
+  EXPECT_GT(device.obeyed.torques[Finger::kIndex].norm(), 1e-5);
+  ASSERT_EQ(device.controller.disable(), "");
+  live(50);
+  EXPECT_EQ(device.obeyed.mode, DriveMode::kOff);
+  EXPECT_TRUE(device.obeyed.torques[Finger::kIndex].isZero(0.0));
+  ASSERT_EQ(device.controller.enable(), "");
+  live(700);
+  device.controller.raiseFault("for the test");
+  live(50);
+  EXPECT_EQ(device.obeyed.mode, DriveMode::kOff);
+  EXPECT_TRUE(device.obeyed.torques[Finger::kIndex].isZero(0.0));
 }
 
 }  // namespace

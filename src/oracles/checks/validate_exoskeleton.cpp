@@ -15,11 +15,11 @@
 #include "haptex/exoskeleton/emulator/hand_path.h"
 #include "haptex/oracles/checks/validation.h"
 #include "haptex/oracles/exact/finger_geometry.h"
+#include "haptex/oracles/experiments/device/stalled_hold.h"
+#include "haptex/oracles/experiments/device/static_force.h"
+#include "haptex/oracles/experiments/device/turning_hand.h"
 #include "haptex/oracles/experiments/exoskeleton_loop.h"
 #include "haptex/oracles/experiments/pinch.h"
-#include "haptex/oracles/experiments/stalled_hold.h"
-#include "haptex/oracles/experiments/static_force.h"
-#include "haptex/oracles/experiments/turning_hand.h"
 
 namespace haptex::oracles {
 namespace {
@@ -316,8 +316,11 @@ void validateWeight(const std::string& urdf, const base::PerFinger<Vector3d>& op
     felt("still_by_feedback_felt_N", by_feedback[finger].still, kFeltWeight);
     felt("turning_by_feedback_felt_N", by_feedback[finger].turning, kFeltWeight);
     const FeltWeight& all = by_nothing[finger];
-    sink({prefix + "not_held_felt_N", all.weight, all.still, std::abs(all.still - all.weight),
-          kFriction});
+    const auto not_held = [&](const char* which, double force) {
+      sink({prefix + which, all.weight, force, std::abs(force - all.weight), kFriction});
+    };
+    not_held("still_not_held_felt_N", all.still);
+    not_held("turning_not_held_felt_N", all.turning);
   }
 }
 

@@ -318,29 +318,6 @@ TEST(DeviceController, ASensorThatFailsLeavesTheFeedForward) {
   EXPECT_GT(device.controller.measured(Finger::kThumb).safety.not_finite, 490u);
 }
 
-TEST(DeviceController, HoldsTheWeightOfTheLinksOnlyWhereItRendersForces) {
-  ControlledDevice device = rendering(Vector3d::Zero());
-  const auto live = [&](int milliseconds) {
-    for (int i = 0; i < milliseconds; ++i) {
-      device.controller.setGravity(kDown * base::kStandardGravity, device.now);
-      device.tick();
-    }
-  };
-  live(200);
-  EXPECT_EQ(device.controller.gravity(), kDown * base::kStandardGravity);
-  EXPECT_GT(device.obeyed.torques[Finger::kIndex].norm(), 1e-5);
-  ASSERT_EQ(device.controller.disable(), "");
-  live(50);
-  EXPECT_EQ(device.obeyed.mode, DriveMode::kOff);
-  EXPECT_TRUE(device.obeyed.torques[Finger::kIndex].isZero(0.0));
-  ASSERT_EQ(device.controller.enable(), "");
-  live(700);
-  device.controller.raiseFault("for the test");
-  live(50);
-  EXPECT_EQ(device.obeyed.mode, DriveMode::kOff);
-  EXPECT_TRUE(device.obeyed.torques[Finger::kIndex].isZero(0.0));
-}
-
 TEST(DeviceController, AVirtualWallIsHeldWithoutTrembling) {
   ControlledDevice device = rendering(kZero);
   EmulatedFinger& index = device.fingers[Finger::kIndex];

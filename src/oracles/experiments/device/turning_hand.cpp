@@ -1,4 +1,4 @@
-#include "haptex/oracles/experiments/turning_hand.h"
+#include "haptex/oracles/experiments/device/turning_hand.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
