@@ -22,7 +22,8 @@ TEST(ExoskeletonAllocation, KinematicsDoNotAllocateAfterConstruction) {
   for (int i = 0; i < 100; ++i) {
     const JointVector at = finger.jointAngles(MotorVector(0.1, 5.0, 0.1 * i));
     sum += finger.fingertip(at).translation().sum() + finger.motorJacobian(at).sum() +
-           finger.configuration(at).smallest_singular_value + finger.motorAngles(at).sum();
+           finger.motorWeight(at).sum() + finger.configuration(at).smallest_singular_value +
+           finger.motorAngles(at).sum();
   }
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(before, 0) << "the count does not work";
@@ -65,6 +66,7 @@ TEST(ExoskeletonAllocation, TheControllersTickDoesNotAllocateWhateverHappens) {
       now += std::chrono::milliseconds(1);
       const DeviceState state = device.read();
       controller.command(Finger::kIndex, i % 7 == 0 ? bad : force, now);
+      controller.setGravity({0.0, 6.0, -7.0}, now);
       const DeviceCommand& command = controller.tick(connected ? &state : nullptr, now);
       for (int step = 0; step < 8; ++step) device.step(command);
     }

@@ -27,6 +27,7 @@ TEST(DriverAllocation, TheLoopDoesNotAllocateWhileItRendersAForce) {
   const auto render = [&](int milliseconds) {
     DriverSnapshot snapshot;
     for (int i = 0; i < milliseconds; ++i) {
+      loop.setGravity({0.0, 6.0, -7.0}, realtime::steadyNow());
       for (const Finger finger : kFingers) loop.command(finger, command, realtime::steadyNow());
       while (loop.takeMeasured(snapshot, 0ms)) {
       }

@@ -11,8 +11,8 @@
 
 #include "haptex/base/workload.h"
 #include "haptex/exoskeleton/emulator/hand_path.h"
+#include "haptex/oracles/experiments/device/stalled_hold.h"
 #include "haptex/oracles/experiments/exoskeleton_loop.h"
-#include "haptex/oracles/experiments/stalled_hold.h"
 #include "shipped_urdf.h"
 
 namespace haptex::exoskeleton::test_faults {

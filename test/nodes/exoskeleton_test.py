@@ -17,6 +17,7 @@ from haptex.srv import InjectFault
 from ros_fixtures import WAIT, Diagnostics, NodeTest, process_of
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
+from visualization_msgs.msg import MarkerArray
 
 LINK, LOOP = 'exoskeleton link', 'exoskeleton loop'  # names in the diagnostics
 FORCE = 'exoskeleton force of the index'
@@ -168,6 +169,19 @@ class Exoskeleton(NodeTest):
         self.eventually(lambda: difference(self.felt.force, HELD) < CLOSE, 'the force felt')
         self.assertEqual(self.measured.last.header.frame_id, 'hand_base')
         self.assertLess(abs((rospy.Time.now() - self.measured.last.header.stamp).to_sec()), 0.5)
+
+    def test_workspace_is_shown_and_the_distances_to_its_rims_are_told(self):
+        markers = rospy.wait_for_message('exoskeleton/workspace_markers', MarkerArray, WAIT).markers
+        self.assertEqual([marker.header.frame_id for marker in markers],
+                         ['world', 'hand_base', 'hand_base'])
+        self.recover()
+        for finger in ('index', 'thumb'):
+            values = self.diagnostics.values(f'exoskeleton place of the {finger}')
+            for rim, largest in (('what the fingertip reaches', 50.0), ('the workspace', 200.0)):
+                distance = float(values[f'to the rim of {rim} (mm)'])
+                self.assertGreater(distance, -largest)
+                self.assertLess(distance, largest)
+        self.assertEqual(self.diagnostics.next('exoskeleton weight').level, 0)
 
     def count_out_of_order(self):
         return int(self.diagnostics.values(FORCE)['commands dropped: out of order'])

@@ -166,6 +166,13 @@ class RefusedParameters(unittest.TestCase):
         self.refused('_link:=/no/such/folder/link', node='tactile_emulator',
                      says=['/no/such/folder/link'])
 
+    def test_mountings_of_a_tracker(self):
+        for mounting in ('0 0 0 0 0', '0 0 0 0 0 x', '0 0 0 nan 0 0', '11 0 0 0 0 0'):
+            self.refused(f'_mounting:={mounting}', node='hand_tracker',
+                         says=['~mounting', mounting, 'six finite numbers'])
+        self.refused('_mounting:=3', node='hand_tracker',
+                     says=['~mounting', 'is not set to a string'])
+
     def test_calibrations_of_the_contactors(self):
         for node, port in (('tactile_driver', '_port:=/dev/null'), ('tactile_emulator', LINK)):
             self.refused(port, '_calibration:=perfect', node=node,

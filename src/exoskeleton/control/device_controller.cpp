@@ -172,6 +172,8 @@ void DeviceController::observe(const DeviceState* state, Time now) {
 const DeviceCommand& DeviceController::drive(Time now) {
   now_ = now;
   command_ = DeviceCommand();
+  const Eigen::Vector3d& gravity = gravity_.tick(now);
+  for (FingerController& finger : fingers_.values) finger.setGravity(gravity);
   if (operatingState().is_busy) {
     home(now);
   } else if (forces_on_) {

@@ -112,7 +112,7 @@ NoForceReason FingerController::mechanicalReason() const {
   return NoForceReason::kNone;
 }
 
-ForceInput FingerController::forceInput(bool obeyed) const {
+ForceInput FingerController::forceInput(bool obeyed) {
   ForceInput input;
   input.desired = chain_.force();
   input.measured = measurement_.force;
@@ -121,6 +121,9 @@ ForceInput FingerController::forceInput(bool obeyed) const {
   input.obeyed = obeyed;
   input.jacobian = jacobian_;
   input.motor_velocities = encoders_.velocities();
+  if (!gravity_.isZero(0.0)) {
+    input.weight = kinematics_.motorWeight(measurement_.joint_angles) * gravity_;
+  }
   return input;
 }
 

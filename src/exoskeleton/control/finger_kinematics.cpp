@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 #include <kdl/chain.hpp>
+#include <kdl/chaindynparam.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 #include <kdl/jacobian.hpp>
@@ -73,15 +74,36 @@ void requireMimic(const urdf::Joint& last, const urdf::Joint& before, Finger fin
   }
 }
 
+/// Mass and its centre of a link, whose frame is at `pose`, and of everything that is fixed to it.
+KDL::RigidBodyInertia weightOf(const urdf::Link& link, const KDL::Frame& pose, Finger finger) {
+  KDL::RigidBodyInertia weight;
+  if (link.inertial) {
+    if (!(link.inertial->mass >= 0.0)) {
+      refuse(finger, "the mass of " + link.name + " is " + std::to_string(link.inertial->mass) +
+                         " kg, must be at least 0");
+    }
+    weight = KDL::RigidBodyInertia(link.inertial->mass, pose * toKdl(link.inertial->origin).p);
+  }
+  for (const urdf::LinkSharedPtr& child : link.child_links) {
+    const urdf::Joint& joint = *child->parent_joint;
+    if (joint.type != urdf::Joint::FIXED) continue;
+    weight =
+        weight + weightOf(*child, pose * toKdl(joint.parent_to_joint_origin_transform), finger);
+  }
+  return weight;
+}
+
 /// Segment that turns about the joint's axis where the joint is and ends in its child's frame.
-KDL::Segment turningSegment(const urdf::Joint& joint, Finger finger) {
+KDL::Segment turningSegment(const urdf::Joint& joint, const urdf::Link& child, Finger finger) {
   const KDL::Frame origin = toKdl(joint.parent_to_joint_origin_transform);
   const KDL::Vector axis = toKdl(joint.axis);
   if (axis.Norm() < 1e-9) refuse(finger, "the axis of " + joint.name + " has no direction");
-  return KDL::Segment(KDL::Joint(origin.p, origin.M * axis, KDL::Joint::RotAxis), origin);
+  return KDL::Segment(KDL::Joint(origin.p, origin.M * axis, KDL::Joint::RotAxis), origin,
+                      weightOf(child, KDL::Frame::Identity(), finger));
 }
 
-void appendJoint(Description& made, const urdf::Joint& joint, int& turning, Finger finger) {
+void appendJoint(Description& made, const urdf::Joint& joint, const urdf::Link& child, int& turning,
+                 Finger finger) {
   if (joint.type == urdf::Joint::FIXED) {
     made.chain.addSegment(
         KDL::Segment(KDL::Joint(KDL::Joint::None), toKdl(joint.parent_to_joint_origin_transform)));
@@ -92,7 +114,7 @@ void appendJoint(Description& made, const urdf::Joint& joint, int& turning, Fing
   }
   requireLimits(joint, finger);
   if (turning < kJoints) {
-    made.chain.addSegment(turningSegment(joint, finger));
+    made.chain.addSegment(turningSegment(joint, child, finger));
     made.names[turning] = joint.name;
     made.lower[turning] = joint.limits->lower;
     made.upper[turning] = joint.limits->upper;
@@ -105,7 +127,7 @@ Description describe(const std::string& urdf, Finger finger) {
   Description made;
   int turning = 0;
   for (const JointPointer& joint : jointsToTip(*model, finger)) {
-    appendJoint(made, *joint, turning, finger);
+    appendJoint(made, *joint, *model->getLink(joint->child_link_name), turning, finger);
   }
   if (turning != kJoints) {
     refuse(finger, "the chain has " + std::to_string(turning) + " revolute joints, must be " +
@@ -125,7 +147,11 @@ struct FingerKinematics::Chain {
       : description(std::move(from_urdf)),
         to_tip(description.chain),
         to_jacobian(description.chain),
+        weights{{{description.chain, {1.0, 0.0, 0.0}},
+                 {description.chain, {0.0, 1.0, 0.0}},
+                 {description.chain, {0.0, 0.0, 1.0}}}},
         angles(kJoints),
+        torques(kJoints),
         jacobian(kJoints) {}
 
   /// d fingertip / d driven joints (m/rad), the last joint following the one before it.
@@ -140,7 +166,9 @@ struct FingerKinematics::Chain {
   Description description;
   KDL::ChainFkSolverPos_recursive to_tip;
   KDL::ChainJntToJacSolver to_jacobian;
-  KDL::JntArray angles;
+  // The torques are linear in gravity, which KDL takes in its constructor only: one per axis.
+  std::array<KDL::ChainDynParam, 3> weights;
+  KDL::JntArray angles, torques;
   KDL::Jacobian jacobian;
 };
 
@@ -182,6 +210,18 @@ Eigen::Isometry3d FingerKinematics::fingertip(const JointVector& joint_angles) {
 
 Eigen::Matrix3d FingerKinematics::motorJacobian(const JointVector& joint_angles) {
   return chain_->drivenJacobian(joint_angles) / kReduction;
+}
+
+Eigen::Matrix3d FingerKinematics::motorWeight(const JointVector& joint_angles) {
+  Chain& chain = *chain_;
+  chain.angles.data = joint_angles;
+  Eigen::Matrix3d weight;
+  for (int axis = 0; axis < 3; ++axis) {
+    chain.weights[static_cast<std::size_t>(axis)].JntToGravity(chain.angles, chain.torques);
+    weight.col(axis) = chain.torques.data.head<kMotors>();
+    weight(kMotors - 1, axis) += chain.description.multiplier * chain.torques(kJoints - 1);
+  }
+  return weight / kReduction;
 }
 
 Configuration FingerKinematics::configuration(const JointVector& joint_angles) {

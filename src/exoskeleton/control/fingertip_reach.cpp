@@ -39,21 +39,32 @@ FingertipReach::FingertipReach(const std::string& urdf, Finger finger) : kinemat
 }
 
 FingertipReach::Place FingertipReach::nearest(const Vector3d& target, const MotorVector& start) {
-  const Place first = descend(target, start);
+  const Place first = descend(target, start, lowest_, highest_);
   const double distance = (first.position - target).norm();
   if (distance <= kTolerance) return first;
   const auto nearer = [&](const Place& a, const Place& b) {
     return (a.position - target).squaredNorm() < (b.position - target).squaredNorm();
   };
   const Place second =
-      descend(target, std::min_element(grid_.begin(), grid_.end(), nearer)->motor_angles);
+      descend(target, std::min_element(grid_.begin(), grid_.end(), nearer)->motor_angles, lowest_,
+              highest_);
   return (second.position - target).norm() < distance ? second : first;
 }
 
+FingertipReach::Place FingertipReach::nearestHolding(int motor, double angle,
+                                                     const Vector3d& target,
+                                                     const MotorVector& start) {
+  MotorVector lowest = lowest_, highest = highest_;
+  lowest[motor] = highest[motor] = angle;
+  return descend(target, start, lowest, highest);
+}
+
 // Levenberg-Marquardt on the angles that are not held at a limit by a gradient that points out.
-FingertipReach::Place FingertipReach::descend(const Vector3d& target, const MotorVector& start) {
+FingertipReach::Place FingertipReach::descend(const Vector3d& target, const MotorVector& start,
+                                              const MotorVector& lowest,
+                                              const MotorVector& highest) {
   Place place;
-  place.motor_angles = start.cwiseMax(lowest_).cwiseMin(highest_);
+  place.motor_angles = start.cwiseMax(lowest).cwiseMin(highest);
   JointVector joints = kinematics_.jointAngles(place.motor_angles);
   place.position = kinematics_.fingertip(joints).translation();
   double distance = (target - place.position).norm();
@@ -62,8 +73,8 @@ FingertipReach::Place FingertipReach::descend(const Vector3d& target, const Moto
     Eigen::Matrix3d jacobian = kinematics_.motorJacobian(joints);
     const MotorVector downhill = jacobian.transpose() * (target - place.position);
     for (int i = 0; i < kMotors; ++i) {
-      const bool at_lowest = place.motor_angles[i] <= lowest_[i] && downhill[i] < 0.0;
-      const bool at_highest = place.motor_angles[i] >= highest_[i] && downhill[i] > 0.0;
+      const bool at_lowest = place.motor_angles[i] <= lowest[i] && downhill[i] < 0.0;
+      const bool at_highest = place.motor_angles[i] >= highest[i] && downhill[i] > 0.0;
       if (at_lowest || at_highest) jacobian.col(i).setZero();
     }
     Eigen::Matrix3d normal = jacobian.transpose() * jacobian;
@@ -72,7 +83,7 @@ FingertipReach::Place FingertipReach::descend(const Vector3d& target, const Moto
     normal.diagonal().array() += caution * scale;
     const MotorVector change =
         normal.inverse() * (jacobian.transpose() * (target - place.position));
-    const MotorVector tried = (place.motor_angles + change).cwiseMax(lowest_).cwiseMin(highest_);
+    const MotorVector tried = (place.motor_angles + change).cwiseMax(lowest).cwiseMin(highest);
     const JointVector tried_joints = kinematics_.jointAngles(tried);
     const Vector3d position = kinematics_.fingertip(tried_joints).translation();
     const double tried_distance = (target - position).norm();

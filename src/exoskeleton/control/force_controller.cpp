@@ -40,6 +40,7 @@ void ForceController::reset() {
   on_its_way_.fill(Vector3d::Zero());
   oldest_ = 0;
   share_ = release_left_ = 1.0;
+  weight_share_ = 0.0;
   torque_limited_ = false;
   released_ = true;
 }
@@ -64,7 +65,8 @@ void ForceController::integrate(const Vector3d& desired, const Vector3d& measure
 MotorVector ForceController::torques(const ForceInput& input) {
   force_ = slewLimited(input.desired + correction_, force_, kPeriod);
   MotorVector torques =
-      input.jacobian.transpose() * force_ - release_left_ * kDamping * input.motor_velocities;
+      input.jacobian.transpose() * force_ +
+      release_left_ * (weight_share_ * input.weight - kDamping * input.motor_velocities);
   torque_limited_ = false;
   for (int i = 0; i < kMotors; ++i) {
     const double needed = (kMaxForce + kMaxCorrection) * input.jacobian.col(i).norm();
@@ -79,6 +81,7 @@ MotorVector ForceController::torques(const ForceInput& input) {
 MotorVector ForceController::tick(const ForceInput& input) {
   released_ = false;
   share_ *= release_left_;  // enabled again before the release was through
+  weight_share_ *= release_left_;
   release_left_ = 1.0;
   expect(input);
   const bool sensor_works = input.sensor_works && input.measured.allFinite();
@@ -90,6 +93,7 @@ MotorVector ForceController::tick(const ForceInput& input) {
     integrate(input.desired, input.measured);
   }
   share_ = std::clamp(share_ + (feedback ? kFadeStep : -kFadeStep), 0.0, 1.0);
+  weight_share_ = std::clamp(weight_share_ + (input.obeyed ? kFadeStep : -kFadeStep), 0.0, 1.0);
   correction_ = share_ * saturated(integral_ + kProportional * error_, kMaxCorrection);
   return torques(input);
 }

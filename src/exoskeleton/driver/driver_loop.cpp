@@ -53,6 +53,7 @@ void DriverLoop::end(Time now) {
   const bool asked = requests_.take(request);
   Refusal refusal;
   if (asked) refusal = carryOut(request);
+  if (gravity_.update()) controller_.setGravity(gravity_.value().gravity, gravity_.value().at);
   const DeviceCommand& command = controller_.drive(now);
   send(link_.poll(now));
   send(link_.send(command));
@@ -175,6 +176,7 @@ void DriverLoop::dropClosedPort() {
 void DriverLoop::show() {
   for (const Finger finger : kFingers) snapshot_.fingers[finger] = controller_.measured(finger);
   snapshot_.operating_state = controller_.operatingState();
+  snapshot_.gravity = controller_.gravity();
   snapshot_.motors_on = controller_.motorsOn();
   snapshot_.fault = FixedText(controller_.fault());
   snapshot_.fault_is_a_stall = controller_.faultIsAStall();

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "haptex/exoskeleton/control/hand_gravity.h"
+
 namespace haptex::exoskeleton {
 namespace {
 
@@ -39,6 +41,12 @@ EmulatedDevice::EmulatedDevice(const std::string& urdf, unsigned seed,
 
 void EmulatedDevice::setTarget(Finger finger, const Vector3d& target) {
   if (target.allFinite()) fingers_[finger].dynamics.setTarget(target);
+}
+
+void EmulatedDevice::turnHand(const Eigen::Matrix3d& rotation) {
+  if (!rotation.allFinite()) return;
+  const Vector3d gravity = gravityIn(rotation);
+  for (EmulatedSide& side : fingers_.values) side.dynamics.setGravity(gravity);
 }
 
 void EmulatedDevice::keepApart() {

@@ -67,6 +67,8 @@ void Emulator::setTarget(Finger finger, const Eigen::Vector3d& target) {
   device_.setTarget(finger, target);
 }
 
+void Emulator::turnHand(const Eigen::Matrix3d& rotation) { device_.turnHand(rotation); }
+
 void Emulator::advanceTo(Time now) {
   if (!started_) {
     started_ = true;

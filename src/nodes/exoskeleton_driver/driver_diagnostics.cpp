@@ -30,6 +30,11 @@ void DriverNode::addDiagnostics() {
     diagnostics_.add(std::string("exoskeleton force of the ") + name(finger),
                      [this, finger](Status& status) { diagnoseForce(finger, status); });
   }
+  for (const Finger finger : kFingers) {
+    diagnostics_.add(std::string("exoskeleton place of the ") + name(finger),
+                     [this, finger](Status& status) { diagnosePlace(finger, status); });
+  }
+  diagnostics_.add("exoskeleton weight", [this](Status& status) { hand_watch_.diagnose(status); });
   diagnosed_time_ = realtime::steadyNow();
   diagnostics_timer_ = publishOnceASecond(node_, diagnostics_);
 }
@@ -153,6 +158,12 @@ void DriverNode::diagnoseForce(Finger finger, Status& status) {
   }
   const std::lock_guard<std::mutex> lock(topics.mutex);
   status.add("why the last command was dropped", topics.last_drop);
+}
+
+void DriverNode::diagnosePlace(Finger finger, Status& status) {
+  const exoskeleton::DriverSnapshot now = loop_.status();
+  workspace_.diagnose(finger, now.fingers[finger], now.operating_state.is_homed, hand_watch_.hand(),
+                      status);
 }
 
 }  // namespace haptex::nodes

@@ -87,6 +87,8 @@ DriverNode::DriverNode(const ros::NodeHandle& node, const ros::NodeHandle& priva
       loop_thread_(
           exoskeleton::DriverLoop::kPeriod, [this](Time now) { loop_.tick(now); },
           {[this](Time until) { return loop_.awaitState(until); }, realtime::kLoopPriority, true}),
+      hand_watch_(node, loop_),
+      workspace_(node, parameters.urdf),
       diagnostics_(node, private_node) {
   if (!loop_thread_.refusedScheduler().empty()) {
     ROS_WARN("The loop runs without SCHED_FIFO, on a busy machine it will be late: %s",
@@ -108,6 +110,7 @@ void DriverNode::stop() {
     std::this_thread::sleep_for(kEndLook);
   both_forces_subscriber_.shutdown();
   for (FingerTopics& topics : fingers_.values) topics.forces.shutdown();
+  hand_watch_.stop();
   loop_thread_.stop();
   publishing_thread_.join();
 }

@@ -125,6 +125,7 @@ void EmulatorNode::advertise() {
 void EmulatorNode::work(Time now) {
   const exoskeleton::HandPlace place = motion_.at(now);
   for (const Finger finger : kFingers) emulator_.setTarget(finger, place.fingertips[finger]);
+  emulator_.turnHand(place.hand_base.linear());
   emulator_.advanceTo(now);
   places_.write(place);
 }

@@ -15,10 +15,11 @@
 #include "haptex/exoskeleton/emulator/hand_path.h"
 #include "haptex/oracles/checks/validation.h"
 #include "haptex/oracles/exact/finger_geometry.h"
+#include "haptex/oracles/experiments/device/stalled_hold.h"
+#include "haptex/oracles/experiments/device/static_force.h"
+#include "haptex/oracles/experiments/device/turning_hand.h"
 #include "haptex/oracles/experiments/exoskeleton_loop.h"
 #include "haptex/oracles/experiments/pinch.h"
-#include "haptex/oracles/experiments/stalled_hold.h"
-#include "haptex/oracles/experiments/static_force.h"
 
 namespace haptex::oracles {
 namespace {
@@ -44,6 +45,8 @@ constexpr double kDeathForce = 3.0;     // N
 constexpr double kKnownDeath = 10.0;    // ms, of a death that the other end of a connection sees
 constexpr double kSilentDeath = 20.0;   // ms, of one that is seen by silence only
 constexpr double kForceLeft = 0.1;      // N, more than without motors
+constexpr double kFeltWeight = 0.02;    // N
+constexpr double kFriction = 0.05;      // N, at the fingertip: FingerMechanics
 constexpr double kForceResolution = 0.005;  // N, the resolution of the HAPTEX exoskeleton
 
 void forEachConfiguration(const FingerKinematics& finger,
@@ -292,6 +295,35 @@ void validateVibration(const std::string& urdf, const base::PerFinger<Vector3d>&
   }
 }
 
+/// Without contact, in a hand that turns: what is felt of the links is at most kFeltWeight, also by
+/// feed-forward alone where a force sensor fails. Without anything against it, it is their weight,
+/// which the emulator computes by itself and KDL for the oracle; friction carries some of it.
+void validateWeight(const std::string& urdf, const base::PerFinger<Vector3d>& open,
+                    const Sink& sink) {
+  const auto held = feltWeight(urdf, open, {true, true});
+  const auto by_feed_forward = feltWeight(urdf, open, {true, false});
+  const auto by_feedback = feltWeight(urdf, open, {false, true});
+  const auto by_nothing = feltWeight(urdf, open, {false, false});
+  for (const Finger finger : kFingers) {
+    const std::string prefix = "exoskeleton/weight/" + std::string(name(finger)) + "/";
+    const auto felt = [&](const char* which, double force, double allowed) {
+      sink({prefix + which, 0.0, force, force, allowed});
+    };
+    felt("still_felt_N", held[finger].still, kFeltWeight);
+    felt("turning_felt_N", held[finger].turning, kFeltWeight);
+    felt("still_by_feed_forward_felt_N", by_feed_forward[finger].still, kFeltWeight);
+    felt("turning_by_feed_forward_felt_N", by_feed_forward[finger].turning, kFeltWeight);
+    felt("still_by_feedback_felt_N", by_feedback[finger].still, kFeltWeight);
+    felt("turning_by_feedback_felt_N", by_feedback[finger].turning, kFeltWeight);
+    const FeltWeight& all = by_nothing[finger];
+    const auto not_held = [&](const char* which, double force) {
+      sink({prefix + which, all.weight, force, std::abs(force - all.weight), kFriction});
+    };
+    not_held("still_not_held_felt_N", all.still);
+    not_held("turning_not_held_felt_N", all.turning);
+  }
+}
+
 }  // namespace
 
 void validateExoskeleton(const std::string& config_directory, const Sink& sink) {
@@ -304,6 +336,7 @@ void validateExoskeleton(const std::string& config_directory, const Sink& sink) 
   validateStalls(urdf, open, sink);
   validateDeaths(urdf, open, sink);
   validateVibration(urdf, open, sink);
+  validateWeight(urdf, open, sink);
 }
 
 }  // namespace haptex::oracles

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "haptex/exoskeleton/control/finger_kinematics.h"
+#include "haptex/exoskeleton/emulator/emulated_linkage.h"
 #include "shipped_urdf.h"
 #include "urdf_poses.h"
 
@@ -268,6 +269,39 @@ TEST(FingerKinematics, RefusesALastJointThatDoesNotMimicTheOneBeforeIt) {
   EXPECT_EQ(refusalWith(mimic, ""), "exoskeleton, index: index_dip does not mimic index_pip");
   EXPECT_EQ(refusalWith(mimic, "<mimic joint=\"index_mcp\"/>"),
             "exoskeleton, index: index_dip does not mimic index_pip");
+}
+
+TEST_P(EachFinger, WeightOfTheLinksIsTheDerivativeOfTheirPotentialEnergy) {
+  FingerKinematics kinematics(shippedUrdf(), GetParam());
+  EmulatedLinkage linkage(shippedUrdf(), GetParam());
+  const Vector3d gravity(3.0, -5.0, 7.0);
+  const MotorVector at = kinematics.motorAngles({0.1, 0.6, 0.9, 0.0});
+  const auto energy = [&](const MotorVector& angles) {
+    linkage.setAngles(kinematics.jointAngles(angles));
+    return linkage.potentialEnergy(gravity);
+  };
+  const MotorVector torques = kinematics.motorWeight(kinematics.jointAngles(at)) * gravity;
+  constexpr double kStep = 1e-3;  // rad: rounding and truncation are 1e-12 N m
+  for (int i = 0; i < kMotors; ++i) {
+    const MotorVector step = kStep * MotorVector::Unit(i);
+    EXPECT_NEAR(torques[i], (energy(at + step) - energy(at - step)) / (2.0 * kStep), 1e-10);
+  }
+  EXPECT_GT(torques.norm(), 1e-5);
+}
+
+TEST(FingerKinematics, LinksWithoutInertialsWeighNothing) {
+  std::string urdf = shippedUrdf();
+  for (std::size_t at; (at = urdf.find("<inertial>")) != std::string::npos;) {
+    const std::string end = "</inertial>";
+    urdf.erase(at, urdf.find(end, at) + end.size() - at);
+  }
+  FingerKinematics kinematics(urdf, Finger::kIndex);
+  EXPECT_TRUE(kinematics.motorWeight(kinematics.jointAngles({0.0, 3.0, 6.0})).isZero(0.0));
+}
+
+TEST(FingerKinematics, RefusesAMassBelowZero) {
+  EXPECT_EQ(refusalWith("<mass value=\"0.006\"/>", "<mass value=\"-0.006\"/>"),
+            "exoskeleton, index: the mass of index_knuckle is -0.006000 kg, must be at least 0");
 }
 
 TEST(FingerKinematics, KeepsItsChainWhenMoved) {

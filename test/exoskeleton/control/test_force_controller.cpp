@@ -163,6 +163,38 @@ TEST(ForceController, ReleaseEndsEverythingWithinTenMillisecondsAndWithoutAJump)
   EXPECT_EQ(controller.release(input(kZero, kZero)), MotorVector::Zero());
 }
 
+TEST(ForceController, TheWeightIsHeldWithinTheFadeAndEndsWithTheRest) {
+  ForceController controller;
+  ForceInput still = input(kZero, kZero);
+  still.weight = {1e-4, -2e-4, 3e-4};
+  const double step = ForceController::kPeriod / ForceController::kFade;
+  EXPECT_TRUE(controller.tick(still).isApprox(step * still.weight, 1e-9));
+  for (int i = 0; i < 20; ++i) controller.tick(still);
+  EXPECT_TRUE(controller.tick(still).isApprox(still.weight, 1e-9));
+  // A device that does not obey may be held by nothing when it does again.
+  still.obeyed = false;
+  for (int i = 0; i < 20; ++i) controller.tick(still);
+  EXPECT_TRUE(controller.tick(still).isZero(1e-12));
+  still.obeyed = true;
+  for (int i = 0; i < 20; ++i) controller.tick(still);
+  for (int i = 0; i < 10; ++i) controller.release(still);
+  EXPECT_TRUE(controller.released());
+  EXPECT_TRUE(controller.release(still).isZero(0.0));
+}
+
+TEST(ForceController, TheWeightIsHeldWithinTheLimitsOfTheTorques) {
+  ForceController controller = settled(kZero);
+  ForceInput heavy = input(kZero, kZero);
+  heavy.weight = MotorVector::Constant(1.0);
+  MotorVector torques;
+  for (int i = 0; i < 30; ++i) torques = controller.tick(heavy);
+  for (int i = 0; i < kMotors; ++i) {
+    EXPECT_NEAR(torques[i],
+                (kMaxForce + ForceController::kMaxCorrection) * someJacobian().col(i).norm(),
+                1e-12);
+  }
+}
+
 TEST(ForceController, WhateverIsMeasuredTorquesAreFiniteBoundedAndObeyTheSlewLimit) {
   std::mt19937 generator(5);
   std::normal_distribution<double> normal;

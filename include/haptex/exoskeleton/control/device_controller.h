@@ -7,6 +7,7 @@
 
 #include "haptex/exoskeleton/control/finger_controller.h"
 #include "haptex/exoskeleton/control/force_command.h"
+#include "haptex/exoskeleton/control/hand_gravity.h"
 #include "haptex/exoskeleton/control/operating_state.h"
 #include "haptex/exoskeleton/finger.h"
 #include "haptex/exoskeleton/protocol/device_clock.h"
@@ -49,6 +50,12 @@ class DeviceController {
   /// for a device that is not ENABLED is ignored.
   void command(Finger finger, const ForceCommand& command, Time now);
 
+  /// Takes the direction of gravity, see HandGravity: the weight of the links is held where forces
+  /// are rendered. @param gravity m/s^2, in hand_base @param at when it was so
+  void setGravity(const Eigen::Vector3d& gravity, Time at) { gravity_.receive(gravity, at); }
+  /// m/s^2, in hand_base, under which the weight is held; zero where it is not known.
+  const Eigen::Vector3d& gravity() const { return gravity_.value(); }
+
   /// The one who commanded this finger is dead, which is known and not guessed from silence: its
   /// force goes to zero at once, until a command comes.
   void commanderDied(Finger finger, Time now) { fingers_[finger].commanderDied(now); }
@@ -87,6 +94,7 @@ class DeviceController {
 
   OperatingStateMachine states_;
   PerFinger<FingerController> fingers_;
+  HandGravity gravity_;
   DeviceCommand command_;
   DeviceClock clock_;
   Time now_{0};

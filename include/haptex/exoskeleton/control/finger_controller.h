@@ -68,6 +68,10 @@ class FingerController {
   /// rendered; if not, the command is forgotten
   void command(const ForceCommand& command, bool obeyed, Time now);
 
+  /// m/s^2, in hand_base: the weight of the links under it is held while forces are rendered. Zero:
+  /// not known, nothing is held. @param gravity finite
+  void setGravity(const Eigen::Vector3d& gravity) { gravity_ = gravity; }
+
   /// See SafetyChain::commanderDied().
   void commanderDied(Time now) { chain_.commanderDied(now); }
 
@@ -99,7 +103,7 @@ class FingerController {
  private:
   void updatePose();
   NoForceReason mechanicalReason() const;
-  ForceInput forceInput(bool obeyed) const;
+  ForceInput forceInput(bool obeyed);
 
   FingerKinematics kinematics_;
   MotorVector lower_stops_;  // rad, angles of the motors
@@ -111,6 +115,7 @@ class FingerController {
   FingerMeasurement measurement_;
   SmoothCommand command_;
   Eigen::Matrix3d jacobian_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
   bool has_command_ = false;
   bool measured_now_ = false;
   bool sensor_works_ = false;

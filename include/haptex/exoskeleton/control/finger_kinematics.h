@@ -39,7 +39,7 @@ class FingerKinematics {
   ///   hand_base or <finger>_tip, or the one does not descend from the other; a joint between them
   ///   that is neither revolute nor fixed, has limits that do not increase or an axis without
   ///   direction; another number of revolute joints than four; the last does not mimic the one
-  ///   before it
+  ///   before it; a link behind one of them with a mass below zero
   FingerKinematics(const std::string& urdf, Finger finger);
   ~FingerKinematics();
   FingerKinematics(FingerKinematics&&) noexcept;
@@ -60,6 +60,10 @@ class FingerKinematics {
   /// d fingertip position / d motor angles (m/rad, 3x3, in hand_base), coupling and reduction
   /// included. Its transpose takes a force (N) to motor torques (N m).
   Eigen::Matrix3d motorJacobian(const JointVector& joint_angles);
+  /// Times gravity (m/s^2, in hand_base): the motor torques (N m) that hold the links at rest,
+  /// those of the coupled joint included; in kg m. The masses are those of the URDF, with what is
+  /// fixed to each link; links without inertials weigh nothing.
+  Eigen::Matrix3d motorWeight(const JointVector& joint_angles);
 
   /// An angle that is not a number is outside of its limits, and singular.
   Configuration configuration(const JointVector& joint_angles);

@@ -32,10 +32,16 @@ class FingertipReach {
   /// @param start where to search first (rad): near it a solution is found in a few steps
   Place nearest(const Eigen::Vector3d& target, const MotorVector& start);
 
+  /// The place nearest to a target with one motor held at an angle, found downhill from `start`.
+  /// @param motor 0 to 2 @param angle rad, of that motor, within the limits
+  Place nearestHolding(int motor, double angle, const Eigen::Vector3d& target,
+                       const MotorVector& start);
+
   static constexpr double kTolerance = 1e-6;  ///< m
 
  private:
-  Place descend(const Eigen::Vector3d& target, const MotorVector& start);
+  Place descend(const Eigen::Vector3d& target, const MotorVector& start, const MotorVector& lowest,
+                const MotorVector& highest);
 
   FingerKinematics kinematics_;
   MotorVector lowest_, highest_;

@@ -25,16 +25,17 @@ struct ForceInput {
   bool obeyed = true;
   Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();  ///< m/rad, of the motors
   MotorVector motor_velocities = MotorVector::Zero();  ///< rad/s
+  MotorVector weight = MotorVector::Zero();  ///< N m, finite, hold the links against gravity
 };
 
-/// Explicit force control: torques = J^T (r + c) - kDamping w with
+/// Explicit force control: torques = J^T (r + c) + g - kDamping w with
 ///   r, the feed-forward: the desired force, in which SmoothCommand has left no steps;
 ///   c, the correction: kProportional e + kIntegral times the integral of e, of norm at most
 ///     kMaxCorrection, where e is what is expected to be measured minus what is measured, low-
 ///     pass filtered with kErrorFilter;
+///   g, what holds the weight of the links, zero where the direction of gravity is not known;
 ///   w, the motors' velocities.
-/// Friction, the weight of the links, errors of motors and kinematics are not modelled: the
-/// integral takes them.
+/// Friction, errors of motors, masses and kinematics are not modelled: the integral takes them.
 ///
 /// Expected is r after kLatency and two filters of kResponse, the response of device and pulp to a
 /// stiff finger, so that the integral does not wind up while a change is on its way. What softer
@@ -49,7 +50,8 @@ struct ForceInput {
 /// 100 N/m: the device has to follow the give of the finger, against its own friction. The loop is
 /// stable with three times the gains, and with 10 ms instead of 3.
 ///
-/// r + c changes at most by kMaxSlew, whatever the sensor says.
+/// r + c changes at most by kMaxSlew, whatever the sensor says; g comes and goes within kFade, as
+/// the commands do, and is within the limits of the sum.
 ///
 /// To be called once per millisecond. Not thread-safe, does not allocate.
 class ForceController {
@@ -106,7 +108,8 @@ class ForceController {
   Eigen::Vector3d error_, integral_, correction_;  // N
   Eigen::Vector3d force_;                          // N, what the torques stand for
   double share_ = 1.0;         // of the integral that is used: 0 without feedback
-  double release_left_ = 1.0;  // of the correction during release()
+  double weight_share_ = 0.0;  // of the weight that is held
+  double release_left_ = 1.0;  // of the correction and the weight during release()
   bool torque_limited_ = false;
   bool released_ = true;
   std::uint64_t feed_forward_only_ = 0;

@@ -46,6 +46,8 @@ struct DriverSnapshot {
   Time state_time{0};  ///< when the newest state of the device was received
   PerFinger<FingerMeasurement> fingers;
   OperatingState operating_state;
+  Eigen::Vector3d gravity =
+      Eigen::Vector3d::Zero();    ///< m/s^2, in hand_base, held against; zero: not known
   bool motors_on = false;         ///< by the last command
   FixedText fault;                ///< what latched the fault; empty without one
   bool fault_is_a_stall = false;  ///< the device was silent for a moment
@@ -110,6 +112,10 @@ class DriverLoop {
   /// @param answers  when the state came that it was computed from; negative: not known
   void command(Finger finger, const ForceCommand& command, Time arrival, Time answers = Time{-1});
 
+  /// By one thread: which way gravity (m/s^2, in hand_base) pulls, for the next tick.
+  /// @param at when it was so, see HandGravity
+  void setGravity(const Eigen::Vector3d& gravity, Time at) { gravity_.write({gravity, at}); }
+
   /// By any thread: from a state of the device to the torques that answer it, for every finger and
   /// state that was answered, with kLine.
   const realtime::DurationHistogram& path() const { return path_; }
@@ -144,6 +150,10 @@ class DriverLoop {
     Time arrival{0};
     Time answers{-1};
   };
+  struct StampedGravity {
+    Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
+    Time at{0};
+  };
   struct CommandBox {
     std::mutex writers;  // guards writing; never taken by the loop
     realtime::TripleBuffer<StampedCommand> newest;
@@ -176,6 +186,7 @@ class DriverLoop {
   std::unique_ptr<PortAccess> port_;
   RequestBox requests_;
   PerFinger<CommandBox> commands_;
+  realtime::TripleBuffer<StampedGravity> gravity_;
   std::atomic<unsigned> answers_due_{0};  // a bit per finger, for which the loop waits
   realtime::Semaphore answered_all_;
   realtime::Ring<DriverSnapshot, 64> measured_;

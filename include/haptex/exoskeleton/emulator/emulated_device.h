@@ -51,6 +51,11 @@ class EmulatedDevice {
   /// Not finite: ignored.
   void setTarget(Finger finger, const Eigen::Vector3d& target);
 
+  /// How the hand is held (hand_base in world, z up), from the next step on: turns gravity. What
+  /// turns with a hand at 90 degrees/s weighs 3 % more at most; that is left out. Not finite:
+  /// ignored.
+  void turnHand(const Eigen::Matrix3d& rotation);
+
   /// One period of kRate under a command. While its mode is DriveMode::kHoming the person lets the
   /// fingers be moved. Torques of a finger that are not finite are taken as zero.
   void step(const DeviceCommand& command);

@@ -38,7 +38,8 @@ struct FingerMechanics {
   double pulp_stiffness = 1750.0;
   double pulp_damping = 3.0;
 
-  /// m/s^2; hand_base is held upright. Acts on the device: the person carries the own finger.
+  /// m/s^2, in hand_base, until somebody turns the hand. Acts on the device: the person carries the
+  /// own finger.
   Eigen::Vector3d gravity{0.0, 0.0, -base::kStandardGravity};
 };
 
@@ -70,6 +71,10 @@ class EmulatedFinger {
   /// first.
   /// @param force finite
   void push(const Eigen::Vector3d& force) { push_ = force; }
+
+  /// m/s^2, in hand_base, from the next step on.
+  /// @param gravity finite
+  void setGravity(const Eigen::Vector3d& gravity) { mechanics_.gravity = gravity; }
 
   /// Semi-implicit Euler: forces at the present places, but damping by the coming velocities, which
   /// then move the places.

@@ -53,8 +53,8 @@ struct EmulatorStatus {
   std::vector<std::string> faults;  ///< on now, in plain words
 };
 
-/// advanceTo() and setTarget() are for one thread; the other functions may be called from any, and
-/// that thread does not wait for them.
+/// advanceTo(), setTarget() and turnHand() are for one thread; the other functions may be called
+/// from any, and that thread does not wait for them.
 class Emulator {
  public:
   static constexpr Time kPeriod = std::chrono::milliseconds(1);
@@ -75,6 +75,8 @@ class Emulator {
 
   /// As EmulatedDevice::setTarget().
   void setTarget(Finger finger, const Eigen::Vector3d& target);
+  /// As EmulatedDevice::turnHand().
+  void turnHand(const Eigen::Matrix3d& rotation);
 
   /// Lives through the periods that are due by now. The first call starts the time.
   void advanceTo(Time now);

@@ -21,7 +21,9 @@
 #include "haptex/nodes/common/immediate_queue.h"
 #include "haptex/nodes/common/loop_diagnostics.h"
 #include "haptex/nodes/common/message_pool.h"
+#include "haptex/nodes/exoskeleton_driver/hand_watch.h"
 #include "haptex/nodes/exoskeleton_driver/servo_force_filter.h"
+#include "haptex/nodes/exoskeleton_driver/workspace_watch.h"
 #include "haptex/realtime/periodic_thread.h"
 
 namespace haptex::nodes {
@@ -45,7 +47,8 @@ struct DriverNodeParameters {
 /// exoskeleton/operating_state (latched); nothing is measured before the device is homed. Services
 /// exoskeleton/enable, disable, pause, home, clear_fault (std_srvs/Trigger). Every change of the
 /// operating state is said on the console, and the state with why there is no force is a text in
-/// the markers. Nothing is computed for topics without subscribers.
+/// the markers. Nothing is computed for topics without subscribers. HandWatch and WorkspaceWatch
+/// say what they do.
 ///
 /// The loop of 1 kHz has a thread of its own, which the device's states wake up. It publishes
 /// exoskeleton/fingertips, which the forces are computed from, and renders the forces that answer
@@ -109,6 +112,7 @@ class DriverNode {
   void diagnoseLink(Status& status);
   void diagnoseLoop(Status& status);
   void diagnoseForce(Finger finger, Status& status);
+  void diagnosePlace(Finger finger, Status& status);
   std::string whyNoDevice(const exoskeleton::DriverSnapshot& snapshot) const;
   std::string whyNoForce(Finger finger, const exoskeleton::DriverSnapshot& snapshot);
 
@@ -139,6 +143,8 @@ class DriverNode {
 
   exoskeleton::DriverLoop loop_;
   realtime::PeriodicThread loop_thread_;
+  HandWatch hand_watch_;
+  WorkspaceWatch workspace_;
 
   base::PerFinger<FingerTopics> fingers_;
   ros::Publisher joint_publisher_;

@@ -65,6 +65,13 @@ class ExoskeletonLoop {
   /// The same force (N, in hand_base) on both fingertips from now on.
   void commandForce(const Eigen::Vector3d& force);
 
+  /// The hand is held so (hand_base in world) from now on. The driver knows it if it is told, and
+  /// is told what was so at a time; it is not told at first.
+  void turnHand(const Eigen::Matrix3d& rotation) { device_.turnHand(rotation); }
+  void tellOrientation(const Eigen::Matrix3d& rotation, base::Time at) {
+    driver_.setGravity(exoskeleton::gravityIn(rotation), at);
+  }
+
   void run(base::Time duration, const Observer& observer = {});
 
   /// The commander dies, and its connection to the driver with it: the driver knows in its next

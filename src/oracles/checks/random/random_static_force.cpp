@@ -2,7 +2,7 @@
 #include "haptex/base/workload.h"
 #include "haptex/oracles/checks/random_checks.h"
 #include "haptex/oracles/exact/finger_geometry.h"
-#include "haptex/oracles/experiments/static_force.h"
+#include "haptex/oracles/experiments/device/static_force.h"
 
 namespace haptex::oracles {
 

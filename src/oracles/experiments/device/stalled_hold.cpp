@@ -1,4 +1,4 @@
-#include "haptex/oracles/experiments/stalled_hold.h"
+#include "haptex/oracles/experiments/device/stalled_hold.h"
 
 #include <algorithm>
 #include <chrono>

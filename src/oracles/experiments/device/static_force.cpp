@@ -1,4 +1,4 @@
-#include "haptex/oracles/experiments/static_force.h"
+#include "haptex/oracles/experiments/device/static_force.h"
 
 #include <chrono>
 #include <random>
