@@ -163,7 +163,7 @@ void ClothNode::advertiseTopics() {
 }
 
 void ClothNode::publishMesh(const cloth::Cloth& cloth) {
-  mesh_publisher_.publish(meshMessage(cloth, ros::Time::now()));
+  mesh_publisher_.publish(meshMessage(cloth, mesh_, ros::Time::now()));
 }
 
 void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double until_next) {

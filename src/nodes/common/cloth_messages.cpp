@@ -30,11 +30,15 @@ std::vector<Eigen::Vector3d> fromXyz(const std::vector<Message>& messages) {
 
 }  // namespace
 
-haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, const ros::Time& stamp) {
+haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
+                              const ros::Time& stamp) {
   haptex::ClothMesh message;
   message.header.stamp = stamp;
   message.header.frame_id = kFixedFrame;
-  message.fabric = cloth.fabric().name;
+  message.mesh = mesh;
+  message.fabrics = {cloth.fabric().name};
+  message.fabric_files = {cloth.fabric().file};
+  message.gravity = vectorMessage(cloth.effects().gravity);
   for (const Eigen::Vector2d& rest : cloth.mesh().rest_coordinates) {
     message.rest_weft_coordinates.push_back(rest.x());
     message.rest_warp_coordinates.push_back(rest.y());

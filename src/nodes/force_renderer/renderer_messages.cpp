@@ -16,6 +16,7 @@ namespace {
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr double kFastest = 1e4;         // m/s, of a cloth
+constexpr double kLargestGravity = 1e3;  // m/s^2
 constexpr double kLongestStep = 3600.0;  // s, of the steady clock, likewise
 
 /// Without allocation if it is that frame already.
@@ -54,6 +55,15 @@ mesh::ClothMesh clothMesh(const haptex::ClothMesh& message) {
   }
   mesh::requireSound(mesh);
   return mesh;
+}
+
+Eigen::Vector3d readGravity(const haptex::ClothMesh& message) {
+  const Eigen::Vector3d gravity(message.gravity.x, message.gravity.y, message.gravity.z);
+  if (gravity.allFinite() && gravity.norm() <= kLargestGravity) return gravity;
+  std::ostringstream text;
+  text << "gravity = (" << gravity.transpose() << "): allowed are finite numbers up to "
+       << kLargestGravity << " m/s2";
+  throw std::invalid_argument(text.str());
 }
 
 void readState(const haptex::ClothState& message, simulation::LargeScaleState& state) {

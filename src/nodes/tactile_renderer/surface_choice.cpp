@@ -3,41 +3,44 @@
 #include <stdexcept>
 
 #include "haptex/material/fabric_file.h"
+#include "haptex/nodes/common/cloth_fabric.h"
 #include "haptex/nodes/common/config_files.h"
 
 namespace haptex::nodes {
-namespace {
 
-std::string withoutSurface(const FabricOfFile& read) {
+std::string SurfaceChoice::withoutSurface(const FabricOfFile& read) {
   return "the fabric '" + read.fabric.name + "' has no surface: " + read.path +
          " needs the key surface";
 }
 
-FabricOfFile readFabric(const std::string& path) { return {material::loadFabric(path), path}; }
+SurfaceChoice::FabricOfFile SurfaceChoice::readFabric(const std::string& path) {
+  return {material::loadFabric(path), path};
+}
 
-}  // namespace
-
-SurfaceChoice::SurfaceChoice(const std::string& scene_fabric) : scene_fabric_(scene_fabric) {
+SurfaceChoice::SurfaceChoice(const std::string& scene_fabric) {
   if (scene_fabric.empty()) {
     trouble_ = "no fabric is known yet: no message on cloth/mesh, and no parameter scene";
     return;
   }
   const FabricOfFile read = readFabric(scene_fabric);
-  cloth_ = read.fabric.name;
+  cloth_names_ = {read.fabric.name};
+  cloth_files_ = {read.fabric.file};
   useIfAny(read);
 }
 
-bool SurfaceChoice::receiveCloth(const std::string& fabric) {
-  if (fabric == cloth_) return false;
-  cloth_ = fabric;
+bool SurfaceChoice::receiveCloth(const haptex::ClothMesh& message) {
+  if (message.fabrics == cloth_names_ && message.fabric_files == cloth_files_) return false;
+  cloth_names_ = message.fabrics;
+  cloth_files_ = message.fabric_files;
   asked_ = false;
   FabricOfFile read;
-  read.fabric.name = fabric;
+  if (!message.fabrics.empty()) read.fabric.name = message.fabrics.front();
+  read.path = "its file, as in cloth/mesh,";
   try {
-    read = fabricOfCloth(fabric, scene_fabric_);
+    read.fabric = fabricOfCloth(message);
     useIfAny(read);
   } catch (const std::exception& error) {
-    useNone(read, "fabric '" + fabric + "': " + error.what());
+    useNone(read, error.what());
   }
   return true;
 }

@@ -95,7 +95,7 @@ void TactileNode::subscribe() {
 }
 
 void TactileNode::receiveMesh(const haptex::ClothMesh& message) {
-  if (choice_.receiveCloth(message.fabric) && !choice_.surface()) {
+  if (choice_.receiveCloth(message) && !choice_.surface()) {
     ROS_WARN("The contactors are silent: %s", choice_.trouble().c_str());
   }
 }

@@ -1,20 +1,24 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
+#include "haptex/material/fabric_file.h"
 #include "haptex/nodes/force_renderer/layer_builder.h"
 #include "haptex/scene/scene.h"
 
 namespace haptex::nodes::test_layer_builder {
 namespace {
 
-const std::string kScene = std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/scenes/wool_sample.yaml";
+const std::string kConfig = std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/";
+const std::string kScene = kConfig + "scenes/wool_sample.yaml";
 
 haptex::ClothMesh message(const std::string& fabric, int cells = 4) {
   const mesh::ClothMesh mesh =
       mesh::makeRectangle(0.2, 0.2, cells, cells, mesh::Triangulation::kOneWay);
   haptex::ClothMesh message;
-  message.fabric = fabric;
+  message.fabrics = {fabric};
+  message.fabric_files = {material::loadFabric(kConfig + "fabrics/" + fabric + ".yaml").file};
   for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {
     message.rest_weft_coordinates.push_back(rest.x());
     message.rest_warp_coordinates.push_back(rest.y());
@@ -34,14 +38,14 @@ std::string refusal(const haptex::ClothMesh& message) {
   }
 }
 
-TEST(LayerBuilder, MakesALayerOfTheScenesFabric) {
+TEST(LayerBuilder, MakesALayerOfTheFabricInTheMessage) {
   const auto layer = LayerBuilder(kScene).build(message("wool"));
   ASSERT_NE(layer, nullptr);
   EXPECT_EQ(layer->settings().layer, contact::HapticSettings::Layer::kPatch);
   EXPECT_NE(layer->preparePatch({0, 1}, std::vector<char>(25, 0)), nullptr);
 }
 
-TEST(LayerBuilder, MakesALayerOfAnotherFabricOfThePackageByItsName) {
+TEST(LayerBuilder, MakesALayerOfAnotherFabricThanTheScenes) {
   const LayerBuilder builder(kScene);
   const auto wool = builder.build(message("wool"));
   const auto knit = builder.build(message("cotton_knit"));
@@ -54,11 +58,16 @@ TEST(LayerBuilder, MakesALayerOfAnotherMesh) {
   EXPECT_NE(layer->preparePatch({7}, std::vector<char>(9, 0)), nullptr);
 }
 
-TEST(LayerBuilder, NamesTheFabricThatItCannotLoad) {
-  for (const std::string fabric : {"no_such_fabric", "../fabrics/wool", ""}) {
-    const std::string why = refusal(message(fabric));
-    EXPECT_NE(why.find("'" + fabric + "'"), std::string::npos) << fabric << ": " << why;
-  }
+TEST(LayerBuilder, NamesTheFabricThatItCannotRead) {
+  haptex::ClothMesh broken = message("wool");
+  broken.fabric_files[0] = "name: wool";
+  EXPECT_NE(refusal(broken).find("fabric 'wool' in cloth/mesh"), std::string::npos);
+}
+
+TEST(LayerBuilder, RefusesGravityThatIsNotANumber) {
+  haptex::ClothMesh broken = message("wool");
+  broken.gravity.z = std::nan("");
+  EXPECT_NE(refusal(broken).find("gravity"), std::string::npos) << refusal(broken);
 }
 
 TEST(LayerBuilder, RefusesAMeshWithDefects) {

@@ -120,6 +120,7 @@ class ClothNode {
   std::uint64_t steps_per_state_;
   std::uint64_t steps_per_markers_;
   ClothMarkers markers_;
+  std::uint32_t mesh_ = 0;  // its number
   haptex::ClothState state_message_;
   std::vector<Eigen::Vector3d> forces_;
   ros::Time state_stamp_;

@@ -1,11 +1,14 @@
 // Which fabric's surface the tactile renderer strokes.
 #pragma once
 
+#include <haptex/ClothMesh.h>
+
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "haptex/material/fabric.h"
 #include "haptex/material/surface.h"
-#include "haptex/nodes/common/cloth_fabric.h"
 #include "haptex/tactile/surface.h"
 
 namespace haptex::nodes {
@@ -19,10 +22,10 @@ class SurfaceChoice {
   /// @throws std::exception naming the file and what is wrong with the fabric or its surface
   explicit SurfaceChoice(const std::string& scene_fabric);
 
-  /// Takes the fabric that cloth/mesh names; does nothing if that is as before. Without a surface
+  /// Takes the fabric of cloth/mesh; does nothing if that is as before. Without a surface
   /// that can be stroked there is none from then on: another fabric's would be wrong.
   /// @returns whether it is another fabric
-  bool receiveCloth(const std::string& fabric);
+  bool receiveCloth(const haptex::ClothMesh& message);
 
   /// @param fabric name of a fabric in config/fabrics or the path of a fabric file
   /// @throws std::exception naming what is wrong with the fabric or its surface, or that it has
@@ -33,7 +36,8 @@ class SurfaceChoice {
   const tactile::Surface* surface() const { return surface_ ? &*surface_ : nullptr; }
   /// Why there is no surface; empty if there is one.
   const std::string& trouble() const { return trouble_; }
-  /// Name and file of the fabric; empty where it is not known.
+  /// Name of the fabric, and the path of its file or that it came in cloth/mesh; empty where it is
+  /// not known.
   const std::string& fabric() const { return fabric_; }
   const std::string& path() const { return path_; }
   /// Where it comes from, for people.
@@ -42,13 +46,19 @@ class SurfaceChoice {
   const std::optional<material::Surface>& values() const { return values_; }
 
  private:
+  struct FabricOfFile {
+    material::Fabric fabric;
+    std::string path;
+  };
+
+  static FabricOfFile readFabric(const std::string& path);
+  static std::string withoutSurface(const FabricOfFile& read);
   /// @throws std::exception what tactile::buildSurface() throws; nothing has changed then
   void use(const FabricOfFile& read);
   void useIfAny(const FabricOfFile& read);
   void useNone(const FabricOfFile& read, const std::string& why);
 
-  const std::string scene_fabric_;
-  std::string cloth_;  // its fabric
+  std::vector<std::string> cloth_names_, cloth_files_;  // of its fabrics, as in cloth/mesh
   std::optional<tactile::Surface> surface_;
   std::optional<material::Surface> values_;
   std::string fabric_, path_;
