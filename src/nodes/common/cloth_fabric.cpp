@@ -8,24 +8,38 @@
 namespace haptex::nodes {
 namespace {
 
-void requireAtMost(const char* field, std::size_t bytes, std::size_t allowed) {
+void requireAtMost(const std::string& field, std::size_t bytes, std::size_t allowed) {
   if (bytes <= allowed) return;
-  throw std::invalid_argument(std::string(field) + " has " + std::to_string(bytes) +
+  throw std::invalid_argument(field + " has " + std::to_string(bytes) +
                               " bytes: allowed are up to " + std::to_string(allowed));
 }
 
 }  // namespace
 
-material::Fabric fabricOfCloth(const haptex::ClothMesh& message) {
-  if (message.fabrics.size() != 1 || message.fabric_files.size() != 1) {
-    throw std::invalid_argument(
-        "fabrics has " + std::to_string(message.fabrics.size()) + " elements and fabric_files " +
-        std::to_string(message.fabric_files.size()) + ": allowed is one name and its file");
+void requireFabrics(const haptex::ClothMesh& message) {
+  const std::size_t names = message.fabrics.size(), files = message.fabric_files.size();
+  if (names >= 1 && names <= kMostFabrics && files == names) return;
+  throw std::invalid_argument("fabrics has " + std::to_string(names) +
+                              " elements and fabric_files " + std::to_string(files) +
+                              ": allowed are 1 to " + std::to_string(kMostFabrics) +
+                              " names, and for each its file");
+}
+
+std::vector<material::Fabric> fabricsOfCloth(const haptex::ClothMesh& message) {
+  requireFabrics(message);
+  std::vector<material::Fabric> fabrics;
+  for (std::size_t i = 0; i < message.fabrics.size(); ++i) {
+    fabrics.push_back(fabricOfCloth(message, i));
   }
-  const std::string& name = message.fabrics[0];
-  const std::string& file = message.fabric_files[0];
-  requireAtMost("fabrics[0]", name.size(), kLongestFabricName);
-  requireAtMost("fabric_files[0]", file.size(), kLongestFabricFile);
+  return fabrics;
+}
+
+material::Fabric fabricOfCloth(const haptex::ClothMesh& message, std::size_t index) {
+  const std::string& name = message.fabrics[index];
+  const std::string& file = message.fabric_files[index];
+  const std::string place = "[" + std::to_string(index) + "]";
+  requireAtMost("fabrics" + place, name.size(), kLongestFabricName);
+  requireAtMost("fabric_files" + place, file.size(), kLongestFabricFile);
   material::Fabric fabric = material::parseFabric(file, "fabric '" + name + "' in cloth/mesh");
   if (fabric.name != name) {
     throw std::invalid_argument("fabric '" + name + "' in cloth/mesh: its file is of the fabric '" +

@@ -36,8 +36,10 @@ haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
   message.header.stamp = stamp;
   message.header.frame_id = kFixedFrame;
   message.mesh = mesh;
-  message.fabrics = {cloth.fabric().name};
-  message.fabric_files = {cloth.fabric().file};
+  for (const material::Fabric& fabric : cloth.fabrics()) {
+    message.fabrics.push_back(fabric.name);
+    message.fabric_files.push_back(fabric.file);
+  }
   message.gravity = vectorMessage(cloth.effects().gravity);
   for (const Eigen::Vector2d& rest : cloth.mesh().rest_coordinates) {
     message.rest_weft_coordinates.push_back(rest.x());
@@ -46,6 +48,8 @@ haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
   for (const auto& triangle : cloth.mesh().triangles) {
     message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
   }
+  const std::vector<int>& fabrics = cloth.mesh().triangle_fabrics;
+  message.triangle_fabrics.assign(fabrics.begin(), fabrics.end());
   message.masses = cloth.masses();
   return message;
 }

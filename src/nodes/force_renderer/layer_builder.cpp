@@ -17,14 +17,15 @@ LayerBuilder::LayerBuilder(const std::string& scene_path)
 
 std::unique_ptr<contact::HapticLayer> LayerBuilder::build(const haptex::ClothMesh& message) const {
   mesh::ClothMesh mesh = clothMesh(message);
-  material::Fabric fabric = fabricOfCloth(message);
+  std::vector<material::Fabric> fabrics = fabricsOfCloth(message);
+  const std::string name = fabrics.front().name;
   cloth::ModelledEffects effects = effects_;
   effects.gravity = readGravity(message);
   try {
-    return std::make_unique<contact::HapticLayer>(std::move(mesh), fabric, effects, settings_,
-                                                  obstacles_);
+    return std::make_unique<contact::HapticLayer>(std::move(mesh), std::move(fabrics), effects,
+                                                  settings_, obstacles_);
   } catch (const std::exception& error) {
-    throw std::invalid_argument("fabric '" + fabric.name + "': " + error.what());
+    throw std::invalid_argument("fabric '" + name + "': " + error.what());
   }
 }
 

@@ -19,7 +19,7 @@ haptex::ClothMesh wool() {
 
 std::string refusal(const haptex::ClothMesh& message) {
   try {
-    fabricOfCloth(message);
+    fabricsOfCloth(message);
     return "";
   } catch (const std::exception& error) {
     return error.what();
@@ -27,14 +27,15 @@ std::string refusal(const haptex::ClothMesh& message) {
 }
 
 TEST(ClothFabric, IsReadFromTheMessage) {
-  const material::Fabric fabric = fabricOfCloth(wool());
+  const material::Fabric fabric = fabricsOfCloth(wool()).front();
   EXPECT_EQ(fabric.name, "wool");
   EXPECT_GT(fabric.areal_density, 0.0);
 }
 
 TEST(ClothFabric, ThatIsMalformedIsRefusedByName) {
   haptex::ClothMesh none;
-  EXPECT_NE(refusal(none).find("allowed is one name and its file"), std::string::npos);
+  EXPECT_NE(refusal(none).find("allowed are 1 to 256 names, and for each its file"),
+            std::string::npos);
   haptex::ClothMesh without_file = wool();
   without_file.fabric_files.clear();
   EXPECT_NE(refusal(without_file).find("fabric_files 0"), std::string::npos);

@@ -41,8 +41,9 @@ struct ClothNodeParameters {
   double state_rate = 0.0;    ///< ~state_rate: Hz of simulated time; 0, the default: every step
   double marker_rate = 0.0;   ///< ~marker_rate: Hz of simulated time, default 25
   double strain_scale = 0.0;  ///< ~strain_scale: strain with the last colour, default 0.01
-  QualityRequest quality;     ///< ~quality, ~budget_ms; by default the scene's own settings,
-                              ///< which ~quality = scene with a budget lets be reduced
+  ClothColours colour_by = ClothColours::kStrain;  ///< ~colour_by: strain, the default, or fabric
+  QualityRequest quality;  ///< ~quality, ~budget_ms; by default the scene's own settings,
+                           ///< which ~quality = scene with a budget lets be reduced
 
   /// Rates are rounded to whole numbers of steps between two messages.
   /// @throws std::invalid_argument naming the parameter, its value and what is allowed

@@ -1,9 +1,10 @@
-// The fabric that the large-scale layer sends in cloth/mesh.
+// The fabrics that the large-scale layer sends in cloth/mesh.
 #pragma once
 
 #include <haptex/ClothMesh.h>
 
 #include <cstddef>
+#include <vector>
 
 #include "haptex/material/fabric.h"
 
@@ -12,9 +13,17 @@ namespace haptex::nodes {
 constexpr std::size_t kLongestFabricFile = 1000000;  ///< bytes
 constexpr std::size_t kLongestFabricName = 200;      ///< bytes
 
-/// Reads the fabric from the text in the message, and no file.
-/// @throws std::exception naming the fabric and what is wrong with it: not one name and one text,
-///   one that is longer than the above, that is not a fabric file, or is one of another fabric
-material::Fabric fabricOfCloth(const haptex::ClothMesh& message);
+constexpr std::size_t kMostFabrics = 256;  ///< of a cloth
+
+/// Reads the fabrics from the texts in the message, and no file.
+/// @throws std::exception naming the fabric and what is wrong with it: no text for each name, none
+///   or more than kMostFabrics, one that is longer than the above, that is not a fabric file, or is
+///   one of another fabric
+std::vector<material::Fabric> fabricsOfCloth(const haptex::ClothMesh& message);
+
+/// One of them, likewise. @param index less than the number of names
+material::Fabric fabricOfCloth(const haptex::ClothMesh& message, std::size_t index);
+/// @throws std::invalid_argument if there are not as many texts as names, none or too many
+void requireFabrics(const haptex::ClothMesh& message);
 
 }  // namespace haptex::nodes

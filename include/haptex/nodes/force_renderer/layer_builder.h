@@ -23,7 +23,7 @@ class LayerBuilder {
 
   const contact::HapticSettings& settings() const { return settings_; }
 
-  /// Fabric and gravity are those of the message.
+  /// Fabrics and gravity are those of the message.
   /// @throws std::exception naming what was wrong with the mesh or the fabric
   std::unique_ptr<contact::HapticLayer> build(const haptex::ClothMesh& message) const;
 
