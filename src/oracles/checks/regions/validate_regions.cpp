@@ -1,6 +1,8 @@
 // Cloth of several fabrics: each carries, presses and rubs as it does alone.
+#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "haptex/base/workload.h"
 #include "haptex/cloth/dynamics/cloth.h"
@@ -19,7 +21,7 @@ using Eigen::Vector3d;
 using material::Fabric;
 
 constexpr double kElongationTolerance = 1e-4;  // of the part, at 100 cells
-constexpr double kRubTolerance = 0.01;
+constexpr double kRubTolerance = 1e-3;
 
 /// Gives all triangles whose middle is beyond a line to fabric 1.
 /// @param axis 0: weft, 1: warp @param border m, in rest coordinates
@@ -126,7 +128,7 @@ void validatePress(const Fabric& first, const Fabric& second, const Sink& sink) 
 }
 
 /// The finger rubs from one fabric over the border to the other, on fabric that the plate holds:
-/// what it feels along its way over what it presses with is the fabric's coefficient.
+/// all that it touches slips, so friction over pressure is the fabric's coefficient.
 void validateRub(const Fabric& first, const Fabric& second, const Sink& sink) {
   constexpr double kBorder = 0.01, kSpeed = 0.05, kLength = 0.02, kAlone = 5e-3;  // m, m/s
   constexpr double kHeld = 5.0;  // coefficient of the plate
@@ -141,14 +143,16 @@ void validateRub(const Fabric& first, const Fabric& second, const Sink& sink) {
     const double from_border = finger.position.y() - kBorder;
     if (std::abs(from_border) < kAlone || finger.position.y() < 2e-3) continue;
     const int side = from_border < 0.0 ? 0 : 1;
-    drag[side] -= feltByIndex(loop).y();
-    pressed[side] += feltByIndex(loop).z();
+    for (const contact::ContactPoint& point :
+         loop.layer().contacts()[base::Finger::kIndex].points) {
+      drag[side] += point.tangential_force.norm();
+      pressed[side] += point.normal_force;
+    }
   }
   for (int side = 0; side < 2; ++side) {
     const Fabric& under = side == 0 ? first : second;
     sink(base::relativeTo(*under.friction, "regions/rub/" + under.name, *under.friction,
-                          drag[side] / pressed[side],
-                          base::unlessSanitized(1.0, 5.0) * kRubTolerance));
+                          drag[side] / pressed[side], kRubTolerance));
   }
 }
 
