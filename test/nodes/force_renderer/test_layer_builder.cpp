@@ -52,6 +52,27 @@ TEST(LayerBuilder, MakesALayerOfAnotherFabricThanTheScenes) {
   EXPECT_NE(wool->law().halfThickness(), knit->law().halfThickness());
 }
 
+TEST(LayerBuilder, MakesALayerOfTheFabricsOfRegions) {
+  haptex::ClothMesh hemmed = message("wool");
+  const haptex::ClothMesh denim = message("denim");
+  hemmed.fabrics.push_back(denim.fabrics[0]);
+  hemmed.fabric_files.push_back(denim.fabric_files[0]);
+  hemmed.triangle_fabrics.assign(32, 0);
+  hemmed.triangle_fabrics[5] = 1;
+  const auto layer = LayerBuilder(kScene).build(hemmed);
+  EXPECT_NE(layer->law(0).halfThickness(), layer->law(1).halfThickness());
+  hemmed.triangle_fabrics[7] = 2;
+  EXPECT_NE(refusal(hemmed).find("triangle_fabrics[7] = 2: there are 2 fabrics"),
+            std::string::npos);
+  hemmed.triangle_fabrics.resize(31);
+  EXPECT_NE(refusal(hemmed).find("triangle_fabrics has 31 elements: allowed are none, or one per "
+                                 "triangle, of which there are 32"),
+            std::string::npos);
+  hemmed.triangle_fabrics.clear();
+  hemmed.fabric_files.pop_back();
+  EXPECT_NE(refusal(hemmed).find("fabrics has 2 elements and fabric_files 1"), std::string::npos);
+}
+
 TEST(LayerBuilder, MakesALayerOfAnotherMesh) {
   const auto layer = LayerBuilder(kScene).build(message("wool", 2));
   EXPECT_THROW(layer->preparePatch({31}, std::vector<char>(9, 0)), std::invalid_argument);

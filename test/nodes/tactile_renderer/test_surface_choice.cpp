@@ -78,6 +78,26 @@ TEST(SurfaceChoice, HasNoneForAClothThatCannotBeStroked) {
   }
 }
 
+TEST(SurfaceChoice, HasOneForEveryFabricOfTheCloth) {
+  haptex::ClothMesh hemmed = worn("wool");
+  for (const char* name : {"denim", "linear"}) {
+    hemmed.fabrics.push_back(name);
+    hemmed.fabric_files.push_back(worn(name).fabric_files[0]);
+  }
+  SurfaceChoice choice(kWool);
+  EXPECT_TRUE(choice.receiveCloth(hemmed)) << "regions are new";
+  EXPECT_EQ(choice.fabric(), "wool, denim, linear");
+  ASSERT_NE(choice.surface(0), nullptr);
+  ASSERT_NE(choice.surface(1), nullptr);
+  EXPECT_EQ(choice.surface(0)->fabric, "wool");
+  EXPECT_EQ(choice.surface(1)->fabric, "denim");
+  EXPECT_EQ(choice.surface(2), nullptr) << "linear has no surface";
+  EXPECT_EQ(choice.surface(3), nullptr);
+  EXPECT_NE(choice.trouble().find("'linear'"), std::string::npos);
+  choice.ask("linen");
+  EXPECT_EQ(choice.surface(2)->fabric, "linen") << "what was asked for is felt everywhere";
+}
+
 TEST(SurfaceChoice, KeepsWhatWasAskedForUntilTheClothChanges) {
   SurfaceChoice choice(kWool);
   choice.ask("denim");

@@ -41,6 +41,19 @@ TEST(TactileLoop, IsZeroInTheFirstStepWithoutAMessage) {
   EXPECT_EQ(loop.messages()[Finger::kThumb], silent);
 }
 
+TEST(TactileLoop, FollowsTheFabricUnderTheFinger) {
+  TactileLoop loop(tactile::ArrayLimits{});
+  EXPECT_EQ(loop.fabric(Finger::kIndex), 0u);
+  haptex::Contact other = slidingContact();
+  other.fabric = 1;
+  loop.receive(Finger::kIndex, slidingContact(), 1ms);
+  loop.receive(Finger::kIndex, other, 2ms);
+  EXPECT_EQ(loop.fabric(Finger::kIndex), 1u);
+  EXPECT_EQ(loop.fabric(Finger::kThumb), 0u);
+  loop.receive(Finger::kIndex, noContact(), 3ms);
+  EXPECT_EQ(loop.fabric(Finger::kIndex), 1u) << "what the step has touched is stroked to its end";
+}
+
 TEST(TactileLoop, ComputesNothingWithoutContactOrSurface) {
   const tactile::Surface surface = grating();
   TactileLoop loop(tactile::ArrayLimits{});
