@@ -15,6 +15,7 @@
 
 #include "haptex/material/fabric_file.h"
 #include "haptex/scene/scene.h"
+#include "haptex/scene/scene_fabric.h"
 #include "haptex/simulation/simulated_cloth.h"
 
 namespace {
@@ -38,11 +39,12 @@ class Checksum {
   std::uint64_t sum_ = 14695981039346656037U;
 };
 
-void printState(const std::string& name, const scene::Scene& scene) {
+void printState(const std::string& name, const scene::Scene& scene,
+                const std::vector<material::Fabric>& fabrics) {
   double extent = 0.0;
   Checksum checksum;
   try {
-    simulation::SimulatedCloth sheet(scene, material::loadFabric(scene.fabric_path));
+    simulation::SimulatedCloth sheet(scene, fabrics);
     for (int i = 0; i < kSteps; ++i) sheet.step();
     for (const auto* points : {&sheet.state().positions, &sheet.state().velocities}) {
       for (const Eigen::Vector3d& point : *points) {
@@ -61,10 +63,11 @@ void printState(const std::string& name, const scene::Scene& scene) {
 void printStates(const fs::path& file) {
   const std::string name = "states/" + file.stem().string() + "/";
   const scene::Scene shipped = scene::loadScene(file.string());
+  const std::vector<material::Fabric> fabrics = scene::loadSceneFabrics(file.string(), shipped);
   for (const cloth::NamedIntegrationMethod& named : cloth::kIntegrationMethods) {
     scene::Scene scene = shipped;
     scene.step.method = named.method;
-    printState(name + named.name, scene);
+    printState(name + named.name, scene, fabrics);
   }
   scene::Scene springs = shipped, corotational = shipped, bends = shipped, remembers = shipped;
   scene::Scene stretches = shipped;
@@ -73,11 +76,11 @@ void printStates(const fs::path& file) {
   bends.effects.bending = true;
   remembers.effects.bending = remembers.effects.bending_hysteresis = true;
   stretches.effects.membrane_hysteresis = true;
-  printState(name + "mass_spring", springs);
-  printState(name + "corotational", corotational);
-  printState(name + "bending", bends);
-  printState(name + "bending_hysteresis", remembers);
-  printState(name + "membrane_hysteresis", stretches);
+  printState(name + "mass_spring", springs, fabrics);
+  printState(name + "corotational", corotational, fabrics);
+  printState(name + "bending", bends, fabrics);
+  printState(name + "bending_hysteresis", remembers, fabrics);
+  printState(name + "membrane_hysteresis", stretches, fabrics);
 }
 
 }  // namespace

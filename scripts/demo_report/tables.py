@@ -94,7 +94,7 @@ def print_rates(recording):
     steps = np.array([state[0] for state in states.values], dtype=float)
     simulated, elapsed = recording.real_time()
     cloth, sources = (recording.diagnostics[n] for n in ['cloth simulation', 'force sources'])
-    print(f"{cloth['triangles']} triangles, fabric {recording.mesh.fabric}, steps of "
+    print(f"{cloth['triangles']} triangles, fabric {', '.join(recording.mesh.fabrics)}, steps of "
           f"{float(cloth['time step (ms)']):g} ms")
     for finger in FINGERS:
         gaps = 1e3 * np.diff(recording.contact[finger].times)

@@ -21,7 +21,9 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-std::string readText(const std::string& path) {
+}  // namespace
+
+std::string readTextFile(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw std::runtime_error(path + ": there is no such file");
@@ -36,26 +38,25 @@ std::string readText(const std::string& path) {
   return text.str();
 }
 
-}  // namespace
-
 YamlValue::YamlValue(std::shared_ptr<const std::string> file, std::string key_path,
                      const YAML::Node& node)
     : file_(std::move(file)), key_path_(std::move(key_path)), node_(node) {}
 
-YamlValue YamlValue::load(const std::string& path) {
-  const std::string text = readText(path);
+YamlValue YamlValue::load(const std::string& path) { return parse(readTextFile(path), path); }
+
+YamlValue YamlValue::parse(const std::string& text, const std::string& name) {
   std::vector<YAML::Node> documents;
   try {
     documents = YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
-    throw std::runtime_error(path + ": line " + std::to_string(error.mark.line + 1) +
+    throw std::runtime_error(name + ": line " + std::to_string(error.mark.line + 1) +
                              ": is not YAML: " + error.msg);
   }
   if (documents.size() != 1) {
-    throw std::runtime_error(path + ": has " + std::to_string(documents.size()) +
+    throw std::runtime_error(name + ": has " + std::to_string(documents.size()) +
                              " YAML documents, must have one");
   }
-  return YamlValue(std::make_shared<const std::string>(path), "", documents.front());
+  return YamlValue(std::make_shared<const std::string>(name), "", documents.front());
 }
 
 void YamlValue::requireKeys(const std::vector<std::string>& required,

@@ -31,6 +31,31 @@ mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
   return mesh;
 }
 
+const std::vector<material::Fabric>& requireFabrics(const std::vector<material::Fabric>& fabrics,
+                                                    const mesh::ClothMesh& mesh,
+                                                    const HapticSettings& settings) {
+  if (fabrics.empty() || fabrics.size() > HapticLayer::kMostFabrics) {
+    throw std::invalid_argument("the cloth has " + std::to_string(fabrics.size()) +
+                                " fabrics: allowed are 1 to " +
+                                std::to_string(HapticLayer::kMostFabrics));
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.fabricOf(t) < static_cast<int>(fabrics.size())) continue;
+    throw std::invalid_argument("triangle " + std::to_string(t) + " is of fabric " +
+                                std::to_string(mesh.fabricOf(t)) + "; there are " +
+                                std::to_string(fabrics.size()));
+  }
+  for (const material::Fabric& fabric : fabrics) requireBending(fabric, settings);
+  return fabrics;
+}
+
+std::vector<ContactLaw> lawsOf(const std::vector<material::Fabric>& fabrics, int most_layers) {
+  std::vector<ContactLaw> laws;
+  for (const material::Fabric& fabric : fabrics)
+    laws.emplace_back(fabric, PulpSettings{}, most_layers);
+  return laws;
+}
+
 bool allFinite(const std::vector<Vector3d>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(),
                      [](const Vector3d& vector) { return vector.allFinite(); });
@@ -74,17 +99,23 @@ void requireTouchable(const material::Fabric& fabric, const HapticSettings& sett
 HapticLayer::HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric,
                          const cloth::ModelledEffects& effects, const HapticSettings& settings,
                          std::vector<mesh::Obstacle> obstacles)
+    : HapticLayer(std::move(mesh), std::vector<material::Fabric>{std::move(fabric)}, effects,
+                  settings, std::move(obstacles)) {}
+
+HapticLayer::HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
+                         const cloth::ModelledEffects& effects, const HapticSettings& settings,
+                         std::vector<mesh::Obstacle> obstacles)
     : settings_(settings),
       mesh_(requireSoundAndReturn(std::move(mesh))),
-      fabric_(std::move(fabric)),
+      fabrics_(std::move(fabrics)),
       effects_(effects),
-      law_(requireBending(fabric_, settings), {},
-           effects.self_collision ? LayersBetween::kMost : 1),
-      obstacles_(effects.contacts ? std::move(obstacles) : std::vector<mesh::Obstacle>(), fabric_),
+      laws_(lawsOf(requireFabrics(fabrics_, mesh_, settings),
+                   effects.self_collision ? LayersBetween::kMost : 1)),
+      obstacles_(effects.contacts ? std::move(obstacles) : std::vector<mesh::Obstacle>(), fabrics_),
       topology_(mesh_),
       motion_(mesh_.rest_coordinates.size()) {
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
-    whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabric_, law_);
+    whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabrics_, laws_);
   }
   loads_.reserve(cloth::PointLoads::kMax);
   for (FingertipContact& contact : contacts_.values) contact.points.reserve(kMaxContactPoints);
@@ -111,7 +142,7 @@ std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangl
   }
   RefinedCut refined = cutAndRefine(mesh_, topology_, cut, attached, settings_.refinement);
   if (refined.free_count == 0) return nullptr;
-  return std::make_unique<Patch>(mesh_, std::move(refined), fabric_, effects_, law_, &obstacles_);
+  return std::make_unique<Patch>(mesh_, std::move(refined), fabrics_, effects_, laws_, &obstacles_);
 }
 
 void HapticLayer::receive(const std::vector<Vector3d>& positions,
@@ -209,9 +240,24 @@ void HapticLayer::hold(const Fingertips& fingertips) {
         whole_cloth_ ? whole_cloth_->particles() : patch_->particles(finger);
     const SphereContact& contact =
         whole_cloth_ ? whole_cloth_->contact(finger) : patch_->contact(finger);
+    const ContactLaw& under = law(fabricUnder(contact.touched()));
     present_[finger] = &held.move(*next, particles, contact.touched(),
-                                  next->radius + law_.halfThickness(), law_.friction());
+                                  next->radius + under.halfThickness(), under.friction());
   }
+}
+
+int HapticLayer::fabricOf(int particle) const {
+  return whole_cloth_ ? whole_cloth_->fabricOf(particle) : patch_->fabricOf(particle);
+}
+
+/// The one on which most of the normal force is; without force the first.
+int HapticLayer::fabricUnder(const std::vector<TouchedParticle>& touched) const {
+  if (fabrics_.size() == 1) return 0;
+  std::array<double, kMostFabrics> forces{};
+  for (const TouchedParticle& point : touched) {
+    forces[fabricOf(point.particle)] += point.normal_force;
+  }
+  return static_cast<int>(std::max_element(forces.begin(), forces.end()) - forces.begin());
 }
 
 void HapticLayer::stepPatch() {
@@ -324,6 +370,7 @@ void HapticLayer::fillContact(Finger finger, const std::vector<TouchedParticle>&
   contact.points = std::move(points);
   contact.touching = !touched.empty();
   if (!contact.touching) return;
+  contact.fabric = fabricUnder(touched);
   const Fingertip& fingertip = *present_[finger];
   contact.position = fingertips_[finger]->position;
   contact.velocity = fingertips_[finger]->velocity;

@@ -25,24 +25,43 @@ constexpr double kLastTether = 1e-3;   // N/m, then none
 constexpr double kLongestKept = 4e-3;
 
 /// Membrane and bending on the particles of a cut.
-cloth::ForceSum forcesOn(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
+cloth::ForceSum forcesOn(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                          const cloth::ModelledEffects& effects) {
   cloth::ForceSum forces;
-  forces.add(std::make_unique<cloth::Membrane>(cloth::restElements(mesh), fabric, effects.viscosity,
-                                               effects.contraction));
-  forces.add(std::make_unique<cloth::Bending>(mesh, *fabric.bending, effects.bending_settings));
+  std::vector<material::BendingRigidity> rigidities;
+  for (std::size_t f = 0; f < fabrics.size(); ++f) {
+    rigidities.push_back(*fabrics[f].bending);
+    std::vector<cloth::MembraneElement> elements = cloth::restElements(mesh, static_cast<int>(f));
+    if (elements.empty()) continue;
+    forces.add(std::make_unique<cloth::Membrane>(std::move(elements), fabrics[f], effects.viscosity,
+                                                 effects.contraction));
+  }
+  if (fabrics.size() == 1) {
+    forces.add(
+        std::make_unique<cloth::Bending>(mesh, rigidities.front(), effects.bending_settings));
+  } else {
+    forces.add(std::make_unique<cloth::Bending>(mesh, rigidities, effects.bending_settings));
+  }
   return forces;
 }
 
-/// A third of each adjacent triangle (m^2), per particle.
-std::vector<double> areasOf(const cloth::ForceSum& forces, std::size_t particles) {
-  return cloth::shareOut(forces.find<cloth::Membrane>()->elements(), particles,
+/// A third of each adjacent triangle (m^2), per particle; of one fabric's, if it is given.
+std::vector<double> areasOf(const mesh::ClothMesh& mesh, std::optional<int> fabric = std::nullopt) {
+  return cloth::shareOut(cloth::restElements(mesh, fabric), mesh.rest_coordinates.size(),
                          [](std::size_t) { return 1.0; });
 }
 
-std::vector<double> scaled(double factor, std::vector<double> values) {
-  for (double& value : values) value *= factor;
-  return values;
+/// kg, per particle.
+std::vector<double> massesOf(const mesh::ClothMesh& mesh,
+                             const std::vector<material::Fabric>& fabrics) {
+  std::vector<double> masses(mesh.rest_coordinates.size(), 0.0);
+  for (std::size_t f = 0; f < fabrics.size(); ++f) {
+    const std::vector<double> areas = areasOf(mesh, static_cast<int>(f));
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      masses[i] += fabrics[f].areal_density * areas[i];
+    }
+  }
+  return masses;
 }
 
 linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& matrix, int size) {
@@ -57,23 +76,27 @@ linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& 
 
 }  // namespace
 
-Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
-             const cloth::ModelledEffects& effects, const ContactLaw& law,
-             const PlacedObstacles* obstacles)
+Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut,
+             const std::vector<material::Fabric>& fabrics, const cloth::ModelledEffects& effects,
+             const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles)
     : cut_(std::move(cut)),
       effects_(effects),
-      forces_(forcesOn(cut_.mesh, fabric, effects)),
-      areas_(areasOf(forces_, cut_.supports.size())),
-      masses_(scaled(fabric.areal_density, areas_)),
+      forces_(forcesOn(cut_.mesh, fabrics, effects)),
+      areas_(areasOf(cut_.mesh)),
+      masses_(massesOf(cut_.mesh, fabrics)),
       matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, forces_.pairs()),
       solver_(leadingPattern(matrix_, cut_.free_count)),
-      contacts_{{SphereContact(law, cut_.free_count), SphereContact(law, cut_.free_count)}},
+      contacts_{{SphereContact(laws, cut_.fabrics, cut_.free_count),
+                 SphereContact(laws, cut_.fabrics, cut_.free_count)}},
       rhs_(3, cut_.supports.size()),
       solution_(3, cut_.free_count) {
   forces_.bind(matrix_);
-  if (effects.self_collision) layers_.emplace(coarse, cut_, 2.0 * law.halfThickness(), areas_);
+  if (effects.self_collision) {
+    layers_.emplace(coarse, cut_, 2.0 * laws.front().halfThickness(), areas_);
+  }
   if (obstacles != nullptr && !obstacles->bodies().empty()) {
-    obstacles_.emplace(*obstacles, *fabric.compression, law.tangentialStiffness(), cut_.free_count);
+    obstacles_.emplace(*obstacles, fabrics, cut_.fabrics, laws.front().tangentialStiffness(),
+                       cut_.free_count);
   }
   const std::size_t count = cut_.supports.size();
   for (int owner : cut_.owners) corners_.push_back(coarse.triangles[owner]);

@@ -84,6 +84,11 @@ struct Builder {
     return entry->second;
   }
 
+  void addFabric(int owner) {
+    if (mesh.triangle_fabrics.empty()) return;
+    cut.mesh.triangle_fabrics.push_back(mesh.triangle_fabrics[owner]);
+  }
+
   void split(int owner) {
     for (int b = 0; b < divisions; ++b) {
       for (int a = 0; a + b < divisions; ++a) {
@@ -91,8 +96,10 @@ struct Builder {
         const int right = particle(owner, a + 1, b);
         const int up = particle(owner, a, b + 1);
         cut.mesh.triangles.push_back({origin, right, up});
+        addFabric(owner);
         if (a + b + 1 < divisions) {
           cut.mesh.triangles.push_back({right, particle(owner, a + 1, b + 1), up});
+          addFabric(owner);
         }
       }
     }
@@ -105,6 +112,21 @@ std::vector<T> reordered(const std::vector<T>& values, const std::vector<int>& o
   result.reserve(values.size());
   for (int old : order) result.push_back(values[old]);
   return result;
+}
+
+/// Of the first triangle that has all of a support's particles, whatever was cut: patches that
+/// follow each other agree.
+std::uint8_t fabricAt(const mesh::ClothMesh& mesh, const MeshTopology& topology,
+                      const Support& support) {
+  for (const int triangle : topology.trianglesOf(support.particles[2])) {
+    const std::array<int, 3>& corners = mesh.triangles[triangle];
+    const bool has_all =
+        std::all_of(support.particles.begin(), support.particles.end(), [&](int p) {
+          return p < 0 || std::find(corners.begin(), corners.end(), p) != corners.end();
+        });
+    if (has_all) return static_cast<std::uint8_t>(mesh.triangle_fabrics[triangle]);
+  }
+  return 0;
 }
 
 }  // namespace
@@ -145,6 +167,11 @@ RefinedCut cutAndRefine(const mesh::ClothMesh& mesh, const MeshTopology& topolog
   cut.owners = reordered(cut.owners, order);
   cut.weights = reordered(cut.weights, order);
   cut.mesh.rest_coordinates = reordered(cut.mesh.rest_coordinates, order);
+  if (!mesh.triangle_fabrics.empty()) {
+    for (const Support& support : cut.supports) {
+      cut.fabrics.push_back(fabricAt(mesh, topology, support));
+    }
+  }
   cut.mesh.initial_positions.assign(count, Eigen::Vector3d::Zero());
   std::vector<int> place(count);
   for (int i = 0; i < count; ++i) place[order[i]] = i;

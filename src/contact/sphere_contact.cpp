@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace haptex::contact {
 namespace {
@@ -31,7 +32,13 @@ void addFriction(const Vector3d& offset, double sticking, double coefficient,
 }
 
 SphereContact::SphereContact(const ContactLaw& law, std::size_t most_particles)
-    : law_(law), anchors_(most_particles) {
+    : laws_(&law), anchors_(most_particles) {
+  touched_.reserve(most_particles);
+}
+
+SphereContact::SphereContact(const std::vector<ContactLaw>& laws, std::vector<std::uint8_t> fabrics,
+                             std::size_t most_particles)
+    : laws_(laws.data()), fabrics_(std::move(fabrics)), anchors_(most_particles) {
   touched_.reserve(most_particles);
 }
 
@@ -46,8 +53,9 @@ void SphereContact::adoptAnchor(int particle, const SphereContact& other, int ot
 
 bool SphereContact::touch(int i, const Particles& particles, const Fingertip& fingertip,
                           TouchedParticle& result) const {
+  const ContactLaw& law = lawOf(i);
   const double layers = particles.layers_before ? (*particles.layers_before)[i] : 0.0;
-  const double reach = fingertip.radius + law_.reachThrough(std::ceil(layers));
+  const double reach = fingertip.radius + law.reachThrough(std::ceil(layers));
   const Vector3d offset = particles.positions[i] - fingertip.position;
   const double squared_distance = offset.squaredNorm();
   if (!(squared_distance < reach * reach)) return false;
@@ -56,12 +64,12 @@ bool SphereContact::touch(int i, const Particles& particles, const Fingertip& fi
   const Vector3d normal = offset / distance;
   const double area = particles.areas[i];
   const material::CurveValue pressure =
-      layers > 0.0 ? law_.pressureThrough(layers, distance - fingertip.radius)
-                   : law_.pressure(reach - distance);
+      layers > 0.0 ? law.pressureThrough(layers, distance - fingertip.radius)
+                   : law.pressure(reach - distance);
   const Vector3d sliding =
       particles.velocities[i] - fingertip.velocity - fingertip.angular_velocity.cross(offset);
   // Hunt and Crossley 1975: damping in proportion to the elastic force, so it starts from zero.
-  const double damping = area * pressure.stress * law_.damping();
+  const double damping = area * pressure.stress * law.damping();
   const double approach = -normal.dot(sliding);
   result.particle = i;
   result.normal = normal;
@@ -75,7 +83,7 @@ bool SphereContact::touch(int i, const Particles& particles, const Fingertip& fi
   const Anchor& anchor = anchors_[i];
   const Vector3d anchored = anchor.holds ? Vector3d(offset - fingertip.orientation * anchor.place)
                                          : Vector3d(Vector3d::Zero());
-  addFriction(anchored, law_.tangentialStiffness() * area, law_.friction(), result);
+  addFriction(anchored, law.tangentialStiffness() * area, law.friction(), result);
   return true;
 }
 
@@ -101,7 +109,7 @@ const std::vector<TouchedParticle>& SphereContact::commit(const Particles& parti
     }
     if (!anchor.holds || next->slips) {
       // The spring that is left after the slip pulls with exactly the friction.
-      const double sticking = law_.tangentialStiffness() * particles.areas[i];
+      const double sticking = lawOf(i).tangentialStiffness() * particles.areas[i];
       const Vector3d place = particles.positions[i] + next->friction / sticking;
       anchor.place = fingertip.orientation.conjugate() * (place - fingertip.position);
       anchor.holds = true;

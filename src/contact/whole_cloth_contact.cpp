@@ -9,25 +9,51 @@ using base::kFingers;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-WholeClothContact::WholeClothContact(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
-                                     const ContactLaw& law)
+namespace {
+
+/// Of the first triangle around each particle; empty for one fabric.
+std::vector<std::uint8_t> fabricsOf(const mesh::ClothMesh& mesh) {
+  if (mesh.triangle_fabrics.empty()) return {};
+  std::vector<std::uint8_t> fabrics(mesh.rest_coordinates.size(), 0);
+  for (std::size_t t = mesh.triangles.size(); t-- > 0;) {
+    for (const int particle : mesh.triangles[t]) {
+      fabrics[particle] = static_cast<std::uint8_t>(mesh.triangle_fabrics[t]);
+    }
+  }
+  return fabrics;
+}
+
+}  // namespace
+
+WholeClothContact::WholeClothContact(const mesh::ClothMesh& mesh,
+                                     const std::vector<material::Fabric>& fabrics,
+                                     const std::vector<ContactLaw>& laws)
     : rest_coordinates_(mesh.rest_coordinates),
       areas_(mesh.rest_coordinates.size(), 0.0),
-      areal_density_(fabric.areal_density),
+      masses_(mesh.rest_coordinates.size(), 0.0),
       triangle_of_(mesh.rest_coordinates.size(), 0),
       corner_of_(mesh.rest_coordinates.size(), 0),
+      fabrics_(fabricsOf(mesh)),
       positions_(mesh.rest_coordinates.size(), Vector3d::Zero()),
       velocities_(positions_),
-      contacts_{{SphereContact(law, mesh.rest_coordinates.size()),
-                 SphereContact(law, mesh.rest_coordinates.size())}} {
+      contacts_{{SphereContact(laws, fabrics_, mesh.rest_coordinates.size()),
+                 SphereContact(laws, fabrics_, mesh.rest_coordinates.size())}} {
+  std::vector<std::vector<double>> areas_of_fabrics(fabrics.size(), areas_);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::array<int, 3>& triangle = mesh.triangles[t];
     const Eigen::Vector2d a = rest_coordinates_[triangle[1]] - rest_coordinates_[triangle[0]];
     const Eigen::Vector2d b = rest_coordinates_[triangle[2]] - rest_coordinates_[triangle[0]];
     for (int corner = 0; corner < 3; ++corner) {
-      areas_[triangle[corner]] += std::abs(a.x() * b.y() - a.y() * b.x()) / 6.0;
+      const double area = std::abs(a.x() * b.y() - a.y() * b.x()) / 6.0;
+      areas_[triangle[corner]] += area;
+      areas_of_fabrics[mesh.fabricOf(t)][triangle[corner]] += area;
       triangle_of_[triangle[corner]] = static_cast<int>(t);
       corner_of_[triangle[corner]] = corner;
+    }
+  }
+  for (std::size_t f = 0; f < fabrics.size(); ++f) {
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      masses_[i] += fabrics[f].areal_density * areas_of_fabrics[f][i];
     }
   }
 }
@@ -57,7 +83,7 @@ void WholeClothContact::step(const base::PerFinger<const Fingertip*>& fingertips
 Matrix3d WholeClothContact::stiffness(Finger finger, double h) const {
   Matrix3d sum = Matrix3d::Zero();
   for (const TouchedParticle& touched : contacts_[finger].touched()) {
-    const double inertia = areal_density_ * areas_[touched.particle] / (h * h);
+    const double inertia = masses_[touched.particle] / (h * h);
     // k - k (k + m/h^2)^-1 k = m/h^2 (k + m/h^2)^-1 k
     Matrix3d both = touched.tangent;
     both.diagonal().array() += inertia;

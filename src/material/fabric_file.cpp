@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "haptex/base/yaml_reader.h"
@@ -332,10 +334,22 @@ void readSurfaceInto(const base::YamlValue& file, Fabric& fabric) {
   }
 }
 
+/// With the whole path of the file of heights, if there is one.
+std::string readableAnywhere(const std::string& text, const Fabric& fabric) {
+  const HeightFile* heights =
+      fabric.surface ? std::get_if<HeightFile>(&fabric.surface->relief) : nullptr;
+  if (heights == nullptr) return text;
+  YAML::Node file = YAML::Load(text);
+  file["surface"]["heights"]["file"] = std::filesystem::absolute(heights->path).string();
+  return YAML::Dump(file);
+}
+
 }  // namespace
 
-Fabric loadFabric(const std::string& path) {
-  const base::YamlValue file = base::YamlValue::load(path);
+Fabric loadFabric(const std::string& path) { return parseFabric(base::readTextFile(path), path); }
+
+Fabric parseFabric(const std::string& text, const std::string& name) {
+  const base::YamlValue file = base::YamlValue::parse(text, name);
   file.requireKeys({"name", "areal_density", "weft", "warp", "shear"},
                    {"description", "resilience", "bending", "contraction", "compression",
                     "friction", "surface"});
@@ -359,6 +373,7 @@ Fabric loadFabric(const std::string& path) {
     if (file.has(key)) fabric.provenance[key] = readProvenance(file.at(key));
   }
   readSurfaceInto(file, fabric);
+  fabric.file = readableAnywhere(text, fabric);
   return fabric;
 }
 

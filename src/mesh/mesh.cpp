@@ -48,7 +48,8 @@ void findPanelDefects(const ClothMesh& mesh, MeshDefects& defects) {
   const std::size_t triangles = mesh.triangles.size();
   const bool fits =
       (mesh.triangle_panels.empty() || mesh.triangle_panels.size() == triangles) &&
-      (mesh.corner_coordinates.empty() || mesh.corner_coordinates.size() == triangles);
+      (mesh.corner_coordinates.empty() || mesh.corner_coordinates.size() == triangles) &&
+      (mesh.triangle_fabrics.empty() || mesh.triangle_fabrics.size() == triangles);
   defects.panel_mismatch = !fits;
   for (std::size_t p = 0; p < mesh.panels.size(); ++p) {
     const Panel& panel = mesh.panels[p];
@@ -59,6 +60,9 @@ void findPanelDefects(const ClothMesh& mesh, MeshDefects& defects) {
     const int panel = mesh.triangle_panels[t];
     if (panel >= 0 && panel < mesh.panelCount()) continue;
     defects.unknown_panels.push_back(static_cast<int>(t));
+  }
+  for (std::size_t t = 0; t < mesh.triangle_fabrics.size(); ++t) {
+    if (mesh.triangle_fabrics[t] < 0) defects.unsound_fabrics.push_back(static_cast<int>(t));
   }
 }
 
@@ -94,6 +98,7 @@ CutPanel cutPanel(const ClothMesh& mesh, int panel) {
   }
   cut.sheet.rest_coordinates.resize(cut.particles.size());
   for (const std::size_t t : triangles) {
+    cut.sheet.triangle_fabrics.push_back(mesh.fabricOf(t));
     const std::array<Eigen::Vector2d, 3> corners = mesh.restCorners(t);
     std::array<int, 3>& triangle = cut.sheet.triangles.emplace_back(mesh.triangles[t]);
     for (int i = 0; i < 3; ++i) {
@@ -210,9 +215,9 @@ std::vector<int> sideParticles(const ClothMesh& mesh, Side side) {
 
 bool MeshDefects::none() const {
   return !empty && !size_mismatch && !panel_mismatch && unknown_panels.empty() &&
-         unsound_panels.empty() && invalid_triangles.empty() && degenerate_triangles.empty() &&
-         duplicate_triangles.empty() && unreferenced_particles.empty() &&
-         non_finite_particles.empty();
+         unsound_panels.empty() && unsound_fabrics.empty() && invalid_triangles.empty() &&
+         degenerate_triangles.empty() && duplicate_triangles.empty() &&
+         unreferenced_particles.empty() && non_finite_particles.empty();
 }
 
 std::string MeshDefects::description() const {
@@ -224,11 +229,12 @@ std::string MeshDefects::description() const {
   }
   if (panel_mismatch) {
     if (text.tellp() > 0) text << "; ";
-    text << "panels or corner coordinates are not as many as triangles";
+    text << "panels, corner coordinates or fabrics are not as many as triangles";
   }
   describe(text, "triangles with a particle that does not exist", invalid_triangles);
   describe(text, "triangles of a panel that does not exist", unknown_panels);
   describe(text, "panels of a fabric below 0 or with a grain that is not finite", unsound_panels);
+  describe(text, "triangles of a fabric below 0", unsound_fabrics);
   describe(text, "degenerate triangles", degenerate_triangles);
   describe(text, "duplicate triangles", duplicate_triangles);
   describe(text, "particles in no triangle", unreferenced_particles);

@@ -45,6 +45,8 @@ class ObjReader {
     return std::move(mesh_);
   }
 
+  MeshGroups groups() { return std::move(groups_); }
+
  private:
   [[noreturn]] void refuse(const std::string& what) const {
     throw std::invalid_argument(path_ + ": line " + std::to_string(line_number_) + ": " + what);
@@ -63,6 +65,8 @@ class ObjReader {
       textures_.push_back(readNumbers<2>("vt", arguments));
     } else if (statement == "f") {
       readFace(arguments);
+    } else if (statement == "g") {
+      open_groups_ = std::move(arguments);
     }
   }
 
@@ -89,6 +93,11 @@ class ObjReader {
     }
     std::array<int, 3> triangle;
     for (int i = 0; i < 3; ++i) triangle[i] = readCorner(corners[i]);
+    for (const std::string& group : open_groups_) {
+      std::vector<int>& members = groups_[group];
+      const int index = static_cast<int>(mesh_.triangles.size());
+      if (members.empty() || members.back() != index) members.push_back(index);
+    }
     mesh_.triangles.push_back(triangle);
   }
 
@@ -144,12 +153,21 @@ class ObjReader {
   ClothMesh mesh_;
   std::vector<Eigen::Vector2d> textures_;
   std::vector<std::optional<int>> texture_of_particle_;
+  std::vector<std::string> open_groups_;  // of the faces that follow
+  MeshGroups groups_;
 };
 
 }  // namespace
 
 ClothMesh loadObj(const std::string& path) {
-  ClothMesh mesh = ObjReader(path, RestCoordinates::kRequired).read();
+  MeshGroups unused;
+  return loadObj(path, unused);
+}
+
+ClothMesh loadObj(const std::string& path, MeshGroups& groups) {
+  ObjReader reader(path, RestCoordinates::kRequired);
+  ClothMesh mesh = reader.read();
+  groups = reader.groups();
   try {
     requireSound(mesh);
   } catch (const std::invalid_argument& defects) {

@@ -16,6 +16,7 @@
 #include "haptex/scene/body_values.h"
 #include "haptex/scene/cloth_state_file.h"
 #include "haptex/scene/obstacle_file.h"
+#include "haptex/scene/region_values.h"
 #include "haptex/scene/scene_values.h"
 #include "haptex/scene/step_values.h"
 
@@ -71,12 +72,13 @@ mesh::ClothMesh readSheet(const YamlValue& value, double cell_size) {
   return mesh;
 }
 
-mesh::ClothMesh readMesh(const YamlValue& scene, double cell_size) {
+/// @param groups filled in for a mesh from a file
+mesh::ClothMesh readMesh(const YamlValue& scene, double cell_size, mesh::MeshGroups& groups) {
   if (scene.has("sheet") == scene.has("mesh")) {
     scene.refuseBecause("must have exactly one of sheet, mesh");
   }
   if (scene.has("sheet")) return readSheet(scene.at("sheet"), cell_size);
-  mesh::ClothMesh mesh = mesh::loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"));
+  mesh::ClothMesh mesh = mesh::loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"), groups);
   requireTriangleCount(scene.at("mesh"), static_cast<long long>(mesh.triangles.size()));
   return mesh;
 }
@@ -141,7 +143,7 @@ void startFrom(const YamlValue& value, Scene& scene) {
 }
 
 bool allowsAnyCells(const YamlValue& scene) {
-  if (!scene.has("sheet") || scene.has("state")) return false;
+  if (!scene.has("sheet") || scene.has("state") || scene.has("regions")) return false;
   const std::vector<YamlValue> attached = scene.at("attach").items();
   return std::none_of(attached.begin(), attached.end(),
                       [](const YamlValue& item) { return item.isMap(); });
@@ -286,11 +288,12 @@ Scene readScene(const std::string& path, double cell_size) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"fabric", "attach", "model", "time_step"},
                    {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind",
-                    "integrator", "solver", "obstacles", "penalty", "haptics", "state"});
+                    "integrator", "solver", "obstacles", "penalty", "haptics", "state", "regions"});
   Scene scene;
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.any_cells = allowsAnyCells(file);
-  scene.mesh = readMesh(file, scene.any_cells ? cell_size : 0.0);
+  mesh::MeshGroups groups;
+  scene.mesh = readMesh(file, scene.any_cells ? cell_size : 0.0, groups);
   scene.attached_particles = readAttachedParticles(file.at("attach"), scene.mesh);
   if (file.has("state")) startFrom(file.at("state"), scene);
   const Listed listed = readModel(file);
@@ -315,6 +318,7 @@ Scene readScene(const std::string& path, double cell_size) {
       file.at("bending").refuseBecause("is not allowed with mass_spring, which bends by springs");
     }
   }
+  if (file.has("regions")) readRegions(file, groups, scene);
   readTimeSteps(file.at("time_step"), scene);
   scene.step = readStepSettings(file);
   const bool among_obstacles = scene.effects.contacts;

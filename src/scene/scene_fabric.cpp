@@ -7,10 +7,10 @@
 #include "haptex/material/fabric_file.h"
 
 namespace haptex::scene {
+namespace {
 
-material::Fabric loadSceneFabric(const std::string& scene_path, const Scene& scene) {
-  material::Fabric fabric = material::loadFabric(scene.fabric_path);
-  if (!scene.fingers) return fabric;
+void requireTouchable(const std::string& scene_path, const Scene& scene,
+                      const std::string& fabric_path, const material::Fabric& fabric) {
   const contact::HapticSettings settings = contact::loadHapticSettings(scene_path);
   try {
     contact::requireTouchable(fabric, settings);
@@ -19,10 +19,21 @@ material::Fabric loadSceneFabric(const std::string& scene_path, const Scene& sce
   }
   if (scene.tactile && !fabric.surface) {
     throw std::invalid_argument(scene_path + ": model: lists tactile, but fabric '" + fabric.name +
-                                "' has no surface: " + scene.fabric_path +
-                                " needs the key surface");
+                                "' has no surface: " + fabric_path + " needs the key surface");
   }
-  return fabric;
+}
+
+}  // namespace
+
+std::vector<material::Fabric> loadSceneFabrics(const std::string& scene_path, const Scene& scene) {
+  std::vector<std::string> paths = {scene.fabric_path};
+  paths.insert(paths.end(), scene.region_fabric_paths.begin(), scene.region_fabric_paths.end());
+  std::vector<material::Fabric> fabrics;
+  for (const std::string& path : paths) {
+    fabrics.push_back(material::loadFabric(path));
+    if (scene.fingers) requireTouchable(scene_path, scene, path, fabrics.back());
+  }
+  return fabrics;
 }
 
 }  // namespace haptex::scene

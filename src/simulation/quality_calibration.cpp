@@ -46,7 +46,8 @@ double medianCycle(SimulatedCloth& simulation) {
 
 }  // namespace
 
-MeasuredCycle measureCycle(const std::string& scene_path, const material::Fabric& fabric,
+MeasuredCycle measureCycle(const std::string& scene_path,
+                           const std::vector<material::Fabric>& fabrics,
                            const scene::Quality& quality, int substeps) {
   const Clock::time_point begin = Clock::now();
   scene::Scene scene = scene::loadScene(scene_path, quality.cell_size);
@@ -55,7 +56,7 @@ MeasuredCycle measureCycle(const std::string& scene_path, const material::Fabric
   candidate.quality = quality;
   candidate.substeps = substeps;
   const StepPlan plan = planOf(candidate, scene.step.threads);
-  SimulatedCloth simulation(std::move(scene), fabric, {plan});
+  SimulatedCloth simulation(std::move(scene), fabrics, {plan});
   if (!attached.empty()) simulation.move(attached, kDisplacement, kDuration);
   MeasuredCycle result;
   for (int i = 0; i < kUnmeasuredCycles && simulation.step(); ++i) continue;

@@ -59,10 +59,10 @@ std::string elasticityName(cloth::Elasticity elasticity) {
 /// A scene that is measured, with as many steps per turn as its cost allows.
 class Measurement {
  public:
-  Measurement(const scene::Scene& scene, const material::Fabric& fabric)
-      : scene_(scene), fabric_(fabric) {
+  Measurement(const scene::Scene& scene, const std::vector<material::Fabric>& fabrics)
+      : scene_(scene), fabrics_(fabrics) {
     const std::size_t before = allocatedBytes();
-    SteppedScene stepped(scene, fabric);
+    SteppedScene stepped(scene, fabrics);
     bytes_ = allocatedBytes() - before;
     const int period =
         std::max(1, static_cast<int>(std::lround(SteppedScene::kPeriod / scene.time_step)));
@@ -77,22 +77,34 @@ class Measurement {
 
   /// What of a step goes to what a scene has less.
   StepCost against(const scene::Scene& less) const {
-    SteppedScene stepped(scene_, fabric_), base(less, fabric_);
+    SteppedScene stepped(scene_, fabrics_), base(less, fabrics_);
     return compareSteps(stepped, base, kRounds, steps_);
   }
 
  private:
   const scene::Scene& scene_;
-  const material::Fabric& fabric_;
+  const std::vector<material::Fabric>& fabrics_;
   std::size_t bytes_;
   int steps_;
   double seconds_;  // computing time of a step
 };
 
-void printScene(const std::string& path, const scene::Scene& scene, const material::Fabric& fabric,
-                std::ostream& out) {
+void printFabrics(const scene::Scene& scene, const std::vector<material::Fabric>& fabrics,
+                  std::ostream& out) {
+  printRow(out, "fabric", fabrics.front().name + ", " + scene.fabric_path);
+  const std::vector<int>& named = scene.mesh.triangle_fabrics;
+  for (std::size_t f = 1; f < fabrics.size(); ++f) {
+    const auto triangles = std::count(named.begin(), named.end(), static_cast<int>(f));
+    printRow(out, "fabric of regions",
+             text("%s, %s, %td triangles", fabrics[f].name.c_str(),
+                  scene.region_fabric_paths[f - 1].c_str(), triangles));
+  }
+}
+
+void printScene(const std::string& path, const scene::Scene& scene,
+                const std::vector<material::Fabric>& fabrics, std::ostream& out) {
   out << "scene " << path << "\n\n";
-  printRow(out, "fabric", fabric.name + ", " + scene.fabric_path);
+  printFabrics(scene, fabrics, out);
   printRow(out, "mesh",
            text("%zu triangles, %zu particles of which %zu are attached, cells of %.3g mm",
                 scene.mesh.triangles.size(), scene.mesh.initial_positions.size(),
@@ -123,8 +135,9 @@ void printScene(const std::string& path, const scene::Scene& scene, const materi
   }
 }
 
-void printCost(const std::string& path, const scene::Scene& scene, const material::Fabric& fabric,
-               const Measurement& measurement, std::ostream& out, std::ostream& progress) {
+void printCost(const std::string& path, const scene::Scene& scene,
+               const std::vector<material::Fabric>& fabrics, const Measurement& measurement,
+               std::ostream& out, std::ostream& progress) {
   out << "\nmodelled, and its share of a step\n";
   for (const Effect& effect : effectsOf(scene)) {
     if (!effect.listed) continue;
@@ -132,7 +145,7 @@ void printCost(const std::string& path, const scene::Scene& scene, const materia
     if (effect.name == "tactile") {
       progress << "explain_scene: measuring tactile\n";
       cost = text("beside the steps: %.3g ms of every 25 ms, while a finger touches",
-                  1e3 * measureTactile(fabric, kMilliseconds));
+                  1e3 * measureTactile(fabrics.front(), kMilliseconds));
     } else if (effect.name == "recording") {
       cost = "beside the steps: not measured";
     } else {
@@ -147,7 +160,7 @@ void printCost(const std::string& path, const scene::Scene& scene, const materia
   }
   if (!scene.fingers) return;
   progress << "explain_scene: measuring the cloth under two fingertips\n";
-  const TouchCost touch = measureTouch(scene.mesh, fabric, scene.effects,
+  const TouchCost touch = measureTouch(scene.mesh, fabrics, scene.effects,
                                        contact::loadHapticSettings(path), kMilliseconds);
   printRow(out, "  at 1 kHz",
            text("%.2g ms of every millisecond while two fingertips touch %zu particles; %.2g ms "
@@ -298,14 +311,14 @@ const scene::Quality* nearestQuality(const scene::Scene& scene,
 void explainScene(const std::string& scene_path, const std::vector<scene::Quality>& studied,
                   std::ostream& out, std::ostream& progress) {
   const scene::Scene scene = scene::loadScene(scene_path);
-  const material::Fabric fabric = scene::loadSceneFabric(scene_path, scene);
-  printScene(scene_path, scene, fabric, out);
+  const std::vector<material::Fabric> fabrics = scene::loadSceneFabrics(scene_path, scene);
+  printScene(scene_path, scene, fabrics, out);
   progress << "explain_scene: measuring a step\n";
-  const Measurement measurement(scene, fabric);
-  printCost(scene_path, scene, fabric, measurement, out, progress);
+  const Measurement measurement(scene, fabrics);
+  printCost(scene_path, scene, fabrics, measurement, out, progress);
   printNotModelled(scene, out);
   printTotal(scene, measurement, out);
-  printErrors(scene, fabric, studied, out);
+  printErrors(scene, fabrics.front(), studied, out);
 }
 
 }  // namespace haptex::simulation

@@ -28,12 +28,20 @@ cloth::StepReport sum(const cloth::StepReport& first, cloth::StepReport last) {
 }  // namespace
 
 SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric)
-    : SimulatedCloth(std::move(scene), std::move(fabric),
+    : SimulatedCloth(std::move(scene), std::vector<material::Fabric>{std::move(fabric)}) {}
+
+SimulatedCloth::SimulatedCloth(scene::Scene scene, std::vector<material::Fabric> fabrics)
+    : SimulatedCloth(std::move(scene), std::move(fabrics),
                      {{scene.step, 1, 1, scene.adaptive_steps}}) {}
 
 SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric,
                                std::vector<StepPlan> plans)
-    : cloth_(std::move(scene.mesh), std::move(fabric), scene.effects),
+    : SimulatedCloth(std::move(scene), std::vector<material::Fabric>{std::move(fabric)},
+                     std::move(plans)) {}
+
+SimulatedCloth::SimulatedCloth(scene::Scene scene, std::vector<material::Fabric> fabrics,
+                               std::vector<StepPlan> plans)
+    : cloth_(std::move(scene.mesh), std::move(fabrics), scene.effects),
       start_velocities_(std::move(scene.start_velocities)),
       start_time_(scene.start_time),
       state_(startState()),

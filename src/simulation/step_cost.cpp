@@ -27,8 +27,8 @@ double threadSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-SteppedScene::SteppedScene(const scene::Scene& scene, const material::Fabric& fabric)
-    : cloth_(scene.mesh, fabric, scene.effects),
+SteppedScene::SteppedScene(const scene::Scene& scene, const std::vector<material::Fabric>& fabrics)
+    : cloth_(scene.mesh, fabrics, scene.effects),
       start_(cloth_.initialState()),
       state_(start_),
       collision_(scene.effects.contacts

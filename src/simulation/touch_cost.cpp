@@ -75,10 +75,10 @@ double medianSeconds(int times, const Work& work) {
 
 }  // namespace
 
-TouchCost measureTouch(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
+TouchCost measureTouch(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                        const cloth::ModelledEffects& effects,
                        const contact::HapticSettings& settings, int milliseconds) {
-  contact::HapticLayer layer(mesh, fabric, effects, settings);
+  contact::HapticLayer layer(mesh, fabrics, effects, settings);
   const std::vector<Vector3d> still(mesh.initial_positions.size(), Vector3d::Zero());
   layer.receive(mesh.initial_positions, still, kStatePeriod);
   Fingertips near;

@@ -20,7 +20,7 @@ class CondensedStiffnessTest : public testing::Test {
  protected:
   CondensedStiffnessTest() : motion_(mesh_.rest_coordinates.size()) {
     motion_.receive(mesh_.initial_positions, 0.02);
-    tips_[Finger::kIndex] = pressing(law_, kSmallSampleMiddle, 3e-4);
+    tips_[Finger::kIndex] = pressing(laws_.front(), kSmallSampleMiddle, 3e-4);
     tips_[Finger::kThumb] = tips_[Finger::kIndex];
     tips_[Finger::kThumb].position.x() *= -1.0;
     patch_ = settled(stiffness_);
@@ -32,7 +32,7 @@ class CondensedStiffnessTest : public testing::Test {
         mesh_,
         cutAndRefine(mesh_, topology_, trianglesAround(mesh_, {0.02, 0.02}, 0.01),
                      nothingAttached(mesh_), 2),
-        fabric_, cloth::ModelledEffects{true, Vector3d::Zero()}, law_);
+        fabrics_, cloth::ModelledEffects{true, Vector3d::Zero()}, laws_);
     patch->start(motion_);
     for (int i = 0; i < 300; ++i) {
       patch->advance(motion_, {&tips_[Finger::kIndex], &tips_[Finger::kThumb]}, kStep);
@@ -74,8 +74,9 @@ class CondensedStiffnessTest : public testing::Test {
 
   const mesh::ClothMesh mesh_ = smallSample();
   const MeshTopology topology_{mesh_};
-  const material::Fabric fabric_ = wool();
-  const ContactLaw law_{fabric_, {PulpSettings().stiffness, 1e-6}};  // no damping
+  const std::vector<material::Fabric> fabrics_ = {wool()};
+  const std::vector<ContactLaw> laws_ = {
+      ContactLaw(fabrics_.front(), {PulpSettings().stiffness, 1e-6})};  // no damping
   LargeScaleMotion motion_;
   std::unique_ptr<Patch> patch_;
   base::PerFinger<Fingertip> tips_;

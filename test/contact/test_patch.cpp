@@ -23,7 +23,7 @@ class PatchTest : public testing::Test {
     return {mesh_,
             cutAndRefine(mesh_, topology_, trianglesAround(mesh_, place, distance),
                          nothingAttached(mesh_), 2),
-            fabric_, effects_, law_};
+            fabrics_, effects_, laws_};
   }
   /// The force of the fingertip on the cloth.
   static Vector3d forceOn(const Patch& patch) {
@@ -41,8 +41,8 @@ class PatchTest : public testing::Test {
 
   const mesh::ClothMesh mesh_ = smallSample();
   const MeshTopology topology_{mesh_};
-  const material::Fabric fabric_ = wool();
-  const ContactLaw law_{fabric_};
+  const std::vector<material::Fabric> fabrics_ = {wool()};
+  const std::vector<ContactLaw> laws_ = {ContactLaw(fabrics_.front())};
   cloth::ModelledEffects effects_;
   LargeScaleMotion motion_;
 };
@@ -100,7 +100,7 @@ TEST_F(PatchTest, AWholeClothFallsFreely) {
 TEST_F(PatchTest, WhatTheFingertipPressesTheRimHolds) {
   Patch patch = patchAround({0.02, 0.02}, 0.01);
   patch.start(motion_);
-  const Fingertip fingertip = pressing(law_, kSmallSampleMiddle, 1e-3);
+  const Fingertip fingertip = pressing(laws_.front(), kSmallSampleMiddle, 1e-3);
   advance(patch, &fingertip, 500);
   const Vector3d force = forceOn(patch);
   EXPECT_LT(force.x(), -0.01);
@@ -118,15 +118,16 @@ TEST_F(PatchTest, OfClothThatCollidesWithItselfIsTheSameToTheBitWhereItIsOneLaye
   effects_.viscosity = true;
   const auto pinched = [&](bool self_collision) {
     effects_.self_collision = self_collision;
-    const ContactLaw law(fabric_, {}, self_collision ? LayersBetween::kMost : 1);
+    const std::vector<ContactLaw> laws = {
+        ContactLaw(fabrics_.front(), {}, self_collision ? LayersBetween::kMost : 1)};
     Patch patch(mesh_,
                 cutAndRefine(mesh_, topology_, trianglesAround(mesh_, {0.02, 0.02}, 0.01),
                              nothingAttached(mesh_), 2),
-                fabric_, effects_, law);
+                fabrics_, effects_, laws);
     LargeScaleMotion motion(mesh_.rest_coordinates.size());
     motion.receive(mesh_.initial_positions, 0.02);
     patch.start(motion);
-    const Fingertip index = pressing(law, kSmallSampleMiddle, 4e-4);
+    const Fingertip index = pressing(laws.front(), kSmallSampleMiddle, 4e-4);
     Fingertip thumb = index;
     thumb.position.x() *= -1.0;
     for (int i = 0; i < 100; ++i) {
@@ -142,7 +143,7 @@ TEST_F(PatchTest, OfClothThatCollidesWithItselfIsTheSameToTheBitWhereItIsOneLaye
 TEST_F(PatchTest, ForgetsContactWhenTheFingertipIsGoneAndReturnsToRest) {
   Patch patch = patchAround({0.02, 0.02}, 0.01);
   patch.start(motion_);
-  const Fingertip fingertip = pressing(law_, kSmallSampleMiddle, 1e-3);
+  const Fingertip fingertip = pressing(laws_.front(), kSmallSampleMiddle, 1e-3);
   advance(patch, &fingertip, 100);
   ASSERT_FALSE(patch.contact(Finger::kIndex).touched().empty());
   advance(patch, nullptr, 1);
@@ -153,7 +154,7 @@ TEST_F(PatchTest, ForgetsContactWhenTheFingertipIsGoneAndReturnsToRest) {
 TEST_F(PatchTest, AnotherPatchGoesOnWithTheStateOfWhatBothHave) {
   Patch here = patchAround({0.02, 0.02}, 0.01);
   here.start(motion_);
-  const Fingertip fingertip = pressing(law_, kSmallSampleMiddle, 1e-3);
+  const Fingertip fingertip = pressing(laws_.front(), kSmallSampleMiddle, 1e-3);
   advance(here, &fingertip, 200);
   Patch there = patchAround({0.02, 0.025}, 0.01);
   there.goOnFrom(here, motion_);
@@ -172,7 +173,7 @@ TEST_F(PatchTest, AnotherPatchGoesOnWithTheStateOfWhatBothHave) {
 TEST_F(PatchTest, AnExchangeUnderContactDoesNotLetTheForceJump) {
   Patch here = patchAround({0.02, 0.02}, 0.01);
   here.start(motion_);
-  const Fingertip fingertip = pressing(law_, kSmallSampleMiddle, 1e-3);
+  const Fingertip fingertip = pressing(laws_.front(), kSmallSampleMiddle, 1e-3);
   advance(here, &fingertip, 500);
   const Vector3d before = forceOn(here);
   Patch there = patchAround({0.02, 0.025}, 0.01);
@@ -197,7 +198,7 @@ TEST_F(PatchTest, AStepWithAnOldFactorIsThatOfANewOne) {
       for (Vector3d& position : state) position.x() += 2e-4 * std::cos(0.01 * i);
       motion_.receive(state, 0.02);
     }
-    Fingertip fingertip = pressing(law_, kSmallSampleMiddle, 1.5e-3 * std::sin(0.02 * i));
+    Fingertip fingertip = pressing(laws_.front(), kSmallSampleMiddle, 1.5e-3 * std::sin(0.02 * i));
     fingertip.position.z() += 2e-3 * std::sin(0.03 * i);
     const bool compared = i % 13 == 0;
     std::optional<Patch> anew;
@@ -221,7 +222,7 @@ TEST_F(PatchTest, AStepWithAnOldFactorIsThatOfANewOne) {
 TEST_F(PatchTest, SaysWhenAStepIsNotFiniteAndStartsAgain) {
   Patch patch = patchAround({0.02, 0.02}, 0.01);
   patch.start(motion_);
-  const Fingertip fingertip = pressing(law_, kSmallSampleMiddle, 1e-3);
+  const Fingertip fingertip = pressing(laws_.front(), kSmallSampleMiddle, 1e-3);
   advance(patch, &fingertip, 1);
   LargeScaleMotion bad(mesh_.rest_coordinates.size());
   bad.receive(std::vector<Vector3d>(mesh_.rest_coordinates.size(), Vector3d(0.0, NAN, 0.0)), 0.02);

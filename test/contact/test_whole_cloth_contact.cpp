@@ -12,10 +12,10 @@ using Eigen::Vector3d;
 class WholeClothContactTest : public testing::Test {
  protected:
   const mesh::ClothMesh mesh_ = smallSample();
-  const material::Fabric fabric_ = wool();
-  const ContactLaw law_{fabric_};
-  WholeClothContact contact_{mesh_, fabric_, law_};
-  const Fingertip fingertip_ = pressing(law_, kSmallSampleMiddle, 2e-4);
+  const std::vector<material::Fabric> fabrics_ = {wool()};
+  const std::vector<ContactLaw> laws_ = {ContactLaw(fabrics_.front())};
+  WholeClothContact contact_{mesh_, fabrics_, laws_};
+  const Fingertip fingertip_ = pressing(laws_.front(), kSmallSampleMiddle, 2e-4);
 };
 
 TEST_F(WholeClothContactTest, TouchesTheParticlesOfTheStateWithTheForcesOfTheLaw) {
@@ -26,7 +26,7 @@ TEST_F(WholeClothContactTest, TouchesTheParticlesOfTheStateWithTheForcesOfTheLaw
   const TouchedParticle& touched = contact_.contact(Finger::kIndex).touched().front();
   const double area = contact_.particles().areas[touched.particle];
   EXPECT_EQ(mesh_.rest_coordinates[touched.particle], Eigen::Vector2d(0.02, 0.02));
-  EXPECT_NEAR(touched.normal_force, area * law_.pressure(2e-4).stress, 1e-9);
+  EXPECT_NEAR(touched.normal_force, area * laws_.front().pressure(2e-4).stress, 1e-9);
   EXPECT_TRUE(contact_.contact(Finger::kThumb).touched().empty());
 }
 
@@ -57,8 +57,8 @@ TEST_F(WholeClothContactTest, StiffnessIsThatOfTheSpringsInSeriesWithTheInertia)
   contact_.step({&fingertip_, nullptr});
   const double area =
       contact_.particles().areas[contact_.contact(Finger::kIndex).touched().front().particle];
-  const double mass = area * fabric_.areal_density;
-  const double k = area * law_.pressure(2e-4).slope;
+  const double mass = area * fabrics_.front().areal_density;
+  const double k = area * laws_.front().pressure(2e-4).slope;
   for (double h : {1e-3, 1e-2}) {
     EXPECT_NEAR(contact_.stiffness(Finger::kIndex, h)(0, 0), k * mass / (h * h * k + mass),
                 1e-9 * k);

@@ -67,6 +67,17 @@ TEST(ShippedFabrics, LoadUnderTheirFileNames) {
   }
 }
 
+TEST(ShippedFabrics, AreTheSameFromTheTextThatTheyCarry) {
+  for (const std::string& name : shippedNames()) {
+    const Fabric fabric = shipped(name);
+    const Fabric again = parseFabric(fabric.file, "text");
+    EXPECT_EQ(again.name, fabric.name);
+    EXPECT_EQ(again.areal_density, fabric.areal_density) << name;
+    EXPECT_EQ(again.warp.elastic.energy(0.01), fabric.warp.elastic.energy(0.01)) << name;
+    EXPECT_EQ(again.provenance.size(), fabric.provenance.size()) << name;
+  }
+}
+
 TEST(ShippedFabrics, CallMeasuredOnlyWhatWasMeasured) {
   const auto measured = [](const std::string& name) {
     std::vector<std::string> keys;

@@ -70,6 +70,15 @@ TEST(SurfaceFile, KnowsEveryWeave) {
   }
 }
 
+TEST(SurfaceFile, FindsItsHeightsFromTheTextOfTheFabricAlone) {
+  const Fabric fabric = loadFabric(TemporaryFile(kScanned).path());
+  const std::string heights = std::get<HeightFile>(fabric.surface->relief).path;
+  const Fabric again = parseFabric(fabric.file, "elsewhere/fabric");
+  EXPECT_EQ(std::get<HeightFile>(again.surface->relief).path,
+            std::filesystem::absolute(heights).string());
+  EXPECT_EQ(again.surface->roughness, fabric.surface->roughness);
+}
+
 TEST(SurfaceFile, ReadsEveryNumberOfAFileOfHeights) {
   const HeightFile heights = std::get<HeightFile>(surfaceOf(kScanned).relief);
   EXPECT_EQ(heights.spacing, 5e-5);

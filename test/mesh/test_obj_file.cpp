@@ -139,6 +139,17 @@ INSTANTIATE_TEST_SUITE_P(
                 "particles in no triangle: 3 (counted from 0)"}),
     [](const auto& info) { return info.param.name; });
 
+TEST(ObjFile, GivesTheTrianglesOfEveryGroup) {
+  const TemporaryObj file(kPoints + "g empty\ng hem sewn\nf 1/1 2/2 3/3\ng hem hem\n" +
+                          "f 1/1/1 3/3/1 4/4/1\n");
+  MeshGroups groups;
+  expectSquare(loadObj(file.path(), groups));
+  EXPECT_EQ(groups, (MeshGroups{{"hem", {0, 1}}, {"sewn", {0}}}));
+  const TemporaryObj closed(kPoints + "g hem\nf 1/1 2/2 3/3\ng\nf 1/1 3/3 4/4\n");
+  loadObj(closed.path(), groups);
+  EXPECT_EQ(groups, (MeshGroups{{"hem", {0}}}));
+}
+
 TEST(ObjFile, NamesTheFileThatCannotBeRead) {
   const std::string missing = testing::TempDir() + "haptex_there_is_no_such.obj";
   for (const std::string& path : {missing, testing::TempDir()}) {

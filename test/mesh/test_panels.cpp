@@ -64,7 +64,7 @@ TEST(Panels, DefectsAreNamed) {
   mesh = twoPanels();
   mesh.triangle_panels.pop_back();
   EXPECT_EQ(findDefects(mesh).description(),
-            "panels or corner coordinates are not as many as triangles");
+            "panels, corner coordinates or fabrics are not as many as triangles");
   mesh = twoPanels();
   mesh.panels[0].grain = std::nan("");
   EXPECT_EQ(mesh.panels.size(), 2u);

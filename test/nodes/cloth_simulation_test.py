@@ -82,7 +82,7 @@ class ClothSimulation(unittest.TestCase):
     def test_mesh_reaches_late_subscribers(self):
         for _ in range(2):
             mesh = message('cloth/mesh', ClothMesh)
-            self.assertEqual(mesh.fabric, 'wool')
+            self.assertEqual(mesh.fabrics, ['wool'])
             self.assertEqual(len(mesh.triangles), 3 * TRIANGLES)
             self.assertEqual(max(mesh.triangles), PARTICLES - 1)
             for array in (mesh.rest_weft_coordinates, mesh.rest_warp_coordinates, mesh.masses):
@@ -93,7 +93,7 @@ class ClothSimulation(unittest.TestCase):
         mesh = message('cloth/mesh', ClothMesh)
         self.accepted(self.set_fabric('linear'))
         linear = message('cloth/mesh', ClothMesh)
-        self.assertEqual(linear.fabric, 'linear')
+        self.assertEqual(linear.fabrics, ['linear'])
         self.assertAlmostEqual(sum(linear.masses), 0.1 * 0.2 * 0.2, delta=1e-12)  # kg
         self.assertNotAlmostEqual(sum(mesh.masses), sum(linear.masses), delta=1e-6)
 
@@ -464,7 +464,7 @@ class ClothSimulation(unittest.TestCase):
         self.refused(self.set_fabric, '/no/such/fabric.yaml', says='/no/such/fabric.yaml')
         scene = rospy.get_param('/scene_path')
         self.refused(self.set_fabric, scene, says=scene)  # YAML, but not of a fabric
-        self.assertEqual(message('cloth/mesh', ClothMesh).fabric, 'wool')
+        self.assertEqual(message('cloth/mesh', ClothMesh).fabrics, ['wool'])
 
     def refuses_particles(self, call):
         """`call` takes a list of particles."""

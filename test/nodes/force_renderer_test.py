@@ -13,6 +13,7 @@ import time
 import roslib.packages
 import rospy
 import rostest
+import yaml
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from haptex.msg import ClothState, Contact, ContactForces, ServoForce, ServoForces
 from haptex.srv import SetFabric
@@ -161,15 +162,17 @@ class ForceRenderer(DeviceTest):
         self.assertEqual([process_of(node) for node in self.nodes], processes)
         self.await_touch()
 
-    def test_a_fabric_that_cannot_be_found_is_named_and_another_one_is_felt(self):
+    def test_a_fabric_that_cannot_be_touched_is_named_and_another_one_is_felt(self):
         if self.shared:
             self.skipTest('cloth and patches come by the same messages in both ways')
         set_fabric = rospy.ServiceProxy('cloth/set_fabric', SetFabric)
         wool = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'config', 'fabrics', 'wool.yaml')
-        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as unknown:
-            unknown.write(wool.read_text().replace('name: wool', 'name: felt', 1))
-            unknown.flush()
-            response = set_fabric(unknown.name)
+        own = yaml.safe_load(wool.read_text())
+        own['name'] = 'felt'
+        del own['friction'], own['surface']
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as file:
+            yaml.safe_dump(own, file)
+            response = set_fabric(file.name)
         self.assertTrue(response.success, response.message)
         self.eventually(lambda: all(forces.size == 0.0 for forces in self.commanded.values()),
                         'zero force')

@@ -51,6 +51,11 @@ class RefusedParameters(unittest.TestCase):
                 self.refused('_scene:=wool_sample', f'_{name}:={value}',
                              says=[f'~{name}'])
 
+    def test_colours_by_what_there_is_not(self):
+        for value in ('weight', '3'):
+            self.refused('_scene:=wool_sample', f'_colour_by:={value}',
+                         says=['~colour_by', 'strain or fabric'])
+
     def test_qualities_and_budgets(self):
         scene = '_scene:=wool_sample'
         self.refused(scene, '_quality:=best', says=['~quality', "there is no 'best'", 'balanced'])

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """The promises of tactile_renderer alone: contacts and the cloth's fabric come from the test."""
+import pathlib
 import time
 
+import roslib.packages
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -35,6 +37,12 @@ def no_contact():
 def contacts(publisher, make=contact):
     """What `make` makes at about 200 Hz until the end of the with statement."""
     return Repeated(publisher, make, 0.005)
+
+
+def fabric_file(name):
+    """The text of a fabric file of the package."""
+    package = pathlib.Path(roslib.packages.get_pkg_dir('haptex'))
+    return (package / 'config' / 'fabrics' / f'{name}.yaml').read_text()
 
 
 class Arrived:
@@ -77,9 +85,10 @@ class TactileRenderer(NodeTest):
         for arrived in self.arrived.values():
             arrived.close()
 
-    def wear(self, fabric):
-        """The cloth gets a fabric."""
-        self.meshes.publish(ClothMesh(header=Header(frame_id='world'), fabric=fabric))
+    def wear(self, fabric, file=None):
+        """The cloth gets a fabric, by default with its own file."""
+        self.meshes.publish(ClothMesh(header=Header(frame_id='world'), fabrics=[fabric],
+                                      fabric_files=[fabric_file(file or fabric)]))
 
     def eventually_strokes(self, fabric):
         def strokes():
@@ -192,8 +201,8 @@ class TactileRenderer(NodeTest):
             self.eventually_silent()
             status = self.diagnostics.next(SURFACE)
             self.assertEqual(status.level, DiagnosticStatus.WARN)
-            self.assertIn('linear.yaml needs the key surface', status.message)
-            self.wear('velvet')
+            self.assertIn('needs the key surface', status.message)
+            self.wear('velvet', 'linen')
             self.eventually(lambda: "'velvet'" in self.diagnostics.next(SURFACE).message,
                        'diagnostics that name the fabric')
             self.wear('wool')

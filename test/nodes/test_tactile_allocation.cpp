@@ -25,7 +25,7 @@ TEST(TactileAllocation, StepsDoNotAllocateWhileAFingertipComesSlidesAndGoes) {
     for (const Finger finger : base::kFingers) {
       for (int j = 0; j < 25; ++j) loop.receive(finger, slides ? sliding : none, time);
     }
-    loop.step(&surface, time, ros::Time(1, 0));
+    loop.step({&surface, &surface}, time, ros::Time(1, 0));
     largest = std::max(largest, loop.messages()[Finger::kThumb].amplitudes_40[0]);
   }
   EXPECT_EQ(allocations - before, 0);

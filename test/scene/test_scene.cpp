@@ -317,8 +317,8 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
   }
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{
-                       "acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet", "linear_sheet",
-                       "net", "orbiting_sphere", "sphere_mass_spring", "table",
+                       "acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet", "hemmed_wool",
+                       "linear_sheet", "net", "orbiting_sphere", "sphere_mass_spring", "table",
                        "wool_among_obstacles", "wool_in_wind", "wool_sample"}));
 }
 

@@ -32,7 +32,7 @@ class SceneFabric : public testing::Test {
                                << "attach: []\ntime_step: 0.01\n"
                                << more;
     try {
-      loadSceneFabric(scenePath(), loadScene(scenePath()));
+      loadSceneFabrics(scenePath(), loadScene(scenePath()));
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -91,9 +91,9 @@ TEST_F(SceneFabric, IsRefusedWithAWrongKeyHaptics) {
 TEST(ShippedScenes, HaveFabricsWithWhatTheyList) {
   for (const char* name :
        {"acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet", "linear_sheet",
-        "orbiting_sphere", "wool_among_obstacles", "wool_in_wind", "wool_sample"}) {
+        "orbiting_sphere", "hemmed_wool", "wool_among_obstacles", "wool_in_wind", "wool_sample"}) {
     const std::string path = kConfig + "/scenes/" + name + ".yaml";
-    EXPECT_NO_THROW(loadSceneFabric(path, loadScene(path))) << name;
+    EXPECT_NO_THROW(loadSceneFabrics(path, loadScene(path))) << name;
   }
 }
 

@@ -153,7 +153,7 @@ TEST(SimulatedCloth, ThatStartsInAnObstacleGoesOnOutsideOfIt) {
   EXPECT_GT(move.particles, 0);
   const proximity::RigidObstacle shape = contact::makeObstacle(rail);
   const std::vector<std::array<int, 3>> triangles = scene.mesh.triangles;
-  SimulatedCloth simulation(scene, scene::loadSceneFabric(path, scene));
+  SimulatedCloth simulation(scene, scene::loadSceneFabrics(path, scene));
   for (int i = 0; i < 24; ++i) {
     ASSERT_TRUE(simulation.step()) << i;
     const std::vector<Eigen::Vector3d>& at = simulation.state().positions;

@@ -10,6 +10,9 @@
 
 namespace haptex::base {
 
+/// @throws std::runtime_error naming the path if it cannot be read
+std::string readTextFile(const std::string& path);
+
 /// A value in a YAML file together with the path of keys that leads to it, for example
 /// "warp.elastic.points[3]". All member functions throw std::invalid_argument with a message of the
 /// form "<file>: <key path>: <value> <what is allowed>" if the value is not as asked for.
@@ -19,6 +22,9 @@ class YamlValue {
   /// @throws std::runtime_error naming the path, and the line of a syntax error, if the file cannot
   ///   be read or is not YAML
   static YamlValue load(const std::string& path);
+  /// The same of a text.
+  /// @param name of it in messages, instead of a path
+  static YamlValue parse(const std::string& text, const std::string& name);
 
   const std::string& file() const { return *file_; }
   const std::string& keyPath() const { return key_path_; }

@@ -53,8 +53,10 @@ struct FingertipContact {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();            ///< m, of pressure
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();            ///< unit, mean, out of the fingertip
   Eigen::Vector3d sliding_velocity = Eigen::Vector3d::Zero();  ///< m/s, fingertip over cloth
-  Eigen::Vector2d fabric_position = Eigen::Vector2d::Zero();   ///< m, centre in (weft, warp)
-  Eigen::Vector2d fabric_velocity = Eigen::Vector2d::Zero();   ///< m/s, sliding in (weft, warp)
+  /// Which of the cloth's fabrics is touched: that on which most of the normal force is.
+  int fabric = 0;
+  Eigen::Vector2d fabric_position = Eigen::Vector2d::Zero();  ///< m, centre in (weft, warp)
+  Eigen::Vector2d fabric_velocity = Eigen::Vector2d::Zero();  ///< m/s, sliding in (weft, warp)
   /// How (weft, warp) change with the place along the cloth in the world frame, no unit.
   Eigen::Matrix<double, 2, 3> to_fabric = Eigen::Matrix<double, 2, 3>::Zero();
   std::vector<ContactPoint> points;  ///< at most kMaxContactPoints
@@ -68,11 +70,16 @@ struct FingertipContact {
 class HapticLayer {
  public:
   static constexpr std::size_t kMaxContactPoints = 1024;
+  static constexpr std::size_t kMostFabrics = 256;
 
-  /// @param mesh, fabric, effects those of the large-scale layer
+  /// @param mesh, fabrics, effects those of the large-scale layer; at most kMostFabrics
   /// @param obstacles of the scene; patches touch those without mass if effects has contacts
   /// @throws std::invalid_argument what requireTouchable(), cloth::Cloth or PlacedObstacles throws,
-  ///   or if the mesh has several panels
+  ///   or if the mesh has several panels, or a triangle a fabric that is not there
+  HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
+              const cloth::ModelledEffects& effects, const HapticSettings& settings,
+              std::vector<mesh::Obstacle> obstacles = {});
+  /// Of one fabric.
   HapticLayer(mesh::ClothMesh mesh, material::Fabric fabric, const cloth::ModelledEffects& effects,
               const HapticSettings& settings, std::vector<mesh::Obstacle> obstacles = {});
   // Its patches refer to its contact law and its obstacles.
@@ -80,7 +87,8 @@ class HapticLayer {
   HapticLayer& operator=(const HapticLayer&) = delete;
 
   const HapticSettings& settings() const { return settings_; }
-  const ContactLaw& law() const { return law_; }
+  /// Of one of the cloth's fabrics.
+  const ContactLaw& law(int fabric = 0) const { return laws_[fabric]; }
 
   /// Cuts the elements out of the mesh and refines them; does all that needs memory or long.
   /// Constant: any thread.
@@ -128,6 +136,8 @@ class HapticLayer {
   void stepPatch();
   void stepWholeCloth();
   void startAgain();
+  int fabricOf(int particle) const;
+  int fabricUnder(const std::vector<TouchedParticle>& touched) const;
   void fillContact(base::Finger finger, const std::vector<TouchedParticle>& touched,
                    const Particles& particles);
   template <typename RestOf, typename LoadOf>
@@ -138,9 +148,9 @@ class HapticLayer {
 
   HapticSettings settings_;
   mesh::ClothMesh mesh_;
-  material::Fabric fabric_;
+  std::vector<material::Fabric> fabrics_;
   cloth::ModelledEffects effects_;
-  ContactLaw law_;
+  std::vector<ContactLaw> laws_;  // of the fabrics
   PlacedObstacles obstacles_;
   MeshTopology topology_;
   LargeScaleMotion motion_;

@@ -28,11 +28,12 @@ namespace haptex::contact {
 class Patch {
  public:
   /// @param coarse  the mesh that was cut
-  /// @param fabric  with bending
-  /// @param law     for LayersBetween::kMost layers if effects are with self_collision
+  /// @param fabrics of the cloth, with bending
+  /// @param laws    of each; the first for LayersBetween::kMost layers if effects are with
+  ///   self_collision, which knows one fabric; kept
   /// @param obstacles where they are at the end of each step; null: none
-  Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const material::Fabric& fabric,
-        const cloth::ModelledEffects& effects, const ContactLaw& law,
+  Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const std::vector<material::Fabric>& fabrics,
+        const cloth::ModelledEffects& effects, const std::vector<ContactLaw>& laws,
         const PlacedObstacles* obstacles = nullptr);
 
   std::size_t particleCount() const { return state_.positions.size(); }
@@ -42,6 +43,8 @@ class Patch {
   /// Magnitude of the contact force on every particle (N).
   const std::vector<double>& contactForces() const { return contact_forces_; }
   const RefinedCut& cut() const { return cut_; }
+  /// Which of the cloth's fabrics a particle is of.
+  int fabricOf(int particle) const { return cut_.fabrics.empty() ? 0 : cut_.fabrics[particle]; }
 
   /// Puts every particle to its place on the large-scale cloth, at rest, without contact.
   void start(const LargeScaleMotion& motion);

@@ -50,7 +50,10 @@ struct RefinedCut {
   std::vector<Support> supports;         ///< per particle
   std::vector<int> owners;               ///< per particle, a triangle of the original mesh
   std::vector<Eigen::Vector3d> weights;  ///< per particle, of its owner's corners, sum 1
-  std::vector<int> order;                ///< particles sorted by support
+  /// Per particle, which of the cloth's fabrics it is of: on the border of two that of the first
+  /// triangle around it in the original mesh. Empty: all are of the first fabric.
+  std::vector<std::uint8_t> fabrics;
+  std::vector<int> order;  ///< particles sorted by support
 };
 
 /// @param triangles of the mesh, at least one, each once

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "haptex/contact/contact_law.h"
@@ -54,6 +55,10 @@ class SphereContact {
  public:
   /// @param most_particles that will ever be asked about
   SphereContact(const ContactLaw& law, std::size_t most_particles);
+  /// @param laws    of the cloth's fabrics, at least one; kept
+  /// @param fabrics of the particles; empty: all are of the first
+  SphereContact(const std::vector<ContactLaw>& laws, std::vector<std::uint8_t> fabrics,
+                std::size_t most_particles);
 
   /// Touched particles and their forces, with the anchors as they are.
   const std::vector<TouchedParticle>& evaluate(const Particles& particles,
@@ -78,7 +83,12 @@ class SphereContact {
   bool touch(int particle, const Particles& particles, const Fingertip& fingertip,
              TouchedParticle& result) const;
 
-  const ContactLaw& law_;
+  const ContactLaw& lawOf(int particle) const {
+    return laws_[fabrics_.empty() ? 0 : fabrics_[particle]];
+  }
+
+  const ContactLaw* laws_;
+  std::vector<std::uint8_t> fabrics_;
   std::vector<Anchor> anchors_;
   std::vector<TouchedParticle> touched_;
 };

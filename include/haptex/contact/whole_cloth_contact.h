@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
@@ -13,8 +14,9 @@ namespace haptex::contact {
 /// The particles of a large-scale state, moved on by their velocities until now.
 class WholeClothContact {
  public:
-  WholeClothContact(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
-                    const ContactLaw& law);
+  /// @param fabrics of the cloth @param laws of each; kept
+  WholeClothContact(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
+                    const std::vector<ContactLaw>& laws);
 
   /// Sizes are those of the mesh.
   /// @param period s, from the state's time to that of the step that it is used in
@@ -31,13 +33,17 @@ class WholeClothContact {
   /// A triangle with the particle as its corner.
   int triangleOf(int particle) const { return triangle_of_[particle]; }
   int cornerOf(int particle) const { return corner_of_[particle]; }
+  /// Which of the cloth's fabrics a particle is of: on the border of two that of the first triangle
+  /// around it.
+  int fabricOf(int particle) const { return fabrics_.empty() ? 0 : fabrics_[particle]; }
 
  private:
   std::vector<Eigen::Vector2d> rest_coordinates_;
-  std::vector<double> areas_;  // m^2
-  double areal_density_;       // kg/m^2
+  std::vector<double> areas_;   // m^2
+  std::vector<double> masses_;  // kg
   std::vector<int> triangle_of_;
   std::vector<int> corner_of_;
+  std::vector<std::uint8_t> fabrics_;  // empty: all are of the first
   std::vector<Eigen::Vector3d> positions_;
   std::vector<Eigen::Vector3d> velocities_;
   base::PerFinger<SphereContact> contacts_;

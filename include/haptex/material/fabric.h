@@ -78,6 +78,9 @@ struct Fabric {
   std::optional<double> friction;  ///< coefficient of kinetic friction against skin, KES MIU, > 0
   std::optional<Surface> surface;
   std::map<std::string, Provenance> provenance;  ///< by key, for example "warp.elastic"
+  /// The text of the fabric file that it was read from, which parseFabric() reads wherever that is;
+  /// empty where it was made otherwise.
+  std::string file;
 };
 
 }  // namespace haptex::material

@@ -16,4 +16,8 @@ namespace haptex::material {
 ///   compressionFromPoints() and compressionFromKes() refuse
 Fabric loadFabric(const std::string& path);
 
+/// The same of the text of a fabric file.
+/// @param name of it in messages; paths in the text are taken from its directory
+Fabric parseFabric(const std::string& text, const std::string& name);
+
 }  // namespace haptex::material

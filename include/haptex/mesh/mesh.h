@@ -27,17 +27,26 @@ struct ClothMesh {
   std::vector<int> triangle_panels = {};  ///< per triangle; empty: all are of panel 0
   /// Per triangle and corner, m, in the axes of the panel; empty: those of the particles.
   std::vector<std::array<Eigen::Vector2d, 3>> corner_coordinates = {};
+  /// Per triangle, which of the cloth's fabrics; empty: that of its panel. So regions of a panel
+  /// can be of other fabrics, as one piece that is woven or reinforced there: along the same grain,
+  /// and without a seam.
+  std::vector<int> triangle_fabrics = {};
 
   int panelCount() const { return panels.empty() ? 1 : static_cast<int>(panels.size()); }
   int panelOf(std::size_t triangle) const {
     return triangle_panels.empty() ? 0 : triangle_panels[triangle];
+  }
+  /// Which of the cloth's fabrics a triangle is of.
+  int fabricOf(std::size_t triangle) const {
+    return triangle_fabrics.empty() ? panel(panelOf(triangle)).fabric : triangle_fabrics[triangle];
   }
   Panel panel(int index) const { return panels.empty() ? Panel() : panels[index]; }
   /// Of the corners of a triangle, (u along weft, v along warp) of its fabric, m.
   std::array<Eigen::Vector2d, 3> restCorners(std::size_t triangle) const;
 };
 
-/// One panel of a mesh as a sheet of its own, with rest coordinates along weft and warp.
+/// One panel of a mesh as a sheet of its own, with rest coordinates along weft and warp, and the
+/// fabric of every triangle.
 struct CutPanel {
   ClothMesh sheet;
   std::vector<int> particles;  ///< of the mesh, for every one of the sheet, ascending
@@ -90,7 +99,9 @@ struct MeshDefects {
   std::vector<int> non_finite_particles;  ///< rest coordinate or position
   std::vector<int> unknown_panels;        ///< triangles whose panel does not exist
   std::vector<int> unsound_panels;        ///< fabric below 0, or grain not finite
-  bool panel_mismatch = false;  ///< panels or corner coordinates are not as many as triangles
+  std::vector<int> unsound_fabrics;       ///< triangles whose fabric is below 0
+  bool panel_mismatch = false;  ///< panels, corner coordinates or fabrics are not as many as
+                                ///< triangles
   bool size_mismatch = false;   ///< rest_coordinates and initial_positions differ in length
   bool empty = false;           ///< no triangle
 

@@ -1,7 +1,9 @@
 // Triangle meshes from Wavefront OBJ files.
 #pragma once
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "haptex/mesh/mesh.h"
 #include "haptex/mesh/obstacle.h"
@@ -16,6 +18,13 @@ namespace haptex::mesh {
 /// @throws std::runtime_error if the file cannot be read
 /// @throws std::invalid_argument naming file, line and what is wrong, or the mesh defects by index
 ClothMesh loadObj(const std::string& path);
+
+/// Triangles of each group ("g"), ascending.
+using MeshGroups = std::map<std::string, std::vector<int>>;
+
+/// The same, and its groups: a triangle is of all that the "g" before it names. A group without a
+/// triangle is none.
+ClothMesh loadObj(const std::string& path, MeshGroups& groups);
 
 /// Reads triangles and positions (metres, the obstacle's own frame) only: everything else, texture
 /// coordinates too, is ignored. Faces and indices are as for loadObj(); triangles without area and

@@ -17,6 +17,8 @@ namespace haptex::scene {
 
 struct Scene {
   std::string fabric_path;  ///< absolute, or relative to the working directory
+  /// Likewise, of regions: fabrics 1, 2, ... of the mesh; empty: all is of the one above.
+  std::vector<std::string> region_fabric_paths;
   mesh::ClothMesh mesh;
   cloth::ModelledEffects effects;
   std::vector<int> attached_particles;  ///< at their initial positions
@@ -32,8 +34,8 @@ struct Scene {
   double start_time = 0.0;                        ///< s, simulated, that of a saved state
   /// What was done to a start that reached into obstacles, where the cloth collides with itself.
   contact::StartMove start_move;
-  /// A sheet that is attached by nothing but its sides and starts from no saved state: it may have
-  /// any cells.
+  /// A sheet that is attached by nothing but its sides, has no regions and starts from no saved
+  /// state: it may have any cells.
   bool any_cells = false;
   // What is modelled beside the cloth.
   bool fingers = false;    ///< touch the cloth; effects has point loads then

@@ -13,7 +13,8 @@ namespace haptex::simulation {
 /// @param substeps in a cycle, > 0
 /// @returns the median time of a cycle, infinity if a step was not finite, and the time of it all
 /// @throws what scene::loadScene() and SimulatedCloth throw
-MeasuredCycle measureCycle(const std::string& scene_path, const material::Fabric& fabric,
+MeasuredCycle measureCycle(const std::string& scene_path,
+                           const std::vector<material::Fabric>& fabrics,
                            const scene::Quality& quality, int substeps);
 
 }  // namespace haptex::simulation

@@ -55,12 +55,16 @@ class SimulatedCloth {
   ///   contact::ObstacleCollision if the cloth collides with its obstacles, or if an obstacle has
   ///   mass or the scene a penalty that a plan's integrator does not know
   SimulatedCloth(scene::Scene scene, material::Fabric fabric);
+  /// @param fabrics of the scene (scene::loadSceneFabrics())
+  SimulatedCloth(scene::Scene scene, std::vector<material::Fabric> fabrics);
 
   /// Can take its steps by any of these plans, at first by number 0, instead of by the scene's
   /// settings.
   /// @throws std::invalid_argument also if there is no plan or one has no substep, and what
   ///   cloth::Integrator throws for their settings
   SimulatedCloth(scene::Scene scene, material::Fabric fabric, std::vector<StepPlan> plans);
+  SimulatedCloth(scene::Scene scene, std::vector<material::Fabric> fabrics,
+                 std::vector<StepPlan> plans);
 
   const cloth::Cloth& cloth() const { return cloth_; }
   const cloth::ClothState& state() const { return state_; }
@@ -114,7 +118,8 @@ class SimulatedCloth {
   /// forces, with all particles. The fabric stays.
   void reset();
 
-  /// Takes effect in the next step; positions and velocities stay.
+  /// Changes the fabric of the cloth, and those of its regions not. Takes effect in the next step;
+  /// positions and velocities stay.
   /// @throws std::invalid_argument if the cloth cannot be made of it; nothing has changed then
   void setFabric(material::Fabric fabric);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/contact/haptic_settings.h"
@@ -20,7 +21,7 @@ struct TouchCost {
 
 /// @param mesh in its initial positions
 /// @throws std::invalid_argument what contact::HapticLayer throws
-TouchCost measureTouch(const mesh::ClothMesh& mesh, const material::Fabric& fabric,
+TouchCost measureTouch(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                        const cloth::ModelledEffects& effects,
                        const contact::HapticSettings& settings, int milliseconds);
 

@@ -118,6 +118,9 @@ mesh::ClothMesh meshOf(const mesh::ClothMesh& whole, const std::vector<int>& tri
     const auto& [a, b, c] = whole.triangles[t];
     part.triangles.push_back({particle_place[a], particle_place[b], particle_place[c]});
     if (!whole.triangle_panels.empty()) part.triangle_panels.push_back(whole.triangle_panels[t]);
+    if (!whole.triangle_fabrics.empty()) {
+      part.triangle_fabrics.push_back(whole.triangle_fabrics[t]);
+    }
     if (!whole.corner_coordinates.empty()) {
       part.corner_coordinates.push_back(whole.corner_coordinates[t]);
     }

@@ -29,11 +29,11 @@ MembraneElement restElement(const mesh::ClothMesh& mesh, std::size_t triangle) {
 
 }  // namespace
 
-std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh, std::optional<int> panel) {
+std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh, std::optional<int> fabric) {
   std::vector<MembraneElement> elements;
   elements.reserve(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!panel || *panel == mesh.panelOf(t)) elements.push_back(restElement(mesh, t));
+    if (!fabric || *fabric == mesh.fabricOf(t)) elements.push_back(restElement(mesh, t));
   }
   return elements;
 }

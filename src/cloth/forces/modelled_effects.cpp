@@ -1,5 +1,6 @@
 #include "haptex/cloth/forces/modelled_effects.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "haptex/cloth/forces/bending/bending_friction.h"
@@ -57,14 +58,27 @@ void requireModelled(const material::Fabric& fabric, const ModelledEffects& effe
   }
 }
 
+/// What knows no regions of other fabrics.
+void requireFewFabrics(const std::vector<material::Fabric>& fabrics,
+                       const ModelledEffects& effects) {
+  const auto refuse_several = [&](const char* what) {
+    if (fabrics.size() == 1) return;
+    throw std::invalid_argument(std::string(what) + " one fabric, and the cloth has " +
+                                std::to_string(fabrics.size()));
+  };
+  if (effects.elasticity == Elasticity::kMassSpring) refuse_several("springs know");
+  if (effects.self_collision) refuse_several("self_collision knows");
+}
+
 void requirePanels(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                    const ModelledEffects& effects) {
-  for (int p = 0; p < mesh.panelCount(); ++p) {
-    if (mesh.panel(p).fabric < static_cast<int>(fabrics.size())) continue;
-    throw std::invalid_argument("panel " + std::to_string(p) + " is of fabric " +
-                                std::to_string(mesh.panel(p).fabric) + "; there are " +
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.fabricOf(t) < static_cast<int>(fabrics.size())) continue;
+    throw std::invalid_argument("triangle " + std::to_string(t) + " is of fabric " +
+                                std::to_string(mesh.fabricOf(t)) + "; there are " +
                                 std::to_string(fabrics.size()));
   }
+  requireFewFabrics(fabrics, effects);
   if (mesh.panelCount() > 1 && effects.elasticity == Elasticity::kMassSpring) {
     throw std::invalid_argument("springs know one panel, and the mesh has " +
                                 std::to_string(mesh.panelCount()));
@@ -93,7 +107,7 @@ void addMembrane(std::vector<MembraneElement> elements, const material::Fabric& 
   forces.add(std::move(friction));
 }
 
-/// The membrane or the corotational elements of every panel, or the springs of the only one.
+/// The membrane or the corotational elements of every fabric, or the springs of the only one.
 void addElasticity(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                    const ModelledEffects& effects, ForceSum& forces) {
   if (effects.elasticity == Elasticity::kMassSpring) {
@@ -101,9 +115,10 @@ void addElasticity(const mesh::ClothMesh& mesh, const std::vector<material::Fabr
         std::make_unique<SpringLattice>(mesh, fabrics.front(), effects.viscosity, effects.bending));
     return;
   }
-  for (int p = 0; p < mesh.panelCount(); ++p) {
-    const material::Fabric& fabric = fabrics[mesh.panel(p).fabric];
-    std::vector<MembraneElement> elements = restElements(mesh, p);
+  for (std::size_t f = 0; f < fabrics.size(); ++f) {
+    const material::Fabric& fabric = fabrics[f];
+    std::vector<MembraneElement> elements = restElements(mesh, static_cast<int>(f));
+    if (elements.empty()) continue;
     if (effects.elasticity == Elasticity::kCorotational) {
       forces.add(std::make_unique<Corotational>(std::move(elements), fabric, effects.viscosity));
     } else {
@@ -112,8 +127,33 @@ void addElasticity(const mesh::ClothMesh& mesh, const std::vector<material::Fabr
   }
 }
 
-void addBending(const mesh::CutPanel& cut, const material::Fabric& fabric,
+std::vector<material::BendingRigidity> rigiditiesOf(const std::vector<material::Fabric>& fabrics) {
+  std::vector<material::BendingRigidity> rigidities;
+  for (const material::Fabric& fabric : fabrics) rigidities.push_back(*fabric.bending);
+  return rigidities;
+}
+
+/// Of a panel with regions of other fabrics.
+void addBendingOfRegions(const mesh::CutPanel& cut, const std::vector<material::Fabric>& fabrics,
+                         const ModelledEffects& effects, ForceSum& forces) {
+  if (effects.bending_hysteresis) {
+    throw std::invalid_argument(
+        "hysteresis of bending knows one fabric in a panel, and the mesh has regions of others");
+  }
+  auto bending =
+      std::make_unique<Bending>(cut.sheet, rigiditiesOf(fabrics), effects.bending_settings);
+  bending->renumber(cut.particles);
+  forces.add(std::move(bending));
+}
+
+void addBending(const mesh::CutPanel& cut, const std::vector<material::Fabric>& fabrics,
                 const ModelledEffects& effects, ForceSum& forces) {
+  const std::vector<int>& named = cut.sheet.triangle_fabrics;
+  if (named.empty()) return;  // of a part of a cloth that has nothing of this panel
+  if (std::any_of(named.begin(), named.end(), [&](int f) { return f != named.front(); })) {
+    return addBendingOfRegions(cut, fabrics, effects, forces);
+  }
+  const material::Fabric& fabric = fabrics[named.front()];
   auto bending = std::make_unique<Bending>(cut.sheet, *fabric.bending, effects.bending_settings);
   if (effects.bending_hysteresis) {
     auto friction =
@@ -137,7 +177,7 @@ void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fa
   if (effects.air) forces.add(std::make_unique<Aerodynamics>(restElements(mesh), *effects.air));
   if (!effects.bending || effects.elasticity == Elasticity::kMassSpring) return;
   for (int p = 0; p < mesh.panelCount(); ++p) {
-    addBending(mesh::cutPanel(mesh, p), fabrics[mesh.panel(p).fabric], effects, forces);
+    addBending(mesh::cutPanel(mesh, p), fabrics, effects, forces);
   }
 }
 

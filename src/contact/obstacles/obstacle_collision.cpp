@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "haptex/base/require.h"
+#include "haptex/cloth/forces/element_assembly.h"
 #include "haptex/contact/bodies/obstacle_path.h"
 #include "haptex/contact/obstacles/obstacles.h"
 
@@ -36,6 +37,7 @@ ObstacleCollision::ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obst
                                      double start)
     : obstacles_(std::move(obstacles)), positions_(cloth.particleCount()) {
   for (const mesh::Obstacle& obstacle : obstacles_) addObstacle(cloth, obstacle, start);
+  if (cloth.fabrics().size() > 1) shareFriction(cloth);
   if (!bodies_.empty()) addBodies(cloth);
   if (cloth.selfContact() != nullptr) {
     cloth.setObstacles(obstacles_);
@@ -59,6 +61,33 @@ void ObstacleCollision::addObstacle(const cloth::Cloth& cloth, const mesh::Obsta
     placed.body_friction = bodies_.back().friction();
   }
   placed_.push_back(std::move(placed));
+}
+
+void ObstacleCollision::shareFriction(const cloth::Cloth& cloth) {
+  for (std::size_t f = 1; f < cloth.fabrics().size(); ++f) requireFriction(cloth.fabrics()[f]);
+  const std::vector<cloth::MembraneElement> elements = cloth::restElements(cloth.mesh());
+  const auto shared = [&](const auto& of_fabric) {
+    return cloth::shareOut(elements, cloth.particleCount(), [&](std::size_t triangle) {
+      return of_fabric(cloth.mesh().fabricOf(triangle));
+    });
+  };
+  const std::vector<double> areas = shared([](int) { return 1.0; });
+  first_share_ = shared([](int fabric) { return fabric == 0 ? 1.0 : 0.0; });
+  // Where obstacles have their own, fabrics need none.
+  other_friction_ = shared([&](int fabric) {
+    return fabric == 0 ? 0.0 : cloth.fabrics()[fabric].friction.value_or(0.0);
+  });
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    first_share_[i] /= areas[i];
+    other_friction_[i] /= areas[i];
+  }
+}
+
+/// Of the cloth on an obstacle.
+double ObstacleCollision::frictionAt(int particle, std::size_t obstacle) const {
+  const double friction = placed_[obstacle].friction;
+  if (first_share_.empty() || obstacles_[obstacle].friction) return friction;
+  return first_share_[particle] * friction + other_friction_[particle];
 }
 
 void ObstacleCollision::addBodies(cloth::Cloth& cloth) {
@@ -189,7 +218,7 @@ void ObstacleCollision::findContact(const cloth::ClothState& state, int particle
     contact.place = obstacle.end * begin;
     contact.gap = there.normal.dot(begin - predicted) - (kOffset - there.distance);
     contact.velocity = (contact.place - position) / h;
-    contact.friction = obstacle.friction;
+    contact.friction = frictionAt(particle, &obstacle - placed_.data());
     contact.end = state.time + h;
     contact.body = obstacle.body;
     if (obstacle.body >= 0) {

@@ -12,7 +12,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 PlacedObstacles::PlacedObstacles(std::vector<mesh::Obstacle> obstacles,
-                                 const material::Fabric& fabric)
+                                 const std::vector<material::Fabric>& fabrics)
     : obstacles_(std::move(obstacles)) {
   const auto has_mass = [](const mesh::Obstacle& obstacle) { return obstacle.body.has_value(); };
   obstacles_.erase(std::remove_if(obstacles_.begin(), obstacles_.end(), has_mass),
@@ -20,7 +20,11 @@ PlacedObstacles::PlacedObstacles(std::vector<mesh::Obstacle> obstacles,
   for (const mesh::Obstacle& obstacle : obstacles_) {
     proximity::RigidObstacle shape = makeObstacle(obstacle);
     shape.setPose(Eigen::Isometry3d::Identity());
-    bodies_.push_back({std::move(shape), frictionOn(obstacle, fabric), obstacle.pose,
+    std::vector<double> friction;
+    for (const material::Fabric& fabric : fabrics) {
+      friction.push_back(frictionOn(obstacle, fabric));
+    }
+    bodies_.push_back({std::move(shape), std::move(friction), obstacle.pose,
                        obstacle.pose.inverse(Eigen::Isometry)});
   }
 }
@@ -34,14 +38,16 @@ void PlacedObstacles::moveTo(double time) {
 }
 
 ObstacleContact::ObstacleContact(const PlacedObstacles& obstacles,
-                                 const material::Compression& compression, double sticking,
+                                 const std::vector<material::Fabric>& fabrics,
+                                 std::vector<std::uint8_t> of_particles, double sticking,
                                  std::size_t most_particles)
     : obstacles_(obstacles),
-      compression_(compression),
+      of_particles_(std::move(of_particles)),
       sticking_(sticking),
       places_(obstacles.bodies().size() * most_particles),
       particles_(most_particles) {
   touched_.reserve(places_.size());
+  for (const material::Fabric& fabric : fabrics) compressions_.push_back(*fabric.compression);
 }
 
 void ObstacleContact::clear() {
@@ -79,8 +85,10 @@ bool ObstacleContact::touch(const PlacedObstacles::Body& body, const Nearest& ne
                             TouchedParticle& result) const {
   result.depth = ObstacleCollision::kOffset - nearest.distance;
   if (!(result.depth > 0.0)) return false;
-  const double half = 0.5 * compression_.thickness;
-  const material::CurveValue pressure = compression_.pressure.evaluate(result.depth / half);
+  const std::size_t fabric = fabricOf(result.particle);
+  const material::Compression& compression = compressions_[fabric];
+  const double half = 0.5 * compression.thickness;
+  const material::CurveValue pressure = compression.pressure.evaluate(result.depth / half);
   result.normal = body.pose.linear() * nearest.normal;
   result.normal_force = std::max(0.0, area * pressure.stress);
   const Matrix3d along = result.normal * result.normal.transpose();
@@ -88,7 +96,7 @@ bool ObstacleContact::touch(const PlacedObstacles::Body& body, const Nearest& ne
   result.damping.setZero();
   const Vector3d anchored = place.holds ? Vector3d(body.pose.linear() * (own - place.anchor))
                                         : Vector3d(Vector3d::Zero());
-  addFriction(anchored, area * sticking_, body.friction, result);
+  addFriction(anchored, area * sticking_, body.friction[fabric], result);
   return true;
 }
 
@@ -110,8 +118,8 @@ const std::vector<TouchedParticle>& ObstacleContact::evaluate(const Particles& p
   const auto add = [&](const PlacedObstacles::Body& body, int particle, const Vector3d& own,
                        Place& place) {
     if (!isNear(body, own, place, nearest)) return;
-    if (!touch(body, nearest, place, own, particles.areas[particle], touched)) return;
     touched.particle = particle;
+    if (!touch(body, nearest, place, own, particles.areas[particle], touched)) return;
     touched_.push_back(touched);
   };
   visitAll(particles, add);
@@ -128,6 +136,7 @@ void ObstacleContact::commit(const Particles& particles) {
       return;
     }
     const double area = particles.areas[particle];
+    touched.particle = particle;
     const bool touches = touch(body, nearest, place, own, area, touched);
     if (nearest.on_side) {
       place.surface = nearest.surface;

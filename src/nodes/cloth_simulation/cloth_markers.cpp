@@ -36,10 +36,12 @@ std::vector<std::array<int, 2>> uniqueEdges(const std::vector<std::array<int, 3>
 }  // namespace
 
 ClothMarkers::ClothMarkers(const mesh::ClothMesh& mesh, double full_scale,
-                           const std::vector<mesh::Obstacle>& obstacles)
+                           const std::vector<mesh::Obstacle>& obstacles, ClothColours colours)
     : triangles_(mesh.triangles),
       edges_(uniqueEdges(mesh.triangles)),
+      triangle_fabrics_(mesh.triangle_fabrics),
       full_scale_(full_scale),
+      coloured_by_(colours),
       elements_(cloth::restElements(mesh)) {
   Eigen::Vector3d low = mesh.initial_positions.front();
   Eigen::Vector3d high = low;
@@ -69,7 +71,12 @@ ClothMarkers::ClothMarkers(const mesh::ClothMesh& mesh, double full_scale,
   for (const int index : {kEdgesIndex, kParticlesIndex}) {
     markers[index].color = colourMessage(Eigen::Vector3f(0.25F, 0.27F, 0.30F));
   }
-  addScale();
+  for (const int fabric : triangle_fabrics_) fabrics_ = std::max(fabrics_, fabric + 1);
+  if (coloured_by_ == ClothColours::kStrain) {
+    addScale();
+  } else {
+    addFabricNames();
+  }
   first_obstacle_ = markers.size();
   for (const mesh::Obstacle& obstacle : obstacles) {
     if (!obstacle.moves()) continue;
@@ -117,6 +124,23 @@ void ClothMarkers::addScale() {
   addLabel(at(1.0) + Eigen::Vector3d(0.0, 0.07 * size_, 0.08 * size_), 0.045 * size_, "strain");
 }
 
+/// Beside the place where the cloth starts, from the top down.
+void ClothMarkers::addFabricNames() {
+  for (int fabric = 0; fabric < fabrics_; ++fabric) {
+    const Eigen::Vector3d place = middle_ + Eigen::Vector3d(0.0, 0.5 * extent_.y() + 0.3 * size_,
+                                                            0.4 * size_ - 0.08 * size_ * fabric);
+    addLabel(place, 0.05 * size_, "");
+    markers_.markers.back().color = colourMessage(distinctColour(fabric));
+  }
+}
+
+/// They may get others while the node runs.
+void ClothMarkers::updateFabricNames(const simulation::SimulatedCloth& simulation) {
+  for (int fabric = 0; fabric < fabrics_; ++fabric) {
+    markers_.markers[kScaleIndex + fabric].text = simulation.cloth().fabrics()[fabric].name;
+  }
+}
+
 void ClothMarkers::addLabel(const Eigen::Vector3d& place, double height, const std::string& text) {
   const int id = static_cast<int>(markers_.markers.size());
   markers_.markers.push_back(makeMarker("scale", id, visualization_msgs::Marker::TEXT_VIEW_FACING));
@@ -129,7 +153,11 @@ void ClothMarkers::addLabel(const Eigen::Vector3d& place, double height, const s
 
 const visualization_msgs::MarkerArray& ClothMarkers::update(
     const simulation::SimulatedCloth& simulation, const ros::Time& stamp) {
-  computeStrainColours(simulation);
+  if (coloured_by_ == ClothColours::kStrain) {
+    computeStrainColours(simulation);
+  } else {
+    updateFabricNames(simulation);
+  }
   computeNormals(simulation.state().positions);
   updateCloth(simulation);
   updateAttachments(simulation);
@@ -173,15 +201,19 @@ void ClothMarkers::computeNormals(const std::vector<Eigen::Vector3d>& positions)
 
 void ClothMarkers::updateCloth(const simulation::SimulatedCloth& simulation) {
   const std::vector<Eigen::Vector3d>& positions = simulation.state().positions;
-  for (std::size_t i = 0; i < colours_.size(); ++i) {
+  const bool by_strain = coloured_by_ == ClothColours::kStrain;
+  for (std::size_t i = 0; i < colours_.size() && by_strain; ++i) {
     colours_[i] *= shade(normals_[i]);
   }
   visualization_msgs::Marker& marker = markers_.markers[kClothIndex];
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const int fabric = triangle_fabrics_.empty() ? 0 : triangle_fabrics_[i];
+    const Eigen::Vector3f of_fabric = distinctColour(fabric);
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const int particle = triangles_[i][corner];
       marker.points[3 * i + corner] = pointMessage(positions[particle]);
-      marker.colors[3 * i + corner] = colourMessage(colours_[particle]);
+      marker.colors[3 * i + corner] = colourMessage(
+          by_strain ? colours_[particle] : Eigen::Vector3f(of_fabric * shade(normals_[particle])));
     }
   }
 }

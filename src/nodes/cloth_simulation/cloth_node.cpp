@@ -36,11 +36,20 @@ std::optional<RuntimeQuality> qualityOf(const ClothNodeParameters& parameters) {
   return RuntimeQuality(parameters.scene_path, parameters.quality);
 }
 
+ClothColours readColours(const ros::NodeHandle& private_node) {
+  if (!private_node.hasParam("colour_by")) return ClothColours::kStrain;
+  const std::string what = readText(private_node, "colour_by", "strain or fabric");
+  if (what == "strain") return ClothColours::kStrain;
+  if (what == "fabric") return ClothColours::kFabric;
+  throw std::invalid_argument("parameter " + private_node.resolveName("colour_by") + " is '" +
+                              what + "': allowed are strain or fabric");
+}
+
 simulation::SimulatedCloth simulate(const ClothNodeParameters& parameters,
                                     const std::optional<RuntimeQuality>& quality,
                                     const scene::Scene& scene) {
   if (quality) return quality->simulate();
-  return simulation::SimulatedCloth(scene, scene::loadSceneFabric(parameters.scene_path, scene));
+  return simulation::SimulatedCloth(scene, scene::loadSceneFabrics(parameters.scene_path, scene));
 }
 
 /// What a cloth that collides with itself does about a start that intersects it or obstacles.
@@ -87,6 +96,7 @@ ClothNodeParameters ClothNodeParameters::read(const ros::NodeHandle& private_nod
   parameters.state_rate = readPositive(private_node, "state_rate", 0.0);
   parameters.marker_rate = readPositive(private_node, "marker_rate", kDefaultMarkerRate);
   parameters.strain_scale = readPositive(private_node, "strain_scale", kDefaultStrainScale);
+  parameters.colour_by = readColours(private_node);
   parameters.quality = QualityRequest::read(private_node);
   return parameters;
 }
@@ -111,7 +121,7 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       diagnostics_(node, private_node),
       steps_per_state_(stepsPerMessage(parameters.state_rate, scene.time_step)),
       steps_per_markers_(stepsPerMessage(parameters.marker_rate, scene.time_step)),
-      markers_(scene.mesh, parameters.strain_scale, scene.obstacles),
+      markers_(scene.mesh, parameters.strain_scale, scene.obstacles, parameters.colour_by),
       state_stamp_(ros::Time::now()),
       quality_(quality),
       time_step_(scene.time_step),
@@ -163,7 +173,7 @@ void ClothNode::advertiseTopics() {
 }
 
 void ClothNode::publishMesh(const cloth::Cloth& cloth) {
-  mesh_publisher_.publish(meshMessage(cloth, ros::Time::now()));
+  mesh_publisher_.publish(meshMessage(cloth, mesh_, ros::Time::now()));
 }
 
 void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double until_next) {

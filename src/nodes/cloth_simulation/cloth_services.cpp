@@ -92,11 +92,15 @@ bool ClothNode::setFabric(SetFabric::Request& request, SetFabric::Response& resp
   return answer("set_fabric", response, [&] {
     // Read here: the loop does not wait for files.
     material::Fabric fabric = material::loadFabric(findConfigFile("fabrics", request.fabric));
-    const std::string message = "the fabric is " + fabric.name;
+    std::string message = "the fabric is " + fabric.name;
     loop_.execute([&](simulation::SimulatedCloth& simulation) {
       simulation.setFabric(std::move(fabric));
       publishMesh(simulation.cloth());
       publishQuality(simulation);
+      const std::vector<material::Fabric>& fabrics = simulation.cloth().fabrics();
+      for (std::size_t f = 1; f < fabrics.size(); ++f) {
+        message += (f == 1 ? "; regions stay of " : ", ") + fabrics[f].name;
+      }
     });
     return message;
   });

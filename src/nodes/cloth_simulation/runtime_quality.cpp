@@ -64,7 +64,7 @@ QualityRequest QualityRequest::read(const ros::NodeHandle& private_node) {
 
 RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityRequest& request)
     : scene_(scene::loadScene(scene_path)),
-      fabric_(scene::loadSceneFabric(scene_path, scene_)),
+      fabrics_(scene::loadSceneFabrics(scene_path, scene_)),
       budget_(request.budget > 0.0 ? request.budget : std::numeric_limits<double>::infinity()),
       reducible_(request.reducible()) {
   const double cycle = scene_.time_step;
@@ -74,11 +74,12 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
   if (!request.preset_path.empty()) preset = scene::loadQualities(request.preset_path);
   study(front);
   study(preset);
-  front = qualitiesFor(fabric_, front, studied_);
-  if (!preset.empty()) preset = {presetFor(fabric_, request.preset_path, preset, studied_)};
+  front = qualitiesFor(fabrics_.front(), front, studied_);
+  if (!preset.empty())
+    preset = {presetFor(fabrics_.front(), request.preset_path, preset, studied_)};
   if (!scene_.any_cells) front = simulation::settingsAlone(front, meanCellSize(scene_.mesh));
   const auto measure = [&](const scene::Quality& quality, int substeps) {
-    return simulation::measureCycle(scene_path, fabric_, simulation::knownTo(scene_, quality),
+    return simulation::measureCycle(scene_path, fabrics_, simulation::knownTo(scene_, quality),
                                     substeps);
   };
   candidates_ = simulation::calibrate(
@@ -116,7 +117,7 @@ void RuntimeQuality::study(const std::vector<scene::Quality>& qualities) {
 
 void RuntimeQuality::reduce(const std::string& scene_path, const scene::Quality& wanted) {
   const int substeps = simulation::substepsOf(scene_.time_step, wanted.time_step);
-  double seconds = simulation::measureCycle(scene_path, fabric_, wanted, substeps).seconds;
+  double seconds = simulation::measureCycle(scene_path, fabrics_, wanted, substeps).seconds;
   // The load tells what a cycle takes; the measurement is but where it begins.
   if (!std::isfinite(seconds)) seconds = budget_;
   // At half the rate of states a fabric that is pulled creeps out of a pinch (docs/quality.md).
@@ -166,7 +167,7 @@ std::vector<simulation::Candidate> RuntimeQuality::borrowed(const std::string& s
   if (settings.empty()) return {};
   const auto measure = [&](scene::Quality quality, int substeps) {
     quality.cell_size = front[chosen].cell_size;
-    return simulation::measureCycle(scene_path, fabric_, quality, substeps);
+    return simulation::measureCycle(scene_path, fabrics_, quality, substeps);
   };
   return simulation::calibrate(settings, scene_.time_step, measure,
                                {kBorrowedAllowance, std::numeric_limits<double>::infinity()});
@@ -179,7 +180,7 @@ simulation::SimulatedCloth RuntimeQuality::simulate() const {
     plans.push_back(simulation::planOf(rung, scene_.step.threads));
     costs.push_back(rung.seconds);
   }
-  simulation::SimulatedCloth simulation(scene_, fabric_, std::move(plans));
+  simulation::SimulatedCloth simulation(scene_, fabrics_, std::move(plans));
   simulation.setController(
       simulation::QualityController(std::move(costs), budget_, scene_.time_step, first_));
   return simulation;

@@ -1,27 +1,51 @@
 #include "haptex/nodes/common/cloth_fabric.h"
 
 #include <stdexcept>
+#include <string>
 
 #include "haptex/material/fabric_file.h"
-#include "haptex/nodes/common/config_files.h"
 
 namespace haptex::nodes {
+namespace {
 
-FabricOfFile fabricOfCloth(const std::string& name, const std::string& scene_fabric) {
-  if (!scene_fabric.empty()) {
-    FabricOfFile of_scene{material::loadFabric(scene_fabric), scene_fabric};
-    if (of_scene.fabric.name == name) return of_scene;
+void requireAtMost(const std::string& field, std::size_t bytes, std::size_t allowed) {
+  if (bytes <= allowed) return;
+  throw std::invalid_argument(field + " has " + std::to_string(bytes) +
+                              " bytes: allowed are up to " + std::to_string(allowed));
+}
+
+}  // namespace
+
+void requireFabrics(const haptex::ClothMesh& message) {
+  const std::size_t names = message.fabrics.size(), files = message.fabric_files.size();
+  if (names >= 1 && names <= kMostFabrics && files == names) return;
+  throw std::invalid_argument("fabrics has " + std::to_string(names) +
+                              " elements and fabric_files " + std::to_string(files) +
+                              ": allowed are 1 to " + std::to_string(kMostFabrics) +
+                              " names, and for each its file");
+}
+
+std::vector<material::Fabric> fabricsOfCloth(const haptex::ClothMesh& message) {
+  requireFabrics(message);
+  std::vector<material::Fabric> fabrics;
+  for (std::size_t i = 0; i < message.fabrics.size(); ++i) {
+    fabrics.push_back(fabricOfCloth(message, i));
   }
-  if (name.find('/') != std::string::npos) {
-    throw std::invalid_argument("allowed is the name of a fabric in config/fabrics, not a path");
+  return fabrics;
+}
+
+material::Fabric fabricOfCloth(const haptex::ClothMesh& message, std::size_t index) {
+  const std::string& name = message.fabrics[index];
+  const std::string& file = message.fabric_files[index];
+  const std::string place = "[" + std::to_string(index) + "]";
+  requireAtMost("fabrics" + place, name.size(), kLongestFabricName);
+  requireAtMost("fabric_files" + place, file.size(), kLongestFabricFile);
+  material::Fabric fabric = material::parseFabric(file, "fabric '" + name + "' in cloth/mesh");
+  if (fabric.name != name) {
+    throw std::invalid_argument("fabric '" + name + "' in cloth/mesh: its file is of the fabric '" +
+                                fabric.name + "'");
   }
-  const std::string path = findConfigFile("fabrics", name);
-  FabricOfFile of_package{material::loadFabric(path), path};
-  if (of_package.fabric.name != name) {
-    throw std::invalid_argument("the file of this name is of the fabric '" +
-                                of_package.fabric.name + "'");
-  }
-  return of_package;
+  return fabric;
 }
 
 }  // namespace haptex::nodes

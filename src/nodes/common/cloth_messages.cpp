@@ -30,11 +30,17 @@ std::vector<Eigen::Vector3d> fromXyz(const std::vector<Message>& messages) {
 
 }  // namespace
 
-haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, const ros::Time& stamp) {
+haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
+                              const ros::Time& stamp) {
   haptex::ClothMesh message;
   message.header.stamp = stamp;
   message.header.frame_id = kFixedFrame;
-  message.fabric = cloth.fabric().name;
+  message.mesh = mesh;
+  for (const material::Fabric& fabric : cloth.fabrics()) {
+    message.fabrics.push_back(fabric.name);
+    message.fabric_files.push_back(fabric.file);
+  }
+  message.gravity = vectorMessage(cloth.effects().gravity);
   for (const Eigen::Vector2d& rest : cloth.mesh().rest_coordinates) {
     message.rest_weft_coordinates.push_back(rest.x());
     message.rest_warp_coordinates.push_back(rest.y());
@@ -42,6 +48,8 @@ haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, const ros::Time& stamp)
   for (const auto& triangle : cloth.mesh().triangles) {
     message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
   }
+  const std::vector<int>& fabrics = cloth.mesh().triangle_fabrics;
+  message.triangle_fabrics.assign(fabrics.begin(), fabrics.end());
   message.masses = cloth.masses();
   return message;
 }

@@ -13,17 +13,19 @@ LayerBuilder::LayerBuilder(const std::string& scene_path)
   const scene::Scene scene = scene::loadScene(scene_path);
   effects_ = scene.effects;
   obstacles_ = scene.obstacles;
-  fabric_path_ = scene.fabric_path;
 }
 
 std::unique_ptr<contact::HapticLayer> LayerBuilder::build(const haptex::ClothMesh& message) const {
   mesh::ClothMesh mesh = clothMesh(message);
+  std::vector<material::Fabric> fabrics = fabricsOfCloth(message);
+  const std::string name = fabrics.front().name;
+  cloth::ModelledEffects effects = effects_;
+  effects.gravity = readGravity(message);
   try {
-    return std::make_unique<contact::HapticLayer>(
-        std::move(mesh), fabricOfCloth(message.fabric, fabric_path_).fabric, effects_, settings_,
-        obstacles_);
+    return std::make_unique<contact::HapticLayer>(std::move(mesh), std::move(fabrics), effects,
+                                                  settings_, obstacles_);
   } catch (const std::exception& error) {
-    throw std::invalid_argument("fabric '" + message.fabric + "': " + error.what());
+    throw std::invalid_argument("fabric '" + name + "': " + error.what());
   }
 }
 

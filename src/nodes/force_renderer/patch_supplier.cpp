@@ -19,6 +19,12 @@ constexpr Time kConnectionPeriod = std::chrono::milliseconds(50);
 /// Until the forces have fallen to zero before a layer is exchanged.
 constexpr Time kFall = simulation::RendererLiveness::kFall + std::chrono::milliseconds(4);
 
+/// And the same number and gravity.
+bool hasSameFabric(const haptex::ClothMesh& a, const haptex::ClothMesh& b) {
+  return a.mesh == b.mesh && a.fabrics == b.fabrics && a.fabric_files == b.fabric_files &&
+         a.gravity == b.gravity;
+}
+
 }  // namespace
 
 PatchSupplier::PatchSupplier(const ros::NodeHandle& node, LayerBuilder builder,
@@ -79,10 +85,10 @@ void PatchSupplier::takeMesh() {
   std::string trouble;
   try {
     RestMesh mesh = restMesh(*message);
-    if (layer_ != nullptr && mesh == mesh_ && message->fabric == fabric_) return;
+    if (layer_ != nullptr && mesh == mesh_ && hasSameFabric(*message, *message_)) return;
     loop_.setLayerReady(false);
     mesh_ = std::move(mesh);
-    fabric_ = message->fabric;
+    message_ = message;
     buildLayer(*message);
   } catch (const std::exception& error) {
     trouble = error.what();

@@ -16,6 +16,7 @@ namespace {
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr double kFastest = 1e4;         // m/s, of a cloth
+constexpr double kLargestGravity = 1e3;  // m/s^2
 constexpr double kLongestStep = 3600.0;  // s, of the steady clock, likewise
 
 /// Without allocation if it is that frame already.
@@ -28,6 +29,22 @@ void requireCount(const char* name, std::size_t count, std::size_t particles) {
   if (count == particles) return;
   throw std::invalid_argument(std::string(name) + " has " + std::to_string(count) +
                               " elements: positions has " + std::to_string(particles));
+}
+
+void requireTriangleFabrics(const haptex::ClothMesh& message, std::size_t triangles) {
+  const std::vector<std::uint8_t>& fabrics = message.triangle_fabrics;
+  if (fabrics.size() != triangles) {
+    throw std::invalid_argument("triangle_fabrics has " + std::to_string(fabrics.size()) +
+                                " elements: allowed are none, or one per triangle, of which there "
+                                "are " +
+                                std::to_string(triangles));
+  }
+  for (std::size_t t = 0; t < fabrics.size(); ++t) {
+    if (fabrics[t] < message.fabrics.size()) continue;
+    throw std::invalid_argument("triangle_fabrics[" + std::to_string(t) +
+                                "] = " + std::to_string(fabrics[t]) + ": there are " +
+                                std::to_string(message.fabrics.size()) + " fabrics");
+  }
 }
 
 void readVelocities(const haptex::ClothState& message, simulation::LargeScaleState& state) {
@@ -46,7 +63,10 @@ void readVelocities(const haptex::ClothState& message, simulation::LargeScaleSta
 
 mesh::ClothMesh clothMesh(const haptex::ClothMesh& message) {
   const RestMesh rest = restMesh(message);
+  const std::vector<std::uint8_t>& fabrics = message.triangle_fabrics;
+  if (!fabrics.empty()) requireTriangleFabrics(message, rest.triangles.size());
   mesh::ClothMesh mesh;
+  mesh.triangle_fabrics.assign(fabrics.begin(), fabrics.end());
   mesh.triangles = rest.triangles;
   for (const Eigen::Vector3d& place : rest.rest_coordinates) {
     mesh.rest_coordinates.emplace_back(place.x(), place.y());
@@ -54,6 +74,15 @@ mesh::ClothMesh clothMesh(const haptex::ClothMesh& message) {
   }
   mesh::requireSound(mesh);
   return mesh;
+}
+
+Eigen::Vector3d readGravity(const haptex::ClothMesh& message) {
+  const Eigen::Vector3d gravity(message.gravity.x, message.gravity.y, message.gravity.z);
+  if (gravity.allFinite() && gravity.norm() <= kLargestGravity) return gravity;
+  std::ostringstream text;
+  text << "gravity = (" << gravity.transpose() << "): allowed are finite numbers up to "
+       << kLargestGravity << " m/s2";
+  throw std::invalid_argument(text.str());
 }
 
 void readState(const haptex::ClothState& message, simulation::LargeScaleState& state) {
@@ -112,6 +141,7 @@ void fillContact(const contact::FingertipContact& contact,
   static const contact::FingertipContact no_contact;
   const contact::FingertipContact& shown = gain > 0.0 ? contact : no_contact;
   message.touching = shown.touching;
+  message.fabric = static_cast<std::uint8_t>(shown.fabric);
   message.slipping = shown.slipping;
   message.force = vectorMessage(gain * shown.force);
   message.centre = pointMessage(shown.centre);

@@ -49,7 +49,7 @@ void TactileNode::addDiagnostics() {
 }
 
 void TactileNode::diagnoseSurface(Status& status) {
-  if (choice_.surface()) {
+  if (choice_.trouble().empty()) {
     status.summary(DiagnosticStatus::OK, "strokes " + choice_.fabric());
   } else {
     status.summary(DiagnosticStatus::WARN, "silent: " + choice_.trouble());

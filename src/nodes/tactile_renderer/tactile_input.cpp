@@ -9,7 +9,10 @@ namespace haptex::nodes {
 void TactileInput::receive(const haptex::Contact& message, base::Time arrival) {
   try {
     const auto touched = touchedFabric(message);
-    if (touched) add(*touched);
+    if (touched) {
+      add(*touched);
+      fabric_ = message.fabric;
+    }
     ++messages_;
     ++status_.taken;
     status_.last_arrival = arrival;

@@ -19,9 +19,10 @@ TactileLoop::TactileLoop(const tactile::ArrayLimits& limits)
     : limits_(sound(limits)),
       messages_{{tactileMessage(Finger::kIndex), tactileMessage(Finger::kThumb)}} {}
 
-void TactileLoop::step(const tactile::Surface* surface, Time now, const ros::Time& stamp) {
+void TactileLoop::step(const base::PerFinger<const tactile::Surface*>& surfaces, Time now,
+                       const ros::Time& stamp) {
   const double step_time = last_step_ ? base::seconds(now - *last_step_) : tactile::kTactileStep;
-  for (const Finger finger : kFingers) step(finger, surface, step_time, stamp);
+  for (const Finger finger : kFingers) step(finger, surfaces[finger], step_time, stamp);
   last_step_ = now;
   ++steps_;
 }

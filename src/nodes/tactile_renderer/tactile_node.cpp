@@ -95,7 +95,7 @@ void TactileNode::subscribe() {
 }
 
 void TactileNode::receiveMesh(const haptex::ClothMesh& message) {
-  if (choice_.receiveCloth(message.fabric) && !choice_.surface()) {
+  if (choice_.receiveCloth(message) && !choice_.trouble().empty()) {
     ROS_WARN("The contactors are silent: %s", choice_.trouble().c_str());
   }
 }
@@ -111,7 +111,11 @@ bool TactileNode::setSurface(haptex::SetSurface::Request& request,
 void TactileNode::step() {
   const Time begin = realtime::steadyNow();
   // For nobody it is as without a surface: contacts are taken, and nothing is computed.
-  loop_.step(isWatched() ? choice_.surface() : nullptr, begin, ros::Time::now());
+  base::PerFinger<const tactile::Surface*> surfaces{};
+  if (isWatched()) {
+    for (const Finger finger : kFingers) surfaces[finger] = choice_.surface(loop_.fabric(finger));
+  }
+  loop_.step(surfaces, begin, ros::Time::now());
   for (const Finger finger : kFingers) {
     if (publishers_[finger].getNumSubscribers() == 0) continue;
     publishers_[finger].publish(loop_.messages()[finger]);

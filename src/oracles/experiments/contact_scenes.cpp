@@ -144,7 +144,9 @@ Vector3d forceOnFingertips(const contact::HapticLayer& layer) {
 }
 
 RefinedCloth::RefinedCloth(const HapticLoopSettings& sample)
-    : law_(sample.fabric, {}, sample.effects.self_collision ? contact::LayersBetween::kMost : 1),
+    : fabrics_{sample.fabric},
+      laws_{contact::ContactLaw(sample.fabric, {},
+                                sample.effects.self_collision ? contact::LayersBetween::kMost : 1)},
       motion_(sample.mesh.rest_coordinates.size()) {
   std::vector<int> all(sample.mesh.triangles.size());
   std::iota(all.begin(), all.end(), 0);
@@ -154,7 +156,7 @@ RefinedCloth::RefinedCloth(const HapticLoopSettings& sample)
   patch_ = std::make_unique<contact::Patch>(
       sample.mesh,
       contact::cutAndRefine(sample.mesh, topology, all, attached, sample.haptics.refinement),
-      sample.fabric, sample.effects, law_);
+      fabrics_, sample.effects, laws_);
   motion_.receive(sample.mesh.initial_positions, 1.0);
   patch_->start(motion_);
 }

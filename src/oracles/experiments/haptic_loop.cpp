@@ -38,11 +38,17 @@ scene::Scene sceneOf(const HapticLoopSettings& settings) {
   return scene;
 }
 
+std::vector<material::Fabric> fabricsOf(const HapticLoopSettings& settings) {
+  std::vector<material::Fabric> fabrics = {settings.fabric};
+  fabrics.insert(fabrics.end(), settings.region_fabrics.begin(), settings.region_fabrics.end());
+  return fabrics;
+}
+
 }  // namespace
 
 HapticLoop::HapticLoop(HapticLoopSettings settings)
     : settings_(std::move(settings)),
-      cloth_(sceneOf(settings_), settings_.fabric),
+      cloth_(sceneOf(settings_), fabricsOf(settings_)),
       hierarchy_(settings_.mesh.triangles, mesh::flatPositions(settings_.mesh)),
       force_loop_(settings_.radii),
       supply_(settings_.haptics, settings_.mesh.triangles.size()) {
@@ -61,8 +67,9 @@ Time HapticLoop::now() const { return kStart + timeOf(time()); }
 
 void HapticLoop::offerLayer() {
   auto update = std::make_unique<simulation::LayerUpdate>();
-  update->layer = std::make_unique<contact::HapticLayer>(
-      settings_.mesh, settings_.fabric, settings_.effects, settings_.haptics, settings_.obstacles);
+  update->layer = std::make_unique<contact::HapticLayer>(settings_.mesh, fabricsOf(settings_),
+                                                         settings_.effects, settings_.haptics,
+                                                         settings_.obstacles);
   update->replaces_layer = true;
   update->particles = settings_.mesh.rest_coordinates.size();
   force_loop_.offer(std::move(update));

@@ -41,7 +41,26 @@ struct Case {
   const char* name;
   mesh::ClothMesh mesh;
   ModelledEffects effects;
+  std::vector<Fabric> fabrics = {fabricWithAll()};
 };
+
+/// With a stripe of another fabric along one side and in the middle.
+Case regions(ModelledEffects effects) {
+  effects.bending_hysteresis = false;  // knows no borders of fabrics
+  Case with{"regions",
+            sheet(mesh::Triangulation::kAlternating),
+            effects,
+            {fabricWithAll(), linearFabric(0.2)}};
+  Fabric& other = with.fabrics.back();
+  other.bending = {1e-4, 3e-4};
+  other.resilience = {0.5, 0.5};
+  other.shear_hysteresis = {0.01, 0.01};
+  for (const auto& triangle : with.mesh.triangles) {
+    const double weft = with.mesh.rest_coordinates[triangle[0]].x();
+    with.mesh.triangle_fabrics.push_back(weft < 0.035 || (weft > 0.055 && weft < 0.085) ? 1 : 0);
+  }
+  return with;
+}
 
 std::vector<Case> cases() {
   ModelledEffects plain;
@@ -66,7 +85,8 @@ std::vector<Case> cases() {
           {"irregular", sheet(Triangulation::kAlternating, true), bending},
           {"curved", sheet(Triangulation::kAlternating), curved},
           {"corotational", sheet(Triangulation::kOneWay), corotational},
-          {"springs", sheet(Triangulation::kAlternating), springs}};
+          {"springs", sheet(Triangulation::kAlternating), springs},
+          regions(bending)};
 }
 
 /// The right third, where an irregular sheet is regular, and a particle by itself in the left one.
@@ -121,7 +141,7 @@ TEST(ClothPart, ActsOnItsParticlesAsTheWholeDoes) {
   std::mt19937 random(7);
   for (const Case& one : cases()) {
     SCOPED_TRACE(one.name);
-    Cloth whole(one.mesh, fabricWithAll(), one.effects);
+    Cloth whole(one.mesh, one.fabrics, one.effects);
     std::vector<PointLoad> loads;
     for (int triangle = 0; triangle < 240; triangle += 7) {
       loads.push_back({triangle, Vector3d(0.2, 0.3, 0.5), Vector3d::Zero(), Vector3d(0.1, 0, 0),

@@ -72,6 +72,32 @@ TEST(ClothMarkers, ShowEveryTriangleAtItsPlaceWithFiniteColours) {
   }
 }
 
+TEST(ClothMarkers, TellFabricsApartByColourAndName) {
+  scene::Scene scene = simulation::smallScene();
+  const std::size_t triangles = scene.mesh.triangles.size();
+  scene.mesh.triangle_fabrics.assign(triangles, 0);
+  scene.mesh.triangle_fabrics[1] = 1;
+  material::Fabric first = simulation::smallFabric(), second = first;
+  first.name = "wool";
+  second.name = "denim";
+  simulation::SimulatedCloth simulation(scene, {first, second});
+  ClothMarkers markers(scene.mesh, 0.01, {}, ClothColours::kFabric);
+  const auto& shown = markers.update(simulation, ros::Time(1));
+  const Marker& cloth = find(shown, "cloth", Marker::TRIANGLE_LIST);
+  const auto hue = [&](std::size_t triangle) {  // shading takes as much off every colour
+    const auto& colour = cloth.colors[3 * triangle];
+    return Eigen::Vector3f(colour.r, colour.g, colour.b).normalized();
+  };
+  EXPECT_LT((hue(0) - distinctColour(0).normalized()).norm(), 1e-3F);
+  EXPECT_LT((hue(1) - distinctColour(1).normalized()).norm(), 1e-3F);
+  EXPECT_LT((hue(2) - hue(0)).norm(), 1e-3F);
+  std::vector<std::string> names;
+  for (const Marker& marker : shown.markers) {
+    if (marker.ns == "scale") names.push_back(marker.text);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"wool", "denim"}));
+}
+
 TEST(ClothMarkers, ShowAttachedParticlesAndVanishWithThem) {
   simulation::SimulatedCloth simulation = simulation::smallSimulation();
   ClothMarkers markers(simulation.cloth().mesh(), 0.01);

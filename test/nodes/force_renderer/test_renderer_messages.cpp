@@ -17,7 +17,7 @@ const ros::Time kStamp(1234, 5678);
 haptex::ClothMesh someMesh() {
   haptex::ClothMesh message;
   message.header.frame_id = "world";
-  message.fabric = "wool";
+  message.fabrics = {"wool"};
   message.rest_weft_coordinates = {0.0, 0.1, 0.1, 0.0};
   message.rest_warp_coordinates = {0.0, 0.0, 0.1, 0.1};
   message.triangles = {0, 1, 2, 0, 2, 3};

@@ -94,7 +94,7 @@ TEST_F(ClothProximityTest, DropsMeshesThatCannotBe) {
 TEST_F(ClothProximityTest, BuildsOnceForAMeshThatComesAgain) {
   setCloth();
   haptex::ClothMesh other_fabric = testMeshMessage(mesh_);
-  other_fabric.fabric = "another";
+  other_fabric.fabrics = {"another"};
   other_fabric.masses.assign(other_fabric.masses.size(), 2e-3);
   proximity_.setMesh(other_fabric);
   EXPECT_EQ(proximity_.status(kNow).meshes, 2u);

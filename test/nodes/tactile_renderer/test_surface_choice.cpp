@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "haptex/material/fabric_file.h"
 #include "haptex/nodes/tactile_renderer/surface_choice.h"
 
 namespace haptex::nodes::test_surface_choice {
@@ -10,6 +11,13 @@ namespace {
 const std::string kFabrics = std::string(HAPTEX_SOURCE_DIRECTORY) + "/config/fabrics/";
 const std::string kWool = kFabrics + "wool.yaml";      // has a surface
 const std::string kLinear = kFabrics + "linear.yaml";  // has none
+
+haptex::ClothMesh worn(const std::string& fabric) {
+  haptex::ClothMesh message;
+  message.fabrics = {fabric};
+  message.fabric_files = {material::loadFabric(kFabrics + fabric + ".yaml").file};
+  return message;
+}
 
 std::string refusal(SurfaceChoice& choice, const std::string& fabric) {
   try {
@@ -33,8 +41,8 @@ TEST(SurfaceChoice, BeginsWithTheScenesFabric) {
 
 TEST(SurfaceChoice, FollowsTheFabricOfTheCloth) {
   SurfaceChoice choice(kWool);
-  EXPECT_FALSE(choice.receiveCloth("wool"));
-  EXPECT_TRUE(choice.receiveCloth("denim"));
+  EXPECT_FALSE(choice.receiveCloth(worn("wool")));
+  EXPECT_TRUE(choice.receiveCloth(worn("denim")));
   ASSERT_NE(choice.surface(), nullptr);
   EXPECT_EQ(choice.fabric(), "denim");
 }
@@ -43,7 +51,7 @@ TEST(SurfaceChoice, WithoutASceneTakesThatOfTheFirstCloth) {
   SurfaceChoice choice("");
   EXPECT_EQ(choice.surface(), nullptr);
   EXPECT_NE(choice.trouble().find("cloth/mesh"), std::string::npos);
-  EXPECT_TRUE(choice.receiveCloth("wool"));
+  EXPECT_TRUE(choice.receiveCloth(worn("wool")));
   EXPECT_NE(choice.surface(), nullptr);
   EXPECT_EQ(choice.trouble(), "");
 }
@@ -57,21 +65,46 @@ TEST(SurfaceChoice, NamesTheKeyThatAFabricLacks) {
 }
 
 TEST(SurfaceChoice, HasNoneForAClothThatCannotBeStroked) {
-  for (const std::string fabric : {"linear", "no_such_fabric", "../fabrics/wool", ""}) {
+  haptex::ClothMesh another = worn("wool");
+  another.fabrics = {"linear"};
+  haptex::ClothMesh broken = worn("wool");
+  broken.fabric_files = {"wool.yaml"};
+  for (const haptex::ClothMesh& message : {worn("linear"), another, broken}) {
     SurfaceChoice choice(kWool);
-    EXPECT_TRUE(choice.receiveCloth(fabric));
-    EXPECT_EQ(choice.surface(), nullptr) << fabric;
-    EXPECT_NE(choice.trouble().find("'" + fabric + "'"), std::string::npos) << choice.trouble();
+    EXPECT_TRUE(choice.receiveCloth(message));
+    EXPECT_EQ(choice.surface(), nullptr) << choice.fabric();
+    EXPECT_NE(choice.trouble().find("'" + message.fabrics[0] + "'"), std::string::npos)
+        << choice.trouble();
   }
+}
+
+TEST(SurfaceChoice, HasOneForEveryFabricOfTheCloth) {
+  haptex::ClothMesh hemmed = worn("wool");
+  for (const char* name : {"denim", "linear"}) {
+    hemmed.fabrics.push_back(name);
+    hemmed.fabric_files.push_back(worn(name).fabric_files[0]);
+  }
+  SurfaceChoice choice(kWool);
+  EXPECT_TRUE(choice.receiveCloth(hemmed)) << "regions are new";
+  EXPECT_EQ(choice.fabric(), "wool, denim, linear");
+  ASSERT_NE(choice.surface(0), nullptr);
+  ASSERT_NE(choice.surface(1), nullptr);
+  EXPECT_EQ(choice.surface(0)->fabric, "wool");
+  EXPECT_EQ(choice.surface(1)->fabric, "denim");
+  EXPECT_EQ(choice.surface(2), nullptr) << "linear has no surface";
+  EXPECT_EQ(choice.surface(3), nullptr);
+  EXPECT_NE(choice.trouble().find("'linear'"), std::string::npos);
+  choice.ask("linen");
+  EXPECT_EQ(choice.surface(2)->fabric, "linen") << "what was asked for is felt everywhere";
 }
 
 TEST(SurfaceChoice, KeepsWhatWasAskedForUntilTheClothChanges) {
   SurfaceChoice choice(kWool);
   choice.ask("denim");
   EXPECT_EQ(choice.fabric(), "denim");
-  EXPECT_FALSE(choice.receiveCloth("wool")) << "it is the cloth's fabric as before";
+  EXPECT_FALSE(choice.receiveCloth(worn("wool"))) << "it is the cloth's fabric as before";
   EXPECT_EQ(choice.fabric(), "denim");
-  EXPECT_TRUE(choice.receiveCloth("linen"));
+  EXPECT_TRUE(choice.receiveCloth(worn("linen")));
   EXPECT_EQ(choice.fabric(), "linen");
   choice.ask(kWool);
   EXPECT_EQ(choice.path(), kWool);

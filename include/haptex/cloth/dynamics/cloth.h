@@ -55,8 +55,9 @@ class Cloth {
   Cloth(mesh::ClothMesh mesh, material::Fabric fabric, const ModelledEffects& effects);
 
   const mesh::ClothMesh& mesh() const { return mesh_; }
-  /// The first one, and the only one of a sheet.
+  /// The first one, that of all which is in no region.
   const material::Fabric& fabric() const { return fabrics_.front(); }
+  /// All, as the triangles name them (mesh::ClothMesh::fabricOf()).
   const std::vector<material::Fabric>& fabrics() const { return fabrics_; }
   const ModelledEffects& effects() const { return effects_; }
   std::size_t particleCount() const { return masses_.size(); }

@@ -24,9 +24,9 @@ struct MembraneElement {
   double area;                         ///< at rest, m^2
 };
 
-/// The elements of all triangles of a mesh without defects, or of one panel's.
+/// The elements of all triangles of a mesh without defects, or of those of one fabric.
 std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh,
-                                          std::optional<int> panel = std::nullopt);
+                                          std::optional<int> fabric = std::nullopt);
 
 /// Looks up the slots of elements in a matrix.
 /// @throws std::out_of_range if the pattern lacks one of them

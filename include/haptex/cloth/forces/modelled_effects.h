@@ -39,7 +39,7 @@ struct ModelledEffects {
 /// Adds the forces that fabrics and the air have on a cloth; a new kind of force is added here.
 /// Each panel bends by itself: a seam resists no bending.
 /// @param mesh    without defects
-/// @param fabrics that the panels name
+/// @param fabrics that the triangles name
 /// @throws std::invalid_argument if a panel's fabric is not there, the mesh is not what the
 ///   elasticity needs (findLatticeSprings(), or several panels of springs), bending, a hysteresis
 ///   or contraction is modelled and the fabric has none, contraction or hysteresis of stretch and

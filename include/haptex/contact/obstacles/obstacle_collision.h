@@ -22,7 +22,8 @@ namespace haptex::contact {
 ///
 /// Particles are held kOffset above the surface, which is about half of a fabric's thickness, and
 /// are never nearer than kOffset - kTolerance after a step, unless they are attached, or held by
-/// two obstacles closer than that. Between two steps paths are taken as straight in the obstacle's
+/// two obstacles closer than that. Their friction is that of the fabric, on the border of several
+/// the mean by area. Between two steps paths are taken as straight in the obstacle's
 /// frame and followed all along, so that neither speed nor thin obstacles let a particle through.
 /// What happens between the particles is not looked at: what is smaller than the mesh's cells gets
 /// through them, and a cell dips into a sphere of radius R by up to its size squared over 8 R.
@@ -46,7 +47,7 @@ class ObstacleCollision {
   ///   be made after, if an obstacle has mass
   /// @param start s, simulated, of the first step
   /// @throws std::invalid_argument what makeObstacle() says, if an obstacle has no friction of
-  ///   its own and the fabric has none, or if the cloth collides with itself and a triangle of it
+  ///   its own and a fabric has none, or if the cloth collides with itself and a triangle of it
   ///   touches an obstacle or is inside of it at the start, what FreeBody says, if more than
   ///   kMostBodies have mass, or any if the cloth collides with itself
   ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles, double start = 0.0);
@@ -77,6 +78,8 @@ class ObstacleCollision {
 
  private:
   void addObstacle(const cloth::Cloth& cloth, const mesh::Obstacle& obstacle, double start);
+  void shareFriction(const cloth::Cloth& cloth);
+  double frictionAt(int particle, std::size_t obstacle) const;
   void addBodies(cloth::Cloth& cloth);
   void placeObstacles(const cloth::Cloth& cloth, double begin, double end);
   void predictBodies(const Eigen::Vector3d& gravity, double h);
@@ -95,6 +98,9 @@ class ObstacleCollision {
 
   std::vector<mesh::Obstacle> obstacles_;
   std::vector<PlacedObstacle> placed_;
+  // Of a cloth of several fabrics, per particle: how much of its area is of the first, and what the
+  // others add to its coefficient. Empty: there is one.
+  std::vector<double> first_share_, other_friction_;
   std::vector<FreeBody> bodies_;
   cloth::RigidBodies rigid_;                       // those of this step
   std::optional<cloth::BodyContactSolver> alone_;  // how they go without the cloth

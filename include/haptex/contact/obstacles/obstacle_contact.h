@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "haptex/contact/sphere_contact.h"
@@ -17,14 +18,15 @@ class PlacedObstacles {
  public:
   struct Body {
     proximity::RigidObstacle shape;  ///< in its own frame
-    double friction;                 ///< of the fabric on it
+    std::vector<double> friction;    ///< of every fabric on it
     Eigen::Isometry3d pose;          ///< from its own frame to the world frame
     Eigen::Isometry3d to_own;        ///< the inverse
   };
 
   PlacedObstacles() = default;
   /// @throws std::invalid_argument what makeObstacle() and frictionOn() say
-  PlacedObstacles(std::vector<mesh::Obstacle> obstacles, const material::Fabric& fabric);
+  PlacedObstacles(std::vector<mesh::Obstacle> obstacles,
+                  const std::vector<material::Fabric>& fabrics);
 
   /// @param time s, simulated
   void moveTo(double time);
@@ -54,9 +56,12 @@ class ObstacleContact {
  public:
   static constexpr double kTracked = 5e-3;  ///< m, from an obstacle
 
+  /// @param fabrics  of the cloth, with compression
+  /// @param of_particles into these; empty: all are of the first
   /// @param sticking Pa/m: shear traction by displacement while the fabric sticks
-  ObstacleContact(const PlacedObstacles& obstacles, const material::Compression& compression,
-                  double sticking, std::size_t most_particles);
+  ObstacleContact(const PlacedObstacles& obstacles, const std::vector<material::Fabric>& fabrics,
+                  std::vector<std::uint8_t> of_particles, double sticking,
+                  std::size_t most_particles);
 
   /// Particles that touch an obstacle, once for each, and the forces on them; normals point out of
   /// the obstacle.
@@ -93,13 +98,18 @@ class ObstacleContact {
   void visitAll(const Particles& particles, const Visit& visit);
   bool isNear(const PlacedObstacles::Body& body, const Eigen::Vector3d& own, Place& place,
               Nearest& nearest) const;
+  /// @param result with its particle
   bool touch(const PlacedObstacles::Body& body, const Nearest& nearest, const Place& place,
              const Eigen::Vector3d& own, double area, TouchedParticle& result) const;
+  std::size_t fabricOf(int particle) const {
+    return of_particles_.empty() ? 0 : of_particles_[particle];
+  }
 
   const PlacedObstacles& obstacles_;
-  material::Compression compression_;
-  double sticking_;            // Pa/m
-  std::vector<Place> places_;  // by obstacle, then by particle
+  std::vector<material::Compression> compressions_;  // of the fabrics
+  std::vector<std::uint8_t> of_particles_;           // into these
+  double sticking_;                                  // Pa/m
+  std::vector<Place> places_;                        // by obstacle, then by particle
   std::size_t particles_;
   std::vector<TouchedParticle> touched_;
 };

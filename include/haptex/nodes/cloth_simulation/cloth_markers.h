@@ -15,13 +15,17 @@
 
 namespace haptex::nodes {
 
+/// What the colours of a cloth tell.
+enum class ClothColours { kStrain, kFabric };
+
 /// Markers of a cloth in the frame kFixedFrame, in namespaces that rviz can switch off singly:
 /// "cloth": triangles coloured by the largest principal Green-Lagrange strain, averaged at the
 ///   particles with the rest areas of the triangles around. rviz does not light triangles that
 ///   have colours of their own, so the shading of a fixed light is part of the colours. Particles
-///   that are excluded from the computation are grey.
+///   that are excluded from the computation are grey. Or by the fabric of every triangle
+///   (distinctColour()).
 /// "scale": the colours of the last four decades to the full scale with numbers in percent, beside
-///   the place where the cloth starts.
+///   the place where the cloth starts; or the names of the fabrics in their colours.
 /// "obstacles": those that move; the proximity node shows those that rest.
 /// "attachments": attached particles that are not excluded as bars along the edges that join them,
 /// or as balls.
@@ -29,7 +33,8 @@ class ClothMarkers {
  public:
   /// @param full_scale strain with the last colour of the scale, finite and > 0
   ClothMarkers(const mesh::ClothMesh& mesh, double full_scale,
-               const std::vector<mesh::Obstacle>& obstacles = {});
+               const std::vector<mesh::Obstacle>& obstacles = {},
+               ClothColours colours = ClothColours::kStrain);
 
   /// The markers of the present state, valid until the next call. Allocates nothing once the
   /// number of attached particles has been met.
@@ -38,6 +43,8 @@ class ClothMarkers {
 
  private:
   void addScale();
+  void addFabricNames();
+  void updateFabricNames(const simulation::SimulatedCloth& simulation);
   void addLabel(const Eigen::Vector3d& place, double height, const std::string& text);
   void computeStrainColours(const simulation::SimulatedCloth& simulation);
   void computeNormals(const std::vector<Eigen::Vector3d>& positions);
@@ -47,7 +54,10 @@ class ClothMarkers {
 
   std::vector<std::array<int, 3>> triangles_;
   std::vector<std::array<int, 2>> edges_;  // each once
+  std::vector<int> triangle_fabrics_;      // empty: all are of the first
+  int fabrics_ = 1;
   double full_scale_;
+  ClothColours coloured_by_;
   Eigen::Vector3d middle_;  // of the box around the initial positions, m
   Eigen::Vector3d extent_;  // its edges, m
   double size_;             // the longest of them, m

@@ -42,8 +42,9 @@ struct ClothNodeParameters {
   double state_rate = 0.0;    ///< ~state_rate: Hz of simulated time; 0, the default: every step
   double marker_rate = 0.0;   ///< ~marker_rate: Hz of simulated time, default 25
   double strain_scale = 0.0;  ///< ~strain_scale: strain with the last colour, default 0.01
-  QualityRequest quality;     ///< ~quality, ~budget_ms; by default the scene's own settings,
-                              ///< which ~quality = scene with a budget lets be reduced
+  ClothColours colour_by = ClothColours::kStrain;  ///< ~colour_by: strain, the default, or fabric
+  QualityRequest quality;  ///< ~quality, ~budget_ms; by default the scene's own settings,
+                           ///< which ~quality = scene with a budget lets be reduced
 
   /// Rates are rounded to whole numbers of steps between two messages.
   /// @throws std::invalid_argument naming the parameter, its value and what is allowed
@@ -123,6 +124,7 @@ class ClothNode {
   std::uint64_t steps_per_state_;
   std::uint64_t steps_per_markers_;
   ClothMarkers markers_;
+  std::uint32_t mesh_ = 0;  // its number
   haptex::ClothState state_message_;
   std::vector<Eigen::Vector3d> forces_;
   ros::Time state_stamp_;

@@ -80,9 +80,9 @@ class RuntimeQuality {
                                     const material::Fabric& fabric) const;
 
   scene::Scene scene_;
-  material::Fabric fabric_;
-  double budget_;   // s, infinity: none
-  bool reducible_;  // the last of rungs_ is what was asked for
+  std::vector<material::Fabric> fabrics_;  // of the scene
+  double budget_;                          // s, infinity: none
+  bool reducible_;                         // the last of rungs_ is what was asked for
   std::vector<simulation::Candidate>
       candidates_;                            // the front, from the cheapest to the most accurate
   std::vector<simulation::Candidate> rungs_;  // what a running cloth switches among

@@ -1,21 +1,29 @@
-// The fabric that the large-scale layer names in cloth/mesh.
+// The fabrics that the large-scale layer sends in cloth/mesh.
 #pragma once
 
-#include <string>
+#include <haptex/ClothMesh.h>
+
+#include <cstddef>
+#include <vector>
 
 #include "haptex/material/fabric.h"
 
 namespace haptex::nodes {
 
-/// A fabric and the file that it was read from.
-struct FabricOfFile {
-  material::Fabric fabric;
-  std::string path;
-};
+constexpr std::size_t kLongestFabricFile = 1000000;  ///< bytes
+constexpr std::size_t kLongestFabricName = 200;      ///< bytes
 
-/// The scene's fabric if it has this name, otherwise the package's of this name.
-/// @param scene_fabric path of the fabric file of the scene; empty without a scene
-/// @throws std::exception naming what was wrong with the name or the file; a path is no name
-FabricOfFile fabricOfCloth(const std::string& name, const std::string& scene_fabric);
+constexpr std::size_t kMostFabrics = 256;  ///< of a cloth
+
+/// Reads the fabrics from the texts in the message, and no file.
+/// @throws std::exception naming the fabric and what is wrong with it: no text for each name, none
+///   or more than kMostFabrics, one that is longer than the above, that is not a fabric file, or is
+///   one of another fabric
+std::vector<material::Fabric> fabricsOfCloth(const haptex::ClothMesh& message);
+
+/// One of them, likewise. @param index less than the number of names
+material::Fabric fabricOfCloth(const haptex::ClothMesh& message, std::size_t index);
+/// @throws std::invalid_argument if there are not as many texts as names, none or too many
+void requireFabrics(const haptex::ClothMesh& message);
 
 }  // namespace haptex::nodes

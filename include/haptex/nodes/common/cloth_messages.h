@@ -10,6 +10,7 @@
 #include <std_msgs/Header.h>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
@@ -20,8 +21,10 @@ namespace haptex::nodes {
 /// The one frame of everything this package sends and takes; its origin is that of the scene.
 constexpr char kFixedFrame[] = "world";
 
-/// @param stamp when the fabric became this one
-haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, const ros::Time& stamp);
+/// @param mesh  the number of the mesh
+/// @param stamp when all of it became so
+haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
+                              const ros::Time& stamp);
 
 /// Fills a state message in place but for until_next, without allocation once its arrays have their
 /// size.

@@ -16,14 +16,14 @@ namespace haptex::nodes {
 
 class LayerBuilder {
  public:
-  /// @param scene_path the scene of the large-scale layer, for its effects, its fabric, and how the
-  ///   small-scale layer is computed
+  /// @param scene_path the scene of the large-scale layer, for its effects and obstacles, and how
+  ///   the small-scale layer is computed
   /// @throws std::exception what scene::loadScene() and contact::loadHapticSettings() throw
   explicit LayerBuilder(const std::string& scene_path);
 
   const contact::HapticSettings& settings() const { return settings_; }
 
-  /// The fabric is that of fabricOfCloth().
+  /// Fabrics and gravity are those of the message.
   /// @throws std::exception naming what was wrong with the mesh or the fabric
   std::unique_ptr<contact::HapticLayer> build(const haptex::ClothMesh& message) const;
 
@@ -31,7 +31,6 @@ class LayerBuilder {
   contact::HapticSettings settings_;
   cloth::ModelledEffects effects_;
   std::vector<mesh::Obstacle> obstacles_;
-  std::string fabric_path_;
 };
 
 }  // namespace haptex::nodes

@@ -83,7 +83,7 @@ class PatchSupplier {
   Time next_connection_{0};
   Time next_question_{0};
   RestMesh mesh_;
-  std::string fabric_;
+  haptex::ClothMeshConstPtr message_;              // of the layer
   const contact::HapticLayer* layer_ = nullptr;    // the loop's; null: none
   std::optional<simulation::PatchSupply> supply_;  // with the layer
   std::uint64_t loadings_published_ = 0;

@@ -26,6 +26,9 @@ namespace haptex::nodes {
 /// @throws std::invalid_argument naming what is wrong with the message
 mesh::ClothMesh clothMesh(const haptex::ClothMesh& message);
 
+/// m/s^2. @throws std::invalid_argument unless it is finite and at most 1000 m/s^2
+Eigen::Vector3d readGravity(const haptex::ClothMesh& message);
+
 /// Allocates nothing once the vectors have their size.
 /// @throws std::invalid_argument naming field, value and what is allowed: another frame than
 ///   kFixedFrame, arrays that do not fit together, an attached particle that does not exist, a

@@ -1,58 +1,74 @@
-// Which fabric's surface the tactile renderer strokes.
+// Which fabrics' surfaces the tactile renderer strokes.
 #pragma once
 
+#include <haptex/ClothMesh.h>
+
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "haptex/material/fabric.h"
 #include "haptex/material/surface.h"
-#include "haptex/nodes/common/cloth_fabric.h"
 #include "haptex/tactile/surface.h"
 
 namespace haptex::nodes {
 
-/// The surface of the cloth's fabric, or, until the cloth gets another fabric, the one that
-/// somebody asked for.
+/// The surfaces of the cloth's fabrics, or, until the cloth gets other fabrics, the one that
+/// somebody asked for, everywhere.
 class SurfaceChoice {
  public:
-  /// Begins with the fabric of a scene. That it has no surface is no error.
+  /// Begins with the fabric of a scene; those of its regions come with cloth/mesh. That it has no
+  /// surface is no error.
   /// @param scene_fabric path of its file; empty without a scene: then there is no surface yet
   /// @throws std::exception naming the file and what is wrong with the fabric or its surface
   explicit SurfaceChoice(const std::string& scene_fabric);
 
-  /// Takes the fabric that cloth/mesh names; does nothing if that is as before. Without a surface
+  /// Takes the fabrics of cloth/mesh; does nothing if those are as before. On one without a surface
   /// that can be stroked there is none from then on: another fabric's would be wrong.
-  /// @returns whether it is another fabric
-  bool receiveCloth(const std::string& fabric);
+  /// @returns whether they are other fabrics
+  bool receiveCloth(const haptex::ClothMesh& message);
 
   /// @param fabric name of a fabric in config/fabrics or the path of a fabric file
   /// @throws std::exception naming what is wrong with the fabric or its surface, or that it has
-  ///   none; the surface is then as before
+  ///   none; the surfaces are then as before
   void ask(const std::string& fabric);
 
-  /// Null if there is none. Valid until the next call of a function that is not const.
-  const tactile::Surface* surface() const { return surface_ ? &*surface_ : nullptr; }
-  /// Why there is no surface; empty if there is one.
-  const std::string& trouble() const { return trouble_; }
-  /// Name and file of the fabric; empty where it is not known.
-  const std::string& fabric() const { return fabric_; }
-  const std::string& path() const { return path_; }
+  /// Of one of the cloth's fabrics. Null if there is none. Valid until the next call of a function
+  /// that is not const.
+  const tactile::Surface* surface(std::size_t fabric = 0) const;
+  /// Why there is no surface, of the first fabric without; empty if all have one.
+  const std::string& trouble() const;
+  /// Names of the fabrics, and the path of the first one's file or that it came in cloth/mesh;
+  /// empty where it is not known.
+  std::string fabric() const;
+  const std::string& path() const { return choices_.front().path; }
   /// Where it comes from, for people.
   const char* origin() const { return asked_ ? "tactile/set_surface" : "the cloth"; }
-  /// Its KES surface values.
-  const std::optional<material::Surface>& values() const { return values_; }
+  /// The first one's KES surface values.
+  const std::optional<material::Surface>& values() const { return choices_.front().values; }
 
  private:
-  /// @throws std::exception what tactile::buildSurface() throws; nothing has changed then
-  void use(const FabricOfFile& read);
-  void useIfAny(const FabricOfFile& read);
-  void useNone(const FabricOfFile& read, const std::string& why);
+  struct FabricOfFile {
+    material::Fabric fabric;
+    std::string path;
+  };
+  struct Choice {
+    std::optional<tactile::Surface> surface;
+    std::optional<material::Surface> values;
+    std::string fabric, path, trouble;
+  };
 
-  const std::string scene_fabric_;
-  std::string cloth_;  // its fabric
-  std::optional<tactile::Surface> surface_;
-  std::optional<material::Surface> values_;
-  std::string fabric_, path_;
-  std::string trouble_;
+  static FabricOfFile readFabric(const std::string& path);
+  static std::string withoutSurface(const FabricOfFile& read);
+  /// @throws std::exception what tactile::buildSurface() throws
+  static Choice chosen(const FabricOfFile& read);
+  static Choice none(const FabricOfFile& read, const std::string& why);
+  static Choice chosenIfAny(const FabricOfFile& read);
+  static Choice ofCloth(const haptex::ClothMesh& message, std::size_t index);
+
+  std::vector<std::string> cloth_names_, cloth_files_;  // of its fabrics, as in cloth/mesh
+  std::vector<Choice> choices_;  // at least one: of the cloth's fabrics, or asked for
   bool asked_ = false;
 };
 

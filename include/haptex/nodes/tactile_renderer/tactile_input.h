@@ -35,6 +35,8 @@ class TactileInput {
   std::optional<tactile::TouchedFabric> endStep();
 
   const TactileInputStatus& status() const { return status_; }
+  /// Which of the cloth's fabrics the newest message that touches names.
+  std::size_t fabric() const { return fabric_; }
 
  private:
   void add(const tactile::TouchedFabric& touched);
@@ -44,6 +46,7 @@ class TactileInput {
   int messages_ = 0;
   int touching_ = 0;            // of these
   tactile::TouchedFabric sum_;  // but the placement is the last one
+  std::size_t fabric_ = 0;
 };
 
 }  // namespace haptex::nodes

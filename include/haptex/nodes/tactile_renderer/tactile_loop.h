@@ -30,13 +30,16 @@ class TactileLoop {
 
   /// Ends a step of both fingers. A finger without contact, and any without a surface, gets zeros,
   /// for which nothing is computed. Allocates nothing.
-  /// @param surface null if there is none to be stroked
+  /// @param surfaces under each finger; null if there is none to be stroked
   /// @param now of the steady clock @param stamp the same moment by ROS's clock
-  void step(const tactile::Surface* surface, Time now, const ros::Time& stamp);
+  void step(const base::PerFinger<const tactile::Surface*>& surfaces, Time now,
+            const ros::Time& stamp);
 
   /// Of the last step; zeros before the first.
   const base::PerFinger<haptex::Tactile>& messages() const { return messages_; }
   bool touching(Finger finger) const { return touching_[finger]; }
+  /// Which of the cloth's fabrics is under a finger.
+  std::size_t fabric(Finger finger) const { return inputs_[finger].fabric(); }
 
   const tactile::ArrayLimits& limits() const { return limits_; }
   const TactileInputStatus& input(Finger finger) const { return inputs_[finger].status(); }

@@ -50,6 +50,10 @@ void validateContact(const std::string& config_directory, const Sink& sink);
 /// drag of fabric that slips. Fast fingers, which must not get through, are a random check.
 void validateTable(const std::string& config_directory, const Sink& sink);
 
+/// Cloth of two fabrics: a strip in series, a press on either side of the border, and a finger that
+/// rubs across it.
+void validateRegions(const std::string& config_directory, const Sink& sink);
+
 /// Relative, of the force of a press on a woven fabric: 1 %, and 10 % by the coarse patches under
 /// sanitizers.
 double pressTolerance();

@@ -67,7 +67,8 @@ class RefinedCloth {
   Eigen::Vector2d fabricPosition(base::Finger finger) const;
 
  private:
-  contact::ContactLaw law_;
+  std::vector<material::Fabric> fabrics_;
+  std::vector<contact::ContactLaw> laws_;
   contact::LargeScaleMotion motion_;
   std::unique_ptr<contact::Patch> patch_;
 };

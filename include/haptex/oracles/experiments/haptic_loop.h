@@ -21,6 +21,7 @@ constexpr double kThumbRadius = 9e-3;    ///< m
 struct HapticLoopSettings {
   mesh::ClothMesh mesh;
   material::Fabric fabric;
+  std::vector<material::Fabric> region_fabrics;  ///< fabrics 1, 2, ... of the mesh
   cloth::ModelledEffects effects;
   std::vector<int> attached_particles;
   std::vector<mesh::Obstacle> obstacles;  ///< that the cloth collides with if effects has contacts

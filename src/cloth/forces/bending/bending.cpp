@@ -25,27 +25,47 @@ void requireRigidity(const char* name, double value) {
   }
 }
 
+const std::vector<material::BendingRigidity>& required(
+    const std::vector<material::BendingRigidity>& rigidities) {
+  for (const material::BendingRigidity& rigidity : rigidities) {
+    requireRigidity("weft", rigidity.weft);
+    requireRigidity("warp", rigidity.warp);
+  }
+  return rigidities;
+}
+
 }  // namespace
 
 Bending::Bending(const mesh::ClothMesh& mesh, const material::BendingRigidity& rigidity,
                  const BendingSettings& settings)
+    : Bending(mesh, {rigidity}, PlateMap(required({rigidity}).front()), settings) {}
+
+Bending::Bending(const mesh::ClothMesh& mesh,
+                 const std::vector<material::BendingRigidity>& rigidities,
+                 const BendingSettings& settings)
+    : Bending(mesh, rigidities, PlateMap(mesh, required(rigidities)), settings) {}
+
+Bending::Bending(const mesh::ClothMesh& mesh,
+                 const std::vector<material::BendingRigidity>& rigidities, const PlateMap& plates,
+                 const BendingSettings& settings)
     : model_(settings.model), diagonal_(mesh.rest_coordinates.size(), 0.0) {
-  requireRigidity("weft", rigidity.weft);
-  requireRigidity("warp", rigidity.warp);
   if (!settings.rest_curvature.allFinite()) {
     throw std::invalid_argument("the rest curvature has a component that is not finite");
   }
-  if (rigidity.weft == 0.0 && rigidity.warp == 0.0) return;
-  const PlateRigidity plate(rigidity);
+  if (std::all_of(rigidities.begin(), rigidities.end(), [](const auto& rigidity) {
+        return rigidity.weft == 0.0 && rigidity.warp == 0.0;
+      })) {
+    return;
+  }
   std::optional<std::vector<double>> stiffnesses;
   if (settings.model == BendingModel::kLinear) {
     const BendingStencils found = findBendingStencils(mesh);
-    stiffnesses = fitStiffnesses(found, plate);
+    stiffnesses = fitStiffnesses(found, plates);
     if (stiffnesses) addFittedHinges(found, *stiffnesses);
   }
   if (!stiffnesses) {
     model_ = BendingModel::kQuadratic;
-    addCurvatureHinges(mesh, plate);
+    addCurvatureHinges(mesh, plates);
   }
   couple(mesh);
   if (!settings.rest_curvature.isZero(0.0)) {
@@ -66,9 +86,12 @@ void Bending::addFittedHinges(const BendingStencils& found,
 
 /// The target of every triangle is a sum of squares: each becomes a hinge. Its weights are those of
 /// the curvature times the triangle's area.
-void Bending::addCurvatureHinges(const mesh::ClothMesh& mesh, const PlateRigidity& rigidity) {
+void Bending::addCurvatureHinges(const mesh::ClothMesh& mesh, const PlateMap& plates) {
   constexpr double kLeast = 1e-12;  // of an isotropic fabric's target, which is 1
-  for (const CurvatureStencil& stencil : findCurvatureStencils(mesh)) {
+  const std::vector<CurvatureStencil> stencils = findCurvatureStencils(mesh);
+  for (std::size_t t = 0; t < stencils.size(); ++t) {
+    const CurvatureStencil& stencil = stencils[t];
+    const PlateRigidity& rigidity = plates.ofTriangle(t);
     const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(rigidity.target(stencil.free_normals));
     for (int i = 0; i < 3; ++i) {
       const double part = parts.eigenvalues()[i];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 // A stencil with stiffness k resists the second derivatives in one direction s of (wuu, wvv, wuv):
 // energy k (s . w)^2 / 2. What a particle's stencils resist together is the sum of k s s^T over its
@@ -87,13 +88,64 @@ bool addFitted(const BendingStencils& found, const BendingNeighbourhood& around,
 
 }  // namespace
 
-PlateRigidity::PlateRigidity(const material::BendingRigidity& rigidity) {
-  const double largest = std::max(rigidity.weft, rigidity.warp);
-  const double weft = std::max(rigidity.weft, kMinRatio * largest);
-  const double warp = std::max(rigidity.warp, kMinRatio * largest);
+PlateRigidity::PlateRigidity(const material::BendingRigidity& rigidity)
+    : PlateRigidity(
+          Vector3d(rigidity.weft, rigidity.warp, 2.0 * std::sqrt(rigidity.weft * rigidity.warp))) {}
+
+PlateRigidity::PlateRigidity(const Vector3d& resisted)
+    : resisted_(resisted), scale_(Vector3d::Ones()), wanted_(Vector3d::Zero()) {
+  const double largest = std::max(resisted[0], resisted[1]);
+  if (largest == 0.0) return;  // nothing is resisted, in whatever units
+  const double weft = std::max(resisted[0], kMinRatio * largest);
+  const double warp = std::max(resisted[1], kMinRatio * largest);
   scale_ = Vector3d(std::sqrt(weft), std::sqrt(warp), std::sqrt(2.0 * std::sqrt(weft * warp)));
-  wanted_ = Vector3d(rigidity.weft, rigidity.warp, 2.0 * std::sqrt(rigidity.weft * rigidity.warp))
-                .cwiseQuotient(scale_.cwiseAbs2());
+  wanted_ = resisted_.cwiseQuotient(scale_.cwiseAbs2());
+}
+
+PlateRigidity PlateRigidity::mean(
+    const std::vector<std::pair<double, const PlateRigidity*>>& plates) {
+  Vector3d sum = Vector3d::Zero();
+  double areas = 0.0;
+  for (const auto& [area, plate] : plates) {
+    sum += area * plate->resisted_;
+    areas += area;
+  }
+  return PlateRigidity(Vector3d(sum / areas));
+}
+
+PlateMap::PlateMap(const mesh::ClothMesh& sheet,
+                   const std::vector<material::BendingRigidity>& rigidities) {
+  for (const material::BendingRigidity& rigidity : rigidities) plates_.emplace_back(rigidity);
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
+    triangles_.push_back(sheet.fabricOf(t));
+  }
+  addParticles(sheet);
+}
+
+void PlateMap::addParticles(const mesh::ClothMesh& sheet) {
+  std::vector<std::vector<int>> around(sheet.rest_coordinates.size());
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
+    for (const int particle : sheet.triangles[t]) around[particle].push_back(static_cast<int>(t));
+  }
+  const std::size_t fabrics = plates_.size();
+  plates_.reserve(fabrics + around.size());
+  for (const std::vector<int>& triangles : around) {
+    std::set<int> met;
+    for (const int triangle : triangles) met.insert(triangles_[triangle]);
+    if (met.size() == 1) {
+      particles_.push_back(*met.begin());
+      continue;
+    }
+    std::vector<std::pair<double, const PlateRigidity*>> parts;
+    for (const int triangle : triangles) {
+      const std::array<Eigen::Vector2d, 3> corners = sheet.restCorners(triangle);
+      Eigen::Matrix2d edges;
+      edges << corners[1] - corners[0], corners[2] - corners[0];
+      parts.emplace_back(std::abs(edges.determinant()), &plates_[triangles_[triangle]]);
+    }
+    particles_.push_back(static_cast<int>(plates_.size()));
+    plates_.push_back(PlateRigidity::mean(parts));
+  }
 }
 
 Matrix3d PlateRigidity::target(const std::vector<Eigen::Vector2d>& free_normals) const {
@@ -113,10 +165,11 @@ Matrix3d PlateRigidity::target(const std::vector<Eigen::Vector2d>& free_normals)
 }
 
 std::optional<std::vector<double>> fitStiffnesses(const BendingStencils& found,
-                                                  const PlateRigidity& rigidity) {
+                                                  const PlateMap& plates) {
   std::vector<double> stiffnesses(found.stencils.size(), 0.0);
-  for (const BendingNeighbourhood& around : found.neighbourhoods) {
-    const bool exact = addFitted(found, around, rigidity, stiffnesses);
+  for (std::size_t i = 0; i < found.neighbourhoods.size(); ++i) {
+    const BendingNeighbourhood& around = found.neighbourhoods[i];
+    const bool exact = addFitted(found, around, plates.ofParticle(i), stiffnesses);
     if (!exact && around.free_normals.empty()) return std::nullopt;
   }
   return stiffnesses;

@@ -55,6 +55,12 @@ class Bending final : public Force {
   ///   finite
   Bending(const mesh::ClothMesh& mesh, const material::BendingRigidity& rigidity,
           const BendingSettings& settings = {});
+  /// Of several fabrics, which are one piece: a moment goes on over the border between two. A
+  /// hinge there resists with what it covers of both, bent alike; where the border lies across the
+  /// bend, the stiffer one so acts up to half of a cell beyond it.
+  /// @param rigidities of the fabrics that the triangles name
+  Bending(const mesh::ClothMesh& mesh, const std::vector<material::BendingRigidity>& rigidities,
+          const BendingSettings& settings = {});
 
   /// Makes it one on some particles of a larger mesh. Before bind().
   /// @param particles of that mesh, for every one of this, ascending
@@ -88,8 +94,10 @@ class Bending final : public Force {
   const std::vector<Coupling>& couplings() const { return couplings_; }
 
  private:
+  Bending(const mesh::ClothMesh& mesh, const std::vector<material::BendingRigidity>& rigidities,
+          const PlateMap& plates, const BendingSettings& settings);
   void addFittedHinges(const BendingStencils& found, const std::vector<double>& stiffnesses);
-  void addCurvatureHinges(const mesh::ClothMesh& mesh, const PlateRigidity& rigidity);
+  void addCurvatureHinges(const mesh::ClothMesh& mesh, const PlateMap& plates);
   void couple(const mesh::ClothMesh& mesh);
 
   BendingModel model_;
