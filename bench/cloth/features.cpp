@@ -99,7 +99,7 @@ void printBesideTheSteps() {
   print("sleep/step", microseconds([&] { simulation.step(); }), "us");
 
   const simulation::TouchCost touch = simulation::measureTouch(
-      scene.mesh, wool, scene.effects, contact::loadHapticSettings(path), kRepetitions);
+      scene.mesh, {wool}, scene.effects, contact::loadHapticSettings(path), kRepetitions);
   print("patch/far_particles", static_cast<double>(touch.far_particles), "1");
   print("patch/far_millisecond", 1e6 * touch.far_seconds, "us");
   print("patch/near_particles", static_cast<double>(touch.near_particles), "1");

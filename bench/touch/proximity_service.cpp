@@ -55,7 +55,7 @@ class PlayedCloth {
     ClothMesh message;
     message.header.stamp = ros::Time::now();
     message.header.frame_id = "world";
-    message.fabric = "bench";
+    message.fabrics = {"bench"};
     for (const Eigen::Vector2d& rest : mesh_.rest_coordinates) {
       message.rest_weft_coordinates.push_back(rest.x());
       message.rest_warp_coordinates.push_back(rest.y());

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/require.h"
+
 namespace haptex::contact {
 namespace {
 
@@ -34,16 +36,14 @@ mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
 const std::vector<material::Fabric>& requireFabrics(const std::vector<material::Fabric>& fabrics,
                                                     const mesh::ClothMesh& mesh,
                                                     const HapticSettings& settings) {
-  if (fabrics.empty() || fabrics.size() > HapticLayer::kMostFabrics) {
-    throw std::invalid_argument("the cloth has " + std::to_string(fabrics.size()) +
-                                " fabrics: allowed are 1 to " +
-                                std::to_string(HapticLayer::kMostFabrics));
+  const std::size_t count = fabrics.size();
+  if (count < 1 || count > HapticLayer::kMostFabrics) {
+    base::refuse("the cloth has ", count, " fabrics: allowed are 1 to ", HapticLayer::kMostFabrics);
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (mesh.fabricOf(t) < static_cast<int>(fabrics.size())) continue;
-    throw std::invalid_argument("triangle " + std::to_string(t) + " is of fabric " +
-                                std::to_string(mesh.fabricOf(t)) + "; there are " +
-                                std::to_string(fabrics.size()));
+    const int fabric = mesh.fabricOf(t);
+    if (fabric < static_cast<int>(count)) continue;
+    base::refuse("triangle ", t, " is of fabric ", fabric, "; there are ", count);
   }
   for (const material::Fabric& fabric : fabrics) requireBending(fabric, settings);
   return fabrics;
@@ -254,9 +254,8 @@ int HapticLayer::fabricOf(int particle) const {
 int HapticLayer::fabricUnder(const std::vector<TouchedParticle>& touched) const {
   if (fabrics_.size() == 1) return 0;
   std::array<double, kMostFabrics> forces{};
-  for (const TouchedParticle& point : touched) {
+  for (const TouchedParticle& point : touched)
     forces[fabricOf(point.particle)] += point.normal_force;
-  }
   return static_cast<int>(std::max_element(forces.begin(), forces.end()) - forces.begin());
 }
 

@@ -67,13 +67,13 @@ const std::vector<int>& readGroup(const YamlValue& region, const mesh::MeshGroup
                (names.empty() ? "there is none" : names));
 }
 
-/// Which of the scene's fabrics; a new one is added.
-int readFabric(const YamlValue& value, Scene& scene) {
+/// Which of the cloth's fabrics; a new one is added.
+int readFabric(const YamlValue& value, const std::string& fabric_path,
+               std::vector<std::string>& paths) {
   const std::string path = resolveFile(value, "fabrics", ".yaml");
-  if (path == scene.fabric_path) {
+  if (path == fabric_path) {
     value.refuse("is the fabric of all that is in no region: a region must be of another");
   }
-  std::vector<std::string>& paths = scene.region_fabric_paths;
   const auto known = std::find(paths.begin(), paths.end(), path);
   const int fabric = 1 + static_cast<int>(known - paths.begin());
   if (known == paths.end()) paths.push_back(path);
@@ -92,21 +92,24 @@ void requireKnown(const YamlValue& regions, const cloth::ModelledEffects& effect
 
 }  // namespace
 
-void readRegions(const YamlValue& file, const mesh::MeshGroups& groups, Scene& scene) {
+std::vector<std::string> readRegions(const YamlValue& file, const std::string& fabric_path,
+                                     const cloth::ModelledEffects& effects,
+                                     const mesh::MeshGroups& groups, mesh::ClothMesh& mesh) {
   const YamlValue value = file.at("regions");
   const std::vector<YamlValue> regions = value.items();
   if (regions.empty() || regions.size() > kMostRegions) {
     value.refuseBecause("has " + std::to_string(regions.size()) + " regions: allowed are 1 to " +
                         std::to_string(kMostRegions));
   }
-  requireKnown(value, scene.effects);
-  const std::size_t triangles = scene.mesh.triangles.size();
+  requireKnown(value, effects);
+  const std::size_t triangles = mesh.triangles.size();
   std::vector<int> region_of(triangles, -1);
-  scene.mesh.triangle_fabrics.assign(triangles, 0);
+  mesh.triangle_fabrics.assign(triangles, 0);
+  std::vector<std::string> paths;
   for (std::size_t r = 0; r < regions.size(); ++r) {
     const std::vector<int> members =
-        file.has("sheet") ? readRectangle(regions[r], scene.mesh) : readGroup(regions[r], groups);
-    const int fabric = readFabric(regions[r].at("fabric"), scene);
+        file.has("sheet") ? readRectangle(regions[r], mesh) : readGroup(regions[r], groups);
+    const int fabric = readFabric(regions[r].at("fabric"), fabric_path, paths);
     for (const int triangle : members) {
       if (region_of[triangle] >= 0) {
         regions[r].refuseBecause("has triangle " + std::to_string(triangle) + ", which region " +
@@ -114,9 +117,10 @@ void readRegions(const YamlValue& file, const mesh::MeshGroups& groups, Scene& s
                                  " has, too: regions must not overlap");
       }
       region_of[triangle] = static_cast<int>(r);
-      scene.mesh.triangle_fabrics[triangle] = fabric;
+      mesh.triangle_fabrics[triangle] = fabric;
     }
   }
+  return paths;
 }
 
 }  // namespace haptex::scene

@@ -318,7 +318,10 @@ Scene readScene(const std::string& path, double cell_size) {
       file.at("bending").refuseBecause("is not allowed with mass_spring, which bends by springs");
     }
   }
-  if (file.has("regions")) readRegions(file, groups, scene);
+  if (file.has("regions")) {
+    scene.region_fabric_paths =
+        readRegions(file, scene.fabric_path, scene.effects, groups, scene.mesh);
+  }
   readTimeSteps(file.at("time_step"), scene);
   scene.step = readStepSettings(file);
   const bool among_obstacles = scene.effects.contacts;

@@ -99,7 +99,8 @@ TEST_F(SceneRegions, AreRefusedByWhatKnowsOneFabric) {
 }
 
 TEST_F(SceneRegions, NeedWhatIsListedOfEveryFabric) {
-  const std::string touched = replaced(kValid, "[gravity, viscosity]", "[bending, fingers, tactile]");
+  const std::string touched =
+      replaced(kValid, "[gravity, viscosity]", "[bending, fingers, tactile]");
   const std::string wool = replaced(touched, "fabric: silk", "fabric: wool");
   const Scene scene =
       load(replaced(wool, "fabric: wool\n",

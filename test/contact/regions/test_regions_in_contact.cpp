@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fixtures.h"
+#include "../fixtures.h"
 #include "haptex/contact/obstacles/obstacle_collision.h"
 
 namespace haptex::contact::test_regions_in_contact {
