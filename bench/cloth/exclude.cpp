@@ -36,7 +36,7 @@ double stepSeconds(SimulatedCloth& simulation) {
 SimulatedCloth movedSample(double cell) {
   const std::string path = HAPTEX_CONFIG_DIRECTORY "/scenes/wool_sample.yaml";
   const scene::Scene scene = scene::loadScene(path, cell);
-  SimulatedCloth simulation(scene, scene::loadSceneFabric(path, scene));
+  SimulatedCloth simulation(scene, scene::loadSceneFabrics(path, scene));
   simulation.move({static_cast<std::uint32_t>(scene.attached_particles.back())}, {0.0, 0.0, 0.02},
                   100.0);
   return simulation;
