@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ctime>
 #include <stdexcept>
+#include <utility>
 
 namespace haptex::simulation {
 namespace {
@@ -27,8 +28,8 @@ double threadSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-SteppedScene::SteppedScene(const scene::Scene& scene, const std::vector<material::Fabric>& fabrics)
-    : cloth_(scene.mesh, fabrics, scene.effects),
+SteppedScene::SteppedScene(const scene::Scene& scene, std::vector<material::Fabric> fabrics)
+    : cloth_(scene.mesh, std::move(fabrics), scene.effects),
       start_(cloth_.initialState()),
       state_(start_),
       collision_(scene.effects.contacts

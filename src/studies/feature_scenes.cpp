@@ -97,7 +97,7 @@ void listTouchingFingers(FeatureScene& scene) {
 }  // namespace
 
 simulation::SteppedScene FeatureScene::stepped() const {
-  simulation::SteppedScene stepped(scene, {fabric});
+  simulation::SteppedScene stepped(scene, std::vector<material::Fabric>(1, fabric));
   stepped.setPointLoads(loads);
   return stepped;
 }

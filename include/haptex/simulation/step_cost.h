@@ -27,7 +27,7 @@ class SteppedScene {
   static constexpr double kPeriod = 0.8;  ///< s, of simulated time
 
   /// @throws std::invalid_argument what cloth::Cloth and contact::ObstacleCollision throw
-  SteppedScene(const scene::Scene& scene, const std::vector<material::Fabric>& fabrics);
+  SteppedScene(const scene::Scene& scene, std::vector<material::Fabric> fabrics);
 
   /// Of every step from now on.
   void setPointLoads(const std::vector<cloth::PointLoad>& loads) { cloth_.setPointLoads(loads); }
