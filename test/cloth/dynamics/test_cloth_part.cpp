@@ -6,6 +6,7 @@
 
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/cloth_part.h"
+#include "haptex/cloth/dynamics/integrator.h"
 #include "self_contact_fixtures.h"
 
 namespace haptex::cloth::test_cloth_part {
