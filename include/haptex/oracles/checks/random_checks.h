@@ -71,6 +71,7 @@ void randomCapstan(const std::string& config_directory, Random& random, const Si
 void randomTablePress(const std::string& config_directory, Random& random, const Sink& sink);
 void randomTableDrag(const std::string& config_directory, Random& random, const Sink& sink);
 void randomFastFinger(const std::string& config_directory, Random& random, const Sink& sink);
+void randomRegions(const std::string&, Random& random, const Sink& sink);
 void randomRoll(const std::string&, Random& random, const Sink& sink);
 void randomGrating(const std::string&, Random& random, const Sink& sink);
 void randomContactors(const std::string&, Random& random, const Sink& sink);

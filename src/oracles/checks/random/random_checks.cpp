@@ -39,6 +39,7 @@ const std::vector<RandomCheck>& randomChecks() {
       {"table", "press", randomTablePress},
       {"table", "drag", randomTableDrag},
       {"table", "fast", randomFastFinger},
+      {"regions", "strip", randomRegions},
       {"body", "roll", randomRoll},
       {"exoskeleton", "pose", randomPose},
       {"exoskeleton", "static_force", randomStaticForce},
