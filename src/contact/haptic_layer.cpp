@@ -36,15 +36,7 @@ mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
 const std::vector<material::Fabric>& requireFabrics(const std::vector<material::Fabric>& fabrics,
                                                     const mesh::ClothMesh& mesh,
                                                     const HapticSettings& settings) {
-  const std::size_t count = fabrics.size();
-  if (count < 1 || count > HapticLayer::kMostFabrics) {
-    base::refuse("the cloth has ", count, " fabrics: allowed are 1 to ", HapticLayer::kMostFabrics);
-  }
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const int fabric = mesh.fabricOf(t);
-    if (fabric < static_cast<int>(count)) continue;
-    base::refuse("triangle ", t, " is of fabric ", fabric, "; there are ", count);
-  }
+  mesh::requireFabrics(mesh, fabrics.size());
   for (const material::Fabric& fabric : fabrics) requireBending(fabric, settings);
   return fabrics;
 }
@@ -253,7 +245,7 @@ int HapticLayer::fabricOf(int particle) const {
 /// The one on which most of the normal force is; without force the first.
 int HapticLayer::fabricUnder(const std::vector<TouchedParticle>& touched) const {
   if (fabrics_.size() == 1) return 0;
-  std::array<double, kMostFabrics> forces{};
+  std::array<double, mesh::kMostFabrics> forces{};
   for (const TouchedParticle& point : touched)
     forces[fabricOf(point.particle)] += point.normal_force;
   return static_cast<int>(std::max_element(forces.begin(), forces.end()) - forces.begin());

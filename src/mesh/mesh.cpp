@@ -282,4 +282,17 @@ void requireSound(const ClothMesh& mesh) {
   if (!defects.none()) throw std::invalid_argument(defects.description());
 }
 
+void requireFabrics(const ClothMesh& mesh, std::size_t count) {
+  if (count < 1 || count > kMostFabrics) {
+    throw std::invalid_argument("the cloth has " + std::to_string(count) +
+                                " fabrics: allowed are 1 to " + std::to_string(kMostFabrics));
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.fabricOf(t) < static_cast<int>(count)) continue;
+    throw std::invalid_argument("triangle " + std::to_string(t) + " is of fabric " +
+                                std::to_string(mesh.fabricOf(t)) + "; there are " +
+                                std::to_string(count));
+  }
+}
+
 }  // namespace haptex::mesh

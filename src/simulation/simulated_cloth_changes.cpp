@@ -86,7 +86,7 @@ void SimulatedCloth::requireHeld(int particle, const Eigen::Vector3d* position,
                                  const Eigen::Vector3d* velocity) const {
   const std::optional<cloth::AttachmentPath>& path = cloth_.attachments()[particle];
   if (!path) return;
-  const char* first = excluded_.empty() || excluded_[particle] == 0 ? "release" : "include";
+  const char* first = excluded_.empty() || excluded_[particle] == kIncluded ? "release" : "include";
   const auto require = [&](const char* what, const Eigen::Vector3d& wanted,
                            const Eigen::Vector3d& held, const char* unit) {
     if ((wanted - held).norm() <= scene::kHeldTolerance) return;
@@ -175,11 +175,12 @@ void SimulatedCloth::include(const std::vector<std::uint32_t>& particles) {
     std::iota(indices.begin(), indices.end(), 0u);
   }
   std::vector<char> excluded = excluded_;
-  for (const std::uint32_t particle : indices) {
-    if (excluded[particle] == kWasFree) cloth_.release(static_cast<int>(particle));
-    excluded[particle] = kIncluded;
-  }
+  for (const std::uint32_t particle : indices) excluded[particle] = kIncluded;
+  const std::vector<char> before = excluded_;
   compute(std::move(excluded));
+  for (const std::uint32_t particle : indices) {
+    if (before[particle] == kWasFree) cloth_.release(static_cast<int>(particle));
+  }
   wake();
 }
 

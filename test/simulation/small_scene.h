@@ -1,6 +1,12 @@
 // A scene small enough for tests of what goes on around the simulation.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
 #include "haptex/simulation/simulated_cloth.h"
 
 namespace haptex::simulation {
@@ -38,6 +44,26 @@ inline SimulatedCloth smallSimulation(bool bending_hysteresis = false) {
   scene::Scene scene = smallScene();
   scene.effects.bending = scene.effects.bending_hysteresis = bending_hysteresis;
   return SimulatedCloth(std::move(scene), smallFabric());
+}
+
+/// Runs a request that has to be refused with a message containing `expected`, and checks that the
+/// simulation goes on as one that never had the request.
+/// @param make what both are before
+template <typename Make>
+void expectRefused(const Make& make, const std::function<void(SimulatedCloth&)>& request,
+                   const std::string& expected) {
+  SimulatedCloth simulation = make(), untouched = make();
+  try {
+    request(simulation);
+    FAIL() << "accepted, instead of: " << expected;
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+  }
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(simulation.step());
+    ASSERT_TRUE(untouched.step());
+  }
+  EXPECT_EQ(simulation.state().positions, untouched.state().positions);
 }
 
 }  // namespace haptex::simulation

@@ -70,9 +70,8 @@ struct FingertipContact {
 class HapticLayer {
  public:
   static constexpr std::size_t kMaxContactPoints = 1024;
-  static constexpr std::size_t kMostFabrics = 256;
 
-  /// @param mesh, fabrics, effects those of the large-scale layer; at most kMostFabrics
+  /// @param mesh, fabrics, effects those of the large-scale layer; at most mesh::kMostFabrics
   /// @param obstacles of the scene; patches touch those without mass if effects has contacts
   /// @throws std::invalid_argument what requireTouchable(), cloth::Cloth or PlacedObstacles throws,
   ///   or if the mesh has several panels, or a triangle a fabric that is not there

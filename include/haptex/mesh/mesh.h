@@ -115,4 +115,12 @@ MeshDefects findDefects(const ClothMesh& mesh);
 /// @throws std::invalid_argument with MeshDefects::description() unless the mesh has no defect
 void requireSound(const ClothMesh& mesh);
 
+/// Of a cloth; contacts number them in a byte.
+constexpr std::size_t kMostFabrics = 256;
+
+/// @param count of the cloth's fabrics
+/// @throws std::invalid_argument if it is 0 or more than kMostFabrics, or a triangle is of one that
+///   is not there
+void requireFabrics(const ClothMesh& mesh, std::size_t count);
+
 }  // namespace haptex::mesh

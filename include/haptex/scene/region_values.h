@@ -7,6 +7,7 @@
 
 #include "haptex/base/yaml_reader.h"
 #include "haptex/cloth/forces/modelled_effects.h"
+#include "haptex/mesh/mesh.h"
 #include "haptex/mesh/obj_file.h"
 
 namespace haptex::scene {
@@ -25,6 +26,6 @@ std::vector<std::string> readRegions(const base::YamlValue& file, const std::str
                                      const cloth::ModelledEffects& effects,
                                      const mesh::MeshGroups& groups, mesh::ClothMesh& mesh);
 
-constexpr std::size_t kMostRegions = 255;
+constexpr std::size_t kMostRegions = mesh::kMostFabrics - 1;  ///< beside the fabric of the rest
 
 }  // namespace haptex::scene

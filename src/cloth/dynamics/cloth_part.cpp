@@ -168,11 +168,14 @@ std::vector<int> memoryPlaces(const Cloth& whole, const Cloth& part,
 }  // namespace
 
 ClothPart::ClothPart(const Cloth& whole, const std::vector<char>& included)
-    : triangles_(trianglesAround(whole, included)),
-      particles_(particlesOf(whole.mesh(), triangles_)),
-      triangle_place_(inverse(triangles_, whole.mesh().triangles.size())),
+    : ClothPart(whole, included, trianglesAround(whole, included)) {}
+
+ClothPart::ClothPart(const Cloth& whole, const std::vector<char>& included,
+                     const std::vector<int>& triangles)
+    : particles_(particlesOf(whole.mesh(), triangles)),
+      triangle_place_(inverse(triangles, whole.mesh().triangles.size())),
       particle_place_(inverse(particles_, whole.particleCount())),
-      cloth_(meshOf(whole.mesh(), triangles_, particles_, particle_place_), whole.fabrics(),
+      cloth_(meshOf(whole.mesh(), triangles, particles_, particle_place_), whole.fabrics(),
              effectsOf(whole)),
       state_(cloth_.initialState()),
       memory_(memoryPlaces(whole, cloth_, particles_)) {

@@ -72,12 +72,7 @@ void requireFewFabrics(const std::vector<material::Fabric>& fabrics,
 
 void requirePanels(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                    const ModelledEffects& effects) {
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (mesh.fabricOf(t) < static_cast<int>(fabrics.size())) continue;
-    throw std::invalid_argument("triangle " + std::to_string(t) + " is of fabric " +
-                                std::to_string(mesh.fabricOf(t)) + "; there are " +
-                                std::to_string(fabrics.size()));
-  }
+  mesh::requireFabrics(mesh, fabrics.size());
   requireFewFabrics(fabrics, effects);
   if (mesh.panelCount() > 1 && effects.elasticity == Elasticity::kMassSpring) {
     throw std::invalid_argument("springs know one panel, and the mesh has " +

@@ -18,10 +18,10 @@ void requireAtMost(const std::string& field, std::size_t bytes, std::size_t allo
 
 void requireFabrics(const haptex::ClothMesh& message) {
   const std::size_t names = message.fabrics.size(), files = message.fabric_files.size();
-  if (names >= 1 && names <= kMostFabrics && files == names) return;
+  if (names >= 1 && names <= mesh::kMostFabrics && files == names) return;
   throw std::invalid_argument("fabrics has " + std::to_string(names) +
                               " elements and fabric_files " + std::to_string(files) +
-                              ": allowed are 1 to " + std::to_string(kMostFabrics) +
+                              ": allowed are 1 to " + std::to_string(mesh::kMostFabrics) +
                               " names, and for each its file");
 }
 

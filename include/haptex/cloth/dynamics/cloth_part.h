@@ -36,8 +36,11 @@ class ClothPart {
   void setExternalForce(int particle, const Eigen::Vector3d& force);
 
  private:
-  std::vector<int> triangles_;                        // of the whole, ascending
-  std::vector<int> particles_;                        // likewise
+  /// @param triangles of the whole that are in the part, ascending
+  ClothPart(const Cloth& whole, const std::vector<char>& included,
+            const std::vector<int>& triangles);
+
+  std::vector<int> particles_;                        // of the whole, ascending
   std::vector<int> moved_;                            // of the part: which are included
   std::vector<int> triangle_place_, particle_place_;  // by those of the whole; -1: not in the part
   Cloth cloth_;

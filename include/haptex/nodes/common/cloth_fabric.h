@@ -7,18 +7,17 @@
 #include <vector>
 
 #include "haptex/material/fabric.h"
+#include "haptex/mesh/mesh.h"
 
 namespace haptex::nodes {
 
 constexpr std::size_t kLongestFabricFile = 1000000;  ///< bytes
 constexpr std::size_t kLongestFabricName = 200;      ///< bytes
 
-constexpr std::size_t kMostFabrics = 256;  ///< of a cloth
-
 /// Reads the fabrics from the texts in the message, and no file.
 /// @throws std::exception naming the fabric and what is wrong with it: no text for each name, none
-///   or more than kMostFabrics, one that is longer than the above, that is not a fabric file, or is
-///   one of another fabric
+///   or more than mesh::kMostFabrics, one that is longer than the above, that is not a fabric file,
+///   or is one of another fabric
 std::vector<material::Fabric> fabricsOfCloth(const haptex::ClothMesh& message);
 
 /// One of them, likewise. @param index less than the number of names

@@ -15,8 +15,7 @@ namespace haptex::nodes {
 
 /// x y z (m) yaw pitch roll (rad), as tf2_ros's static_transform_publisher takes them.
 /// @throws std::invalid_argument naming the text and what is allowed unless it is six finite
-/// numbers
-///   with a place within TrackerFilter::kFarthest
+///   numbers with a place within TrackerFilter::kFarthest
 Eigen::Isometry3d parseMounting(const std::string& text);
 
 /// From the poses of a tracked body to those of hand_base in world. By one thread.
