@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -196,6 +197,34 @@ TEST(ObstacleCollision, GivesTheObstaclesThemselvesToAClothThatCollidesWithItsel
     }
     EXPECT_GT(force, 0.0);
   }
+}
+
+/// A whole sheet rubs on a plate, then rests there, strained: most of it creeps, slips or sticks
+/// with less friction than it could have. Each round is a solve.
+TEST(ObstacleCollision, WhatRubsAndRestsStrainedIsFoundInFewRounds) {
+  constexpr int kPull = 40, kRest = 40;  // steps
+  material::Fabric fabric = HangingSheet::fabric();
+  fabric.shear.elastic = material::StrainStressCurve::linear(20.0);
+  cloth::ModelledEffects effects = HangingSheet::effects();
+  effects.gravity = {-9.81, 0.0, 0.0};
+  cloth::Cloth cloth(cloth::square(16, 0.2), fabric, effects);
+  cloth::StepSettings settings;
+  settings.newton_iterations = 1;
+  cloth::Integrator integrator(cloth, settings);
+  ObstacleCollision collision(cloth, {{"plate", mesh::ObstacleBox{{0.02, 0.5, 0.5}},
+                                       placedAt({-0.01 - ObstacleCollision::kOffset, 0.0, -0.1})}});
+  ClothState state = cloth.initialState();
+  const int drawn = sideParticles(cloth.mesh(), mesh::Side::kTop).front();  // a corner
+  cloth.attach(drawn, {state.positions[drawn], {0.0, -0.01, 0.01}, 0.0, 0.5});
+  std::array<int, 2> rounds{};  // while it is drawn, and afterwards
+  for (int i = 0; i < kPull + kRest; ++i) {
+    const cloth::StepReport report = collision.step(cloth, integrator, state, 0.0125);
+    ASSERT_TRUE(report.accepted);
+    rounds[i < kPull ? 0 : 1] += report.contact_rounds;
+  }
+  EXPECT_LE(rounds[0], 7 * kPull);
+  EXPECT_LE(rounds[1], 3 * kRest);
+  EXPECT_GT((state.positions[drawn] - cloth.initialState().positions[drawn]).norm(), 0.01);
 }
 
 }  // namespace

@@ -10,10 +10,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kLeastSmoothing = 1e-7;  // m/s
+constexpr double kLeastSmoothing = 1e-6;  // m/s: in a step nobody sees what creeps more slowly
 constexpr double kSharper = 0.3;          // smoothing after smoothed friction has converged
 constexpr double kSticking = 0.5;         // of the smoothing: what is slower sticks then
+constexpr double kLeastShare = 1e-3;      // of the way to the solution of a round
 constexpr int kSearchRounds = 15;
+constexpr int kStickingRounds = 3;  // of those, for what creeps at the least smoothing to stick
+constexpr int kStalledRounds = 2;   // in a row that got nowhere: none will
 constexpr int kRatioRounds = 6;
 
 }  // namespace
@@ -65,7 +68,6 @@ void ActiveSetContactSolver::takeForces() {
 double ActiveSetContactSolver::searchLine(const linear::BlockVector& solution) {
   constexpr int kBisections = 30;
   constexpr double kFlat = 1e-3;  // of the slope where the way starts
-  constexpr double kLeast = 1e-3;
   constexpr double kPenalty = 2.0;
   for (Entry& entry : entries_) {
     if (entry.state == State::kOpen) continue;
@@ -109,7 +111,7 @@ double ActiveSetContactSolver::searchLine(const linear::BlockVector& solution) {
     const double middle = 0.5 * (low + high);
     (slope_at(middle) > 0.0 ? high : low) = middle;
   }
-  return std::max(low, kLeast);
+  return std::max(low, kLeastShare);
 }
 
 bool ActiveSetContactSolver::search(const linear::BlockVector& solution) {
@@ -146,7 +148,11 @@ bool ActiveSetContactSolver::search(const linear::BlockVector& solution) {
   }
   const bool converged = !changed && off <= kTolerance * limit && beyond <= kBeyond * limit;
   if (converged && (last_ || !creeps)) return false;
-  if (rounds_ >= kSearchRounds || last_) {
+  if (converged && left_smoothing_ > 0.0 && smoothing_ <= kLeastSmoothing) {
+    last_ = true;  // the last system has shown that what creeps does not all stick
+    return false;
+  }
+  if (last_ || isSpent(share)) {
     if (last_ || !goBack()) takeRatios();
     return true;
   }
@@ -155,6 +161,7 @@ bool ActiveSetContactSolver::search(const linear::BlockVector& solution) {
     const double sticking = (kept_smoothing_ > 0.0 ? 1.0 : kSticking) * smoothing_;
     kept_ = entries_;
     kept_smoothing_ = smoothing_;
+    kept_round_ = rounds_;
     const double mean = meanSlip();
     if (left_smoothing_ > 0.0 && smoothing_ > mean) {
       // What creeps does not all stick, as the last system has shown. Linear, so a round or two.
@@ -171,6 +178,14 @@ bool ActiveSetContactSolver::search(const linear::BlockVector& solution) {
     smoothing_ = std::max(smoothing_, smoothingOfSlips());
   }
   return true;
+}
+
+/// Whether the search ends with what it has. @param share of the way that the round has gone
+bool ActiveSetContactSolver::isSpent(double share) {
+  stalled_rounds_ = share <= 2.0 * kLeastShare ? stalled_rounds_ + 1 : 0;
+  const bool finest = kept_smoothing_ > 0.0 && kept_smoothing_ <= kLeastSmoothing;
+  return rounds_ >= kSearchRounds || stalled_rounds_ >= kStalledRounds ||
+         (finest && rounds_ >= kept_round_ + kStickingRounds);
 }
 
 /// To the smoothed friction that had converged, for a last round.

@@ -122,6 +122,7 @@ void ActiveSetContactSolver::beginSystem(const Velocities& velocities,
   if (!bodies_.empty()) bodies_.beginSystem();
   last_ = false;
   kept_smoothing_ = 0.0;
+  stalled_rounds_ = 0;
   smoothing_ = std::max(smoothingOfSlips(), left_smoothing_);
 }
 

@@ -127,6 +127,7 @@ class ActiveSetContactSolver {
   void takeForces();
   double searchLine(const linear::BlockVector& solution);
   bool search(const linear::BlockVector& solution);
+  bool isSpent(double share);
   bool goBack();
   bool holdRatios(const linear::BlockVector& solution);
   void takeRatios();
@@ -141,6 +142,8 @@ class ActiveSetContactSolver {
   double smoothing_ = 0.0;       // m/s, of slips up to which friction grows with them
   bool last_ = false;            // round of the search
   double kept_smoothing_ = 0.0;  // m/s, of kept_; 0: nothing has been kept
+  int kept_round_ = 0;           // that found it
+  int stalled_rounds_ = 0;       // in a row
   // m/s, that friction of the last system has kept; 0: it was Coulomb's.
   double left_smoothing_ = 0.0;
   linear::BlockVector guess_;  // m/s
