@@ -1,6 +1,6 @@
 #include "haptex/contact/whole_cloth_contact.h"
 
-#include "haptex/cloth/forces/element_assembly.h"
+#include <cmath>
 
 namespace haptex::contact {
 
@@ -29,8 +29,8 @@ WholeClothContact::WholeClothContact(const mesh::ClothMesh& mesh,
                                      const std::vector<material::Fabric>& fabrics,
                                      const std::vector<ContactLaw>& laws)
     : rest_coordinates_(mesh.rest_coordinates),
-      areas_(cloth::lumpedAreas(mesh)),
-      masses_(cloth::lumpedMasses(mesh, fabrics)),
+      areas_(mesh.rest_coordinates.size(), 0.0),
+      masses_(mesh.rest_coordinates.size(), 0.0),
       triangle_of_(mesh.rest_coordinates.size(), 0),
       corner_of_(mesh.rest_coordinates.size(), 0),
       fabrics_(fabricsOf(mesh)),
@@ -38,11 +38,22 @@ WholeClothContact::WholeClothContact(const mesh::ClothMesh& mesh,
       velocities_(positions_),
       contacts_{{SphereContact(laws, fabrics_, mesh.rest_coordinates.size()),
                  SphereContact(laws, fabrics_, mesh.rest_coordinates.size())}} {
+  std::vector<std::vector<double>> areas_of_fabrics(fabrics.size(), areas_);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::array<int, 3>& triangle = mesh.triangles[t];
+    const Eigen::Vector2d a = rest_coordinates_[triangle[1]] - rest_coordinates_[triangle[0]];
+    const Eigen::Vector2d b = rest_coordinates_[triangle[2]] - rest_coordinates_[triangle[0]];
     for (int corner = 0; corner < 3; ++corner) {
-      const int particle = mesh.triangles[t][corner];
-      triangle_of_[particle] = static_cast<int>(t);
-      corner_of_[particle] = corner;
+      const double area = std::abs(a.x() * b.y() - a.y() * b.x()) / 6.0;
+      areas_[triangle[corner]] += area;
+      areas_of_fabrics[mesh.fabricOf(t)][triangle[corner]] += area;
+      triangle_of_[triangle[corner]] = static_cast<int>(t);
+      corner_of_[triangle[corner]] = corner;
+    }
+  }
+  for (std::size_t f = 0; f < fabrics.size(); ++f) {
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      masses_[i] += fabrics[f].areal_density * areas_of_fabrics[f][i];
     }
   }
 }

@@ -11,6 +11,7 @@ import rosbag
 import roslib.packages
 import rospy
 import rostest
+import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
 from ros_fixtures import Diagnostics, NodeTest
 from std_msgs.msg import String
@@ -53,7 +54,12 @@ class RecordScene(NodeTest):
         bags = list(self.folder.glob(pattern))
         self.assertEqual(len(bags), 1, list(self.folder.iterdir()))
         with rosbag.Bag(bags[0]) as bag:
-            self.assertEqual([message.data for _, message, _ in bag.read_messages()], ['heard'])
+            said = {topic: message.data for topic, message, _ in bag.read_messages()}
+        self.assertEqual(said[TOPIC], 'heard')
+        about = yaml.safe_load(said['/recording/about'])
+        self.assertTrue(about['scene'].endswith('sample.yaml'), about['scene'])
+        self.assertIn('fabric:', about['scene_file'])
+        self.assertRegex(about['version'], r'^\d+\.\d+\.\d+$')
 
     def test_records_what_a_scene_asks_for(self):
         self.assert_records(self.start(self.scene('gravity, recording')), 'sample_*.bag')

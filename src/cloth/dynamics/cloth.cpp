@@ -29,6 +29,14 @@ std::vector<material::Fabric> alone(material::Fabric fabric) {
   return fabrics;
 }
 
+/// @param fabrics that the triangles name, at least
+std::vector<double> lumpedMasses(const mesh::ClothMesh& mesh,
+                                 const std::vector<material::Fabric>& fabrics) {
+  return shareOut(restElements(mesh), mesh.rest_coordinates.size(), [&](std::size_t triangle) {
+    return fabrics[mesh.fabricOf(triangle)].areal_density;
+  });
+}
+
 }  // namespace
 
 Eigen::Vector3d AttachmentPath::position(double time) const {

@@ -38,18 +38,6 @@ std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh, std::opti
   return elements;
 }
 
-std::vector<double> lumpedAreas(const mesh::ClothMesh& mesh) {
-  return shareOut(restElements(mesh), mesh.rest_coordinates.size(),
-                  [](std::size_t) { return 1.0; });
-}
-
-std::vector<double> lumpedMasses(const mesh::ClothMesh& mesh,
-                                 const std::vector<material::Fabric>& fabrics) {
-  return shareOut(restElements(mesh), mesh.rest_coordinates.size(), [&](std::size_t triangle) {
-    return fabrics[mesh.fabricOf(triangle)].areal_density;
-  });
-}
-
 void bindElements(const linear::SymmetricBlockMatrix& matrix,
                   std::vector<MembraneElement>& elements) {
   for (MembraneElement& element : elements) {

@@ -9,7 +9,6 @@
 
 #include "haptex/cloth/forces/jacobian_rows.h"
 #include "haptex/linear/block_matrix.h"
-#include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::cloth {
@@ -47,13 +46,6 @@ std::vector<double> shareOut(const std::vector<MembraneElement>& elements,
   }
   return shares;
 }
-
-/// m^2, per particle: its third of each adjacent triangle, at rest.
-std::vector<double> lumpedAreas(const mesh::ClothMesh& mesh);
-/// kg, likewise, of the triangles' fabrics.
-/// @param fabrics that the triangles name, at least
-std::vector<double> lumpedMasses(const mesh::ClothMesh& mesh,
-                                 const std::vector<material::Fabric>& fabrics);
 
 /// Blocks [i][j] of the particles of an element, in its order.
 struct ElementJacobian {
