@@ -17,9 +17,11 @@ TOLERANCE = 1e-12
 # Wikipedia, Spearman's rank correlation coefficient: IQ and hours of television a week.
 IQ = [106, 100, 86, 101, 99, 103, 97, 113, 112, 110]
 HOURS = [7, 27, 2, 50, 28, 29, 20, 12, 6, 17]
-# Kendall, Rank Correlation Methods, chapter 1: ten boys in mathematics and music.
-MATHEMATICS = [7, 4, 3, 10, 6, 2, 9, 8, 1, 5]
-MUSIC = [5, 7, 3, 10, 1, 9, 6, 2, 8, 4]
+# Siegel 1956, Nonparametric Statistics, chapter 9: authoritarianism and striving of twelve students,
+# sorted by the first.
+STRIVING = [1, 5, 2, 6, 7, 3, 4, 10, 11, 8, 9, 12]
+# Kendall, Rank Correlation Methods, chapter 3: two rankings of ten with ties.
+TIED_PAIR = [[1, 2.5, 2.5, 4.5, 4.5, 6.5, 6.5, 8, 9.5, 9.5], [1, 2, 4.5, 4.5, 4.5, 4.5, 8, 8, 8, 10]]
 # Siegel 1956, Nonparametric Statistics, chapter 9: three executives rank six applicants.
 EXECUTIVES = [[1, 6, 3, 2, 5, 4], [1, 5, 6, 4, 2, 3], [6, 3, 2, 5, 4, 1]]
 # Kendall, Rank Correlation Methods, chapter 6, as in Siegel 1956: three rankings of ten with ties.
@@ -34,12 +36,15 @@ class Statistics(unittest.TestCase):
     def test_spearman_of_television_and_iq_is_as_published(self):
         self.near(spearman(IQ, HOURS), -29 / 165)
 
-    def test_spearman_and_kendall_of_mathematics_and_music_are_as_published(self):
-        self.near(kendall(MATHEMATICS, MUSIC), -1 / 15)  # P - Q = 21 - 24 of 45
-        self.near(spearman(MATHEMATICS, MUSIC), -17 / 165)  # 1 - 6 182 / 990
+    def test_spearman_and_kendall_of_striving_are_as_published(self):
+        ranks = range(1, 13)
+        self.near(kendall(ranks, STRIVING), 2 / 3)  # 55 - 11 of 66; 0.67
+        self.near(spearman(ranks, STRIVING), 9 / 11)  # 1 - 6 52 / 1716; 0.82
 
     def test_kendall_with_ties_is_as_published(self):
-        # Documentation of scipy.stats.kendalltau: 2 concordant, 6 discordant, 2 tied, 0 tied of 10.
+        # Kendall: 33 over the root of (45 - 4) (45 - 9); 0.859.
+        self.near(kendall(*TIED_PAIR), 33 / np.sqrt(41 * 36))
+        # Documentation of scipy.stats.kendalltau: -0.4714.
         self.near(kendall([12, 2, 1, 12, 2], [1, 4, 7, 1, 0]), -np.sqrt(2) / 3)
 
     def test_rank_correlations_with_ties_are_those_of_scipy(self):
