@@ -6,7 +6,7 @@ SOURCES = ('cloth', 'contact', 'tactile', 'proximity')  # whose SOURCE/markers t
 
 
 class Picture:
-    """evaluation/SOURCE_markers are what launch/evaluation.launch lets rviz draw. If the fabric is hidden they
+    """rviz draws evaluation/SOURCE_markers (launch/evaluation.launch). If the fabric is hidden they
     say once that nothing is to be drawn. Nothing is subscribed to that nobody looks at."""
 
     def __init__(self, shown):

@@ -21,14 +21,16 @@ class TrialRecorder:
     """To be used by one thread, which outlives the bags."""
 
     def __init__(self, namespace):
-        """@param namespace whose topics are recorded but for those that launch/haptex.launch leaves out"""
+        """@param namespace whose topics are recorded but for those that launch/haptex.launch leaves
+        out, and for what rviz draws: it can be drawn from the others, and is more than all of them"""
         place = re.escape(namespace.rstrip('/'))
         program = roslib.packages.find_node('haptex', 'record_topics')
         if not program:
             raise OSError('there is no program record_topics')
         self._command = [program[0]]
-        self._topics = ['--exclude', place + '/((tactile_)?emulator/.*/.*|exoskeleton/servo_cf|'
-                        'evaluation/.*_markers)', place + '/.*', '/tf', '/tf_static', '/diagnostics']
+        self._topics = ['--exclude', place + '/((tactile_)?emulator/.*/.*|exoskeleton/servo_cf)',
+                        '--exclude', place + '/.*markers',
+                        place + '/.*', '/tf', '/tf_static', '/diagnostics']
         self._process, self._path = None, None
 
     def start(self, path):
