@@ -261,6 +261,13 @@ class Analysis(Folder):
             analysis.read_all([self.folder / 'empty.csv'])
 
 
+class Tests(unittest.TestSuite):
+    """All of them, for rostest."""
+
+    def __init__(self):
+        load = unittest.TestLoader().loadTestsFromTestCase
+        super().__init__(map(load, [KesValues, HandValues, Analysis]))
+
+
 if __name__ == '__main__':
-    for each in (KesValues, HandValues, Analysis):
-        rostest.rosrun('haptex', f'evaluation_{each.__name__.lower()}', each)
+    rostest.rosrun('haptex', 'evaluation_analysis', f'{__name__}.Tests')

@@ -283,6 +283,13 @@ class Sessions(Folder):
                 self.open()
 
 
+class Tests(unittest.TestSuite):
+    """All of them, for rostest."""
+
+    def __init__(self):
+        load = unittest.TestLoader().loadTestsFromTestCase
+        super().__init__(map(load, [LatinSquares, Protocols, Plans, Sessions]))
+
+
 if __name__ == '__main__':
-    for each in (LatinSquares, Protocols, Plans, Sessions):
-        rostest.rosrun('haptex', f'evaluation_{each.__name__.lower()}', each)
+    rostest.rosrun('haptex', 'evaluation_sessions', f'{__name__}.Tests')
