@@ -1,16 +1,19 @@
 #!/usr/bin/python3
-"""Protocols are read strictly, orders are balanced, and a session loses no answer. Without ROS."""
+"""Protocols are read strictly, orders are balanced, and a session loses no answer. Without a master."""
 import collections
 import pathlib
+import resource
 import sys
 import tempfile
 import unittest
 
+import numpy as np
 import rostest
 import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'src' / 'nodes' / 'evaluation'))
+from haptex_evaluation.hand import HandPath  # noqa: E402
 from haptex_evaluation.latin_square import row_of, williams_rows  # noqa: E402
 from haptex_evaluation.plan import STANDARD, TRIAL, trials_of  # noqa: E402
 from haptex_evaluation.protocol import PROPERTIES, read_protocol  # noqa: E402
@@ -92,6 +95,40 @@ class Protocols(Folder):
         path.write_text(SHIPPED.read_text() + 'picture: false\n')
         with self.assertRaisesRegex(ValueError, "the key 'picture' is there twice"):
             read_protocol(path, CONFIG)
+
+
+class HandPaths(Folder):
+    """As docs/path_files.md tells of the emulator."""
+
+    def path(self, text):
+        file = self.folder / 'path.yaml'
+        file.write_text(text)
+        return HandPath(file)
+
+    def test_moves_with_minimum_jerk_between_key_frames_and_stays_at_the_last(self):
+        path = self.path('key_frames:\n'
+                         '- {time: 0, index: [0, 0, 0], thumb: [1, 0, 0], position: [0, 0, 0]}\n'
+                         '- {time: 2, index: [0, 4, 0], thumb: [1, 0, 0], position: [0, 0, 8],'
+                         ' rpy: [0, 0, 1]}\n')
+        for time, share in [(-1, 0), (0, 0), (0.5, 0.103515625), (1, 0.5), (2, 1), (9, 1)]:
+            (index, thumb, base), turn = path.at(time)
+            np.testing.assert_allclose(index, [0, 4 * share, 0], atol=1e-15)
+            np.testing.assert_array_equal(thumb, [1, 0, 0])
+            np.testing.assert_allclose(base, [0, 0, 8 * share], atol=1e-15)
+            np.testing.assert_allclose(turn, [0, 0, np.sin(share / 2), np.cos(share / 2)], atol=1e-15)
+
+    def test_the_paths_that_ship_can_be_followed(self):
+        for file in (CONFIG / 'paths').glob('*.yaml'):
+            self.assertTrue(np.isfinite(HandPath(file).at(1.0)[0]).all())
+
+    def test_refuses_what_is_no_path(self):
+        frame = '- {time: %s, index: [0, 0, 0], thumb: %s, position: [0, 0, 0]}\n'
+        for text, says in [(frame % (1, '[0, 0, 0]'), 'time: 1 must be 0 for the first'),
+                           (frame % (0, '[0, 0]'), 'thumb: .* must be a list of 3'),
+                           (frame % (0, '[0, 0, .nan]'), 'must be a finite number'),
+                           (2 * (frame % (0, '[0, 0, 0]')), 'then increasing')]:
+            with self.assertRaisesRegex(ValueError, says):
+                self.path('key_frames:\n' + text)
 
 
 class Plans(unittest.TestCase):
@@ -209,6 +246,22 @@ class Sessions(Folder):
         found = [result._replace(began=0, answered=0) for result in parts.answered()]
         self.assertEqual(found, expected)
 
+    def test_a_full_disk_leaves_no_part_of_a_line(self):
+        session = self.open()
+        self.rate(session, 1)
+        size = self.results().stat().st_size
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        session.begin(0.0)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size + 5, limits[1]))
+        try:
+            with self.assertRaises(OSError):
+                session.answer(2, 5, 1.0, '')
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        self.assertEqual((self.results().stat().st_size, session.stage().trial.number), (size, 2))
+        session.answer(2, 6, 1.0, '')
+        self.assertEqual([result.rating for result in read_results(self.results())[0]], [2, 6])
+
     def test_no_bag_is_written_over(self):
         session = self.open()
         while session.stage().kind == STANDARD:
@@ -288,7 +341,7 @@ class Tests(unittest.TestSuite):
 
     def __init__(self):
         load = unittest.TestLoader().loadTestsFromTestCase
-        super().__init__(map(load, [LatinSquares, Protocols, Plans, Sessions]))
+        super().__init__(map(load, [LatinSquares, Protocols, HandPaths, Plans, Sessions]))
 
 
 if __name__ == '__main__':

@@ -10,6 +10,7 @@ import roslib.packages
 import rosbag
 import rospy
 import rostest
+from geometry_msgs.msg import PoseStamped
 from haptex.msg import ClothMesh, EvaluationTrial
 from haptex.srv import AnswerTrial
 from ros_fixtures import WAIT, NodeTest
@@ -56,15 +57,16 @@ class Evaluation(NodeTest):
     def take_trial(self, trial):
         self.trial = trial
 
-    def start(self, picture='true', who='P7'):
+    def start(self, picture='true', who='P7', more='', subject='1', session='session'):
+        """@param more lines of the last property @param session directory in that of the test"""
         protocol = self.folder / 'protocol.yaml'
-        protocol.write_text(PROTOCOL % picture + PROPERTY % 'weight' + PROPERTY % 'drape')
+        protocol.write_text(PROTOCOL % picture + PROPERTY % 'weight' + PROPERTY % 'drape' + more)
         program = roslib.packages.find_node('haptex', 'evaluation')[0]
         self.trial = None
         node = subprocess.Popen(
             [program, f'__ns:={rospy.get_namespace()}', '__name:=evaluation',
-             f'_protocol:={protocol}', f'_session:={self.folder}/session', f'_who:={who}',
-             '_subject:=1'], stderr=subprocess.PIPE, text=True)
+             f'_protocol:={protocol}', f'_session:={self.folder / session}', f'_who:={who}',
+             f'_subject:={subject}'], stderr=subprocess.PIPE, text=True)
         self.addCleanup(node.communicate)
         self.addCleanup(node.kill)
         return node
@@ -172,6 +174,32 @@ class Evaluation(NodeTest):
         errors = other.communicate(timeout=WAIT)[1]
         self.assertEqual(other.returncode, 1)
         self.assertIn('P8', errors)
+
+    def test_refuses_parameters_that_are_none(self):
+        for arguments, says in [({'subject': '0'}, 'subject: 0 must be a whole number'),
+                                ({'subject': 'one'}, "/subject: 'one' must be of type int"),
+                                ({'who': '""'}, "who: '' must have 1 to 80"),
+                                ({'more': '    colour: 1\n'}, "unknown key 'colour'")]:
+            with self.subTest(says):
+                node = self.start(**arguments)
+                errors = node.communicate(timeout=WAIT)[1]
+                self.assertEqual(node.returncode, 1)
+                self.assertIn(says, errors)
+                self.assertFalse((self.folder / 'session' / 'results.csv').exists())
+
+    def test_leads_an_emulated_hand_where_the_protocol_names_a_path(self):
+        got = []
+        subscriber = rospy.Subscriber('hand_base/target', PoseStamped, got.append)
+        self.addCleanup(subscriber.unregister)
+        self.start(more='    path: pinch\n')
+        self.eventually(lambda: self.trial is not None, 'a state')
+        while self.trial.property != 'drape':
+            self.await_state('STANDARD')
+            self.assertEqual(got, [])
+            self.pass_standards()
+            for rating in (1, 2, 3):
+                self.answer(rating)
+        self.eventually(lambda: len(got) > 10, 'targets of the hand')
 
     def markers(self, kind):
         """What rviz gets to draw: nothing yet, or markers of the action."""

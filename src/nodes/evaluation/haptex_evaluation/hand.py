@@ -14,21 +14,39 @@ RATE = 100.0  # Hz
 FINGERS = ('index', 'thumb')
 
 
+def _file_of(name, config):
+    return pathlib.Path(name) if '/' in name else pathlib.Path(config) / 'paths' / f'{name}.yaml'
+
+
+def _vector(value, where):
+    if not isinstance(value, list) or len(value) != 3:
+        raise ValueError(f'{where}: {value!r} must be a list of 3 numbers')
+    return [strict.number(item, f'{where}[{i}]') for i, item in enumerate(value)]
+
+
 class HandPath:
     """As the emulator follows it (docs/path_files.md): minimum jerk from key frame to key frame."""
 
     def __init__(self, path):
+        """@throws ValueError naming file, key and value"""
         value = strict.load(path)
         strict.require_keys(value, str(path), ['key_frames'], ['repeat'])
         frames = value['key_frames']
+        if not isinstance(frames, list) or not frames:
+            raise ValueError(f'{path}: key_frames: {frames!r} must be a list of at least 1')
+        times, places, turns = [], [], []
         for i, frame in enumerate(frames):
-            strict.require_keys(frame, f'{path}: key_frames[{i}]', ['time', *FINGERS, 'position'],
-                                ['rpy', 'phase'])
-        self._times = np.array([frame['time'] for frame in frames], float)
-        self._places = np.array([frame['index'] + frame['thumb'] + frame['position']
-                                 for frame in frames], float)
-        self._turns = Rotation.from_euler('xyz', [frame.get('rpy', [0, 0, 0]) for frame in frames])
-        self._repeats = value.get('repeat', False)
+            where = f'{path}: key_frames[{i}]'
+            strict.require_keys(frame, where, ['time', *FINGERS, 'position'], ['rpy', 'phase'])
+            times.append(strict.number(frame['time'], f'{where}.time'))
+            if times[-1] <= times[-2] if i else times[-1] != 0:
+                raise ValueError(f'{where}.time: {times[-1]:g} must be 0 for the first, then increasing')
+            places.append([_vector(frame[name], f'{where}.{name}')
+                           for name in (*FINGERS, 'position')])
+            turns.append(_vector(frame.get('rpy', [0, 0, 0]), f'{where}.rpy'))
+        self._times, self._places = np.array(times, float), np.array(places, float)
+        self._turns = Rotation.from_euler('xyz', turns)
+        self._repeats = strict.one_of(value.get('repeat', False), f'{path}: repeat', (True, False))
 
     def at(self, seconds):
         """@returns positions (m) of index, thumb and hand_base, and the quaternion (x, y, z, w)"""
@@ -38,21 +56,22 @@ class HandPath:
         seconds = min(max(seconds, 0.0), last)
         after = int(np.searchsorted(self._times, seconds, side='right'))
         if after == len(self._times):
-            return self._places[-1].reshape(3, 3), self._turns[-1].as_quat()
+            return self._places[-1], self._turns[-1].as_quat()
         before = after - 1
         s = (seconds - self._times[before]) / (self._times[after] - self._times[before])
         s = s ** 3 * (10.0 - 15.0 * s + 6.0 * s * s)
         place = self._places[before] + s * (self._places[after] - self._places[before])
         turn = Slerp([0.0, 1.0], self._turns[[before, after]])(s)
-        return place.reshape(3, 3), turn.as_quat()
+        return place, turn.as_quat()
 
 
 class EmulatedHand:
     """Publishes <finger>/target and hand_base/target, which a real device does not listen to."""
 
-    def __init__(self, config):
-        """@param config the folder with paths/"""
-        self._config = pathlib.Path(config)
+    def __init__(self, config, names):
+        """@param config the folder with paths/ @param names of those that will be followed
+        @throws ValueError naming a file that is no path file"""
+        self._paths = {name: HandPath(_file_of(name, config)) for name in names}
         self._fingers = [rospy.Publisher(f'{finger}/target', PointStamped, queue_size=1)
                          for finger in FINGERS]
         self._base = rospy.Publisher('hand_base/target', PoseStamped, queue_size=1)
@@ -60,10 +79,8 @@ class EmulatedHand:
 
     def follow(self, name):
         self.stop()
-        file = pathlib.Path(name) if '/' in name else self._config / 'paths' / f'{name}.yaml'
-        path = HandPath(file)
         self._ends.clear()
-        self._thread = threading.Thread(target=self._run, args=[path], daemon=True)
+        self._thread = threading.Thread(target=self._run, args=[self._paths[name]], daemon=True)
         self._thread.start()
 
     def stop(self):

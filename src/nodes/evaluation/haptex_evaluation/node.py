@@ -45,7 +45,7 @@ def _parameter(name, kind, default):
     """@throws ValueError naming the parameter, its value and what it must be"""
     value = rospy.get_param('~' + name, default)
     if isinstance(value, bool) or not isinstance(value, kind):
-        raise ValueError(f'{rospy.resolve_name("~" + name)}: {value!r} must be a {kind.__name__}')
+        raise ValueError(f'{rospy.resolve_name("~" + name)}: {value!r} must be of type {kind.__name__}')
     return value
 
 
@@ -68,7 +68,8 @@ class EvaluationNode:
         config = pathlib.Path(roslib.packages.get_pkg_dir('haptex')) / 'config'
         self._session = _make_session(config)
         self._cloth = Cloth(config)
-        self._hand = EmulatedHand(config)
+        paths = {each.path for each in self._session.protocol.properties if each.path}
+        self._hand = EmulatedHand(config, paths)
         self._picture = Picture(self._session.protocol.picture)
         self._recorder = TrialRecorder(rospy.get_namespace())
         self._requests = queue.Queue()
@@ -129,14 +130,14 @@ class EvaluationNode:
                 rospy.logwarn(f'the cloth has not changed its fabric yet: {refusal}')
 
     def _begin_when_there(self, stage, now):
-        change = self._session.protocol.change_seconds
-        if self._there_since is None or now - self._there_since < change:
+        if self._there_since is None:
             return
-        if stage.kind == TRIAL and not self._bag:
+        if stage.kind == TRIAL and not self._bag:  # it takes a moment to begin
             path = self._session.bag_path()
             self._bag = path.name
             self._recorder.start(path)
-        if self._recorder.is_starting():
+        change = self._session.protocol.change_seconds
+        if now - self._there_since < change or self._recorder.is_starting():
             return
         if stage.property.path:
             self._hand.follow(stage.property.path)

@@ -112,7 +112,7 @@ class ResultFile:
         """A line that a process died over is dropped. @param warn is told so, by a text
         @throws ValueError if another process writes the file or it is of another kind"""
         self.path = pathlib.Path(path)
-        self._file = open(self.path, 'a+b')
+        self._file = open(self.path, 'a+b', buffering=0)  # what cannot be written must not come later
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
@@ -142,9 +142,15 @@ class ResultFile:
         self._file.seek(0, os.SEEK_END)
 
     def _write(self, text):
-        self._file.write(text.encode('utf-8'))
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        """All of it, or nothing where the disk is full."""
+        size, left = os.fstat(self._file.fileno()).st_size, text.encode('utf-8')
+        try:
+            while left:
+                left = left[self._file.write(left):]
+            os.fsync(self._file.fileno())
+        except OSError:
+            self._file.truncate(size)
+            raise
 
     def _sync_directory(self):
         directory = os.open(self.path.parent, os.O_RDONLY)
@@ -154,7 +160,7 @@ class ResultFile:
             os.close(directory)
 
     def add(self, result):
-        """Returns when the line is on the disk."""
+        """Returns when the line is on the disk. @throws OSError if it is not: then nothing of it is"""
         self._write(_line(_cells(result)))
         self.results.append(result)
 
