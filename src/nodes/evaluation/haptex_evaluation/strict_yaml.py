@@ -1,0 +1,76 @@
+"""Reads YAML that people write: what is unknown, missing or of another kind is refused by name."""
+import math
+import pathlib
+
+import yaml
+
+
+class UniqueKeys(yaml.SafeLoader):
+    """Refuses keys that are there twice, of which the safe loader would keep the last."""
+
+    def construct_mapping(self, node, deep=False):
+        seen = set()
+        for key_node, _ in node.value:
+            key = self.construct_object(key_node, deep=True)
+            if key in seen:
+                raise ValueError(f'line {key_node.start_mark.line + 1}: the key {key!r} is there twice')
+            seen.add(key)
+        return super().construct_mapping(node, deep)
+
+
+def load(path):
+    """@returns what a file says @throws ValueError naming the file and what is no YAML in it"""
+    try:
+        return yaml.load(pathlib.Path(path).read_text(encoding='utf-8'), UniqueKeys)
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise ValueError(f'{path}: {error}') from error
+
+
+def require_keys(value, where, required, optional=()):
+    """@throws ValueError unless `value` is a mapping with all required keys and none beside them"""
+    allowed = [*required, *optional]
+    if not isinstance(value, dict):
+        raise ValueError(f'{where}: {value!r} must be a mapping with the keys {", ".join(allowed)}')
+    for key in value:
+        if key not in allowed:
+            raise ValueError(f'{where}: unknown key {key!r}, allowed are {", ".join(allowed)}')
+    for key in required:
+        if key not in value:
+            raise ValueError(f'{where}: the key {key} is missing')
+
+
+def text(value, where):
+    if not isinstance(value, str) or not value.strip():
+        raise ValueError(f'{where}: {value!r} must be a text that is not empty')
+    return value.strip()
+
+
+def one_of(value, where, allowed):
+    if value not in allowed:
+        raise ValueError(f'{where}: {value!r} is not allowed, allowed are {", ".join(map(str, allowed))}')
+    return value
+
+
+def number(value, where, least=-math.inf, most=math.inf):
+    """A finite number from `least` to `most`."""
+    if isinstance(value, str):  # YAML 1.1 takes 1e-3 for a text
+        try:
+            value = float(value)
+        except ValueError:
+            pass
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise ValueError(f'{where}: {value!r} must be a finite number')
+    if not least <= value <= most:
+        raise ValueError(f'{where}: {value} must be from {least:g} to {most:g}')
+    return value
+
+
+def texts(value, where, least):
+    """A list of at least so many different texts."""
+    if not isinstance(value, list) or len(value) < least:
+        raise ValueError(f'{where}: {value!r} must be a list of at least {least}')
+    result = [text(item, f'{where}[{i}]') for i, item in enumerate(value)]
+    for i, item in enumerate(result):
+        if item in result[:i]:
+            raise ValueError(f'{where}[{i}]: {item} is there twice')
+    return result
