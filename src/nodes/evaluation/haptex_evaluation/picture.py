@@ -2,31 +2,33 @@
 import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
-SOURCES = ('cloth', 'contact', 'tactile', 'proximity')  # whose SOURCE/markers tell about the fabric
+# That tell about the fabric, forces included.
+TOPICS = ('cloth/markers', 'contact/markers', 'tactile/markers', 'proximity/markers',
+          'exoskeleton/force_markers')
 
 
 class Picture:
-    """rviz draws evaluation/SOURCE_markers (launch/evaluation.launch). If the fabric is hidden they
+    """rviz draws evaluation/cloth_markers and so on (launch/evaluation.launch). If the fabric is hidden they
     say once that nothing is to be drawn. Nothing is subscribed to that nobody looks at."""
 
     def __init__(self, shown):
         self._shown = shown
         self._subscribers = {}
         self._publishers = {}
-        for source in SOURCES:
-            self._publishers[source] = rospy.Publisher(f'evaluation/{source}_markers', MarkerArray,
-                                                       queue_size=2, latch=not shown)
+        for topic in TOPICS:
+            drawn = f'evaluation/{topic.replace("/", "_")}'
+            self._publishers[topic] = rospy.Publisher(drawn, MarkerArray, queue_size=2, latch=not shown)
             if not shown:
-                self._publishers[source].publish(MarkerArray([Marker(action=Marker.DELETEALL)]))
+                self._publishers[topic].publish(MarkerArray([Marker(action=Marker.DELETEALL)]))
 
     def look(self):
         """To be called about once a second: begins or ends to pass on."""
         if not self._shown:
             return
-        for source, publisher in self._publishers.items():
+        for topic, publisher in self._publishers.items():
             looked_at = publisher.get_num_connections() > 0
-            if looked_at and source not in self._subscribers:
-                self._subscribers[source] = rospy.Subscriber(f'{source}/markers', rospy.AnyMsg,
-                                                             publisher.publish, queue_size=2)
-            elif not looked_at and source in self._subscribers:
-                self._subscribers.pop(source).unregister()
+            if looked_at and topic not in self._subscribers:
+                self._subscribers[topic] = rospy.Subscriber(topic, rospy.AnyMsg, publisher.publish,
+                                                            queue_size=2)
+            elif not looked_at and topic in self._subscribers:
+                self._subscribers.pop(topic).unregister()
