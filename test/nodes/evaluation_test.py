@@ -12,7 +12,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped
 from haptex.msg import ClothMesh, EvaluationTrial
-from haptex.srv import AnswerTrial
+from haptex.srv import AnswerTrial, SetFabric
 from ros_fixtures import WAIT, NodeTest
 from std_srvs.srv import Trigger
 from visualization_msgs.msg import Marker, MarkerArray
@@ -174,6 +174,17 @@ class Evaluation(NodeTest):
         errors = other.communicate(timeout=WAIT)[1]
         self.assertEqual(other.returncode, 1)
         self.assertIn('P8', errors)
+
+    def test_gives_the_cloth_its_fabric_again_that_somebody_changed(self):
+        self.start()
+        self.await_state('STANDARD')
+        changed = []
+        subscriber = rospy.Subscriber('cloth/mesh', ClothMesh, lambda mesh: changed.append(mesh.fabrics[0]))
+        self.addCleanup(subscriber.unregister)
+        self.eventually(lambda: changed, 'a fabric')
+        self.assertTrue(rospy.ServiceProxy('cloth/set_fabric', SetFabric)('linear').success)
+        self.eventually(lambda: changed == ['silk_habutae', 'linear', 'silk_habutae'], lambda: changed)
+        self.assertEqual(self.await_state('STANDARD').code, 'light')
 
     def test_refuses_parameters_that_are_none(self):
         for arguments, says in [({'subject': '0'}, 'subject: 0 must be a whole number'),

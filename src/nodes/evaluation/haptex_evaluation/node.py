@@ -74,7 +74,8 @@ class EvaluationNode:
         self._recorder = TrialRecorder(rospy.get_namespace())
         self._requests = queue.Queue()
         self._bag = ''  # name of that of the present trial
-        self._there_since = None  # s, monotonic; when the sample was there
+        self._is_there = False  # the present sample
+        self._left = time.monotonic()  # s; when the stage before ended
         self._next_ask = self._next_show = 0.0  # s, monotonic
         self._publisher = rospy.Publisher('evaluation/trial', EvaluationTrial, queue_size=10,
                                           latch=True)
@@ -109,7 +110,7 @@ class EvaluationNode:
                 self._begin_when_there(stage, now)
             elif stage.kind == STANDARD and self._session.seconds_left(time.time()) == 0.0:
                 self._session.end_standard()
-                self._leave_stage()
+                self._leave_stage(now)
         if now >= self._next_show:
             self._next_show = now + SHOW_PERIOD
             self._picture.look()
@@ -118,11 +119,9 @@ class EvaluationNode:
     def _keep_fabric(self, sample, now):
         """Asks for the fabric as long as the cloth has another one, also after it was started anew."""
         if sample.kind != VIRTUAL or self._cloth.has(sample.fabric):
-            if self._there_since is None:
-                self._there_since = now
+            self._is_there = True
             return
-        if not self._session.has_begun():
-            self._there_since = None
+        self._is_there = False
         if now >= self._next_ask:
             self._next_ask = now + RETRY_PERIOD
             refusal = self._cloth.ask_for(sample.fabric)
@@ -130,37 +129,37 @@ class EvaluationNode:
                 rospy.logwarn(f'the cloth has not changed its fabric yet: {refusal}')
 
     def _begin_when_there(self, stage, now):
-        if self._there_since is None:
+        if not self._is_there:
             return
         if stage.kind == TRIAL and not self._bag:  # it takes a moment to begin
             path = self._session.bag_path()
             self._bag = path.name
             self._recorder.start(path)
         change = self._session.protocol.change_seconds
-        if now - self._there_since < change or self._recorder.is_starting():
+        if now - self._left < change or self._recorder.is_starting():
             return
         if stage.property.path:
             self._hand.follow(stage.property.path)
         self._session.begin(time.time())
         self._next_show = 0.0
 
-    def _leave_stage(self):
+    def _leave_stage(self, now):
         self._hand.stop()
-        self._bag, self._there_since = '', None
+        self._bag, self._is_there, self._left = '', False, now
         self._next_ask = self._next_show = 0.0
 
     def _answer(self, trial, rating):
         self._session.check_answer(trial, rating)
-        answered = time.time()
+        answered, now = time.time(), time.monotonic()
         self._recorder.stop()
         has_bag = (self._session.directory / self._bag).exists()
         self._session.answer(trial, rating, answered, self._bag if has_bag else '')
-        self._leave_stage()
+        self._leave_stage(now)
         return f'trial {trial} is rated {rating:g}'
 
     def _next(self):
         self._session.end_standard()
-        self._leave_stage()
+        self._leave_stage(time.monotonic())
         return 'the next one comes'
 
     def _done(self, do):

@@ -8,8 +8,8 @@ TOPICS = ('cloth/markers', 'contact/markers', 'tactile/markers', 'proximity/mark
 
 
 class Picture:
-    """rviz draws evaluation/cloth_markers and so on (launch/evaluation.launch). If the fabric is hidden they
-    say once that nothing is to be drawn. Nothing is subscribed to that nobody looks at."""
+    """rviz draws evaluation/cloth_markers and so on (launch/evaluation.launch). If the fabric is
+    hidden they say once that nothing is to be drawn. Nothing is subscribed to that nobody looks at."""
 
     def __init__(self, shown):
         self._shown = shown
