@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "haptex/base/constants.h"
+#include "haptex/base/require.h"
 #include "haptex/base/yaml_reader.h"
 #include "haptex/cloth/forces/lattice_springs.h"
 #include "haptex/mesh/obj_file.h"
@@ -41,25 +42,53 @@ int cellsOf(const YamlValue& sheet, double length, double cell_size) {
   return static_cast<int>(cells);
 }
 
-/// @param cell_size m, of the longest edge along weft or warp; 0: the cells of the file
-mesh::ClothMesh readSheet(const YamlValue& value, double cell_size) {
+/// How a sheet differs from what the file says.
+struct OtherSheet {
+  double cell_size = 0.0;  // m, of the longest edge along weft or warp; 0: the cells of the file
+  SheetChange change = {};
+};
+
+/// @throws std::invalid_argument naming what is not allowed
+void requireSound(const SheetChange& change) {
+  for (int i = 0; change.size && i < 2; ++i) {
+    const double length = (*change.size)[i];
+    if (length > 0.0 && length <= kLongestSide) continue;
+    base::refuse("size[", i, "] = ", length, " m: allowed are numbers > 0 up to ", kLongestSide);
+  }
+  for (int i = 0; change.cells && i < 2; ++i) {
+    if ((*change.cells)[i] >= 1) continue;
+    base::refuse("cells[", i, "] = ", (*change.cells)[i], ": allowed are whole numbers >= 1");
+  }
+}
+
+mesh::ClothMesh readSheet(const YamlValue& value, const OtherSheet& other) {
   value.requireKeys({"size", "cells", "diagonals"}, {"position", "rpy"});
   const auto size = value.at("size").items(2);
   const auto cells = value.at("cells").items(2);
-  const double width = readSize(size[0]), height = readSize(size[1]);
+  double width = readSize(size[0]), height = readSize(size[1]);
   int cells_u = readCells(cells[0]), cells_v = readCells(cells[1]);
+  const SheetChange& change = other.change;
+  if (change.size) {
+    width = (*change.size)[0];
+    height = (*change.size)[1];
+  }
+  if (change.cells) {
+    cells_u = (*change.cells)[0];
+    cells_v = (*change.cells)[1];
+  }
   // Each factor alone is bounded first, so that the product cannot overflow.
   requireTriangleCount(cells[0], 2LL * cells_u);
   requireTriangleCount(value.at("cells"), 2LL * cells_u * cells_v);
-  if (cell_size > 0.0) {
-    cells_u = cellsOf(value, width, cell_size);
-    cells_v = cellsOf(value, height, cell_size);
+  if (other.cell_size > 0.0) {
+    cells_u = cellsOf(value, width, other.cell_size);
+    cells_v = cellsOf(value, height, other.cell_size);
     requireTriangleCount(value, 2LL * cells_u * cells_v);
   }
   const bool one_way = value.at("diagonals").oneOf({"one_way", "alternating"}) == "one_way";
-  mesh::ClothMesh mesh = mesh::makeRectangle(
-      width, height, cells_u, cells_v,
-      one_way ? mesh::Triangulation::kOneWay : mesh::Triangulation::kAlternating);
+  const mesh::Triangulation diagonals =
+      one_way ? mesh::Triangulation::kOneWay : mesh::Triangulation::kAlternating;
+  mesh::ClothMesh mesh =
+      mesh::makeRectangle(width, height, cells_u, cells_v, change.diagonals.value_or(diagonals));
   if (value.has("position") || value.has("rpy")) {
     const Eigen::Isometry3d pose = readPose(value);
     for (Eigen::Vector3d& position : mesh.initial_positions) position = pose * position;
@@ -73,11 +102,12 @@ mesh::ClothMesh readSheet(const YamlValue& value, double cell_size) {
 }
 
 /// @param groups filled in for a mesh from a file
-mesh::ClothMesh readMesh(const YamlValue& scene, double cell_size, mesh::MeshGroups& groups) {
+mesh::ClothMesh readMesh(const YamlValue& scene, const OtherSheet& other,
+                         mesh::MeshGroups& groups) {
   if (scene.has("sheet") == scene.has("mesh")) {
     scene.refuseBecause("must have exactly one of sheet, mesh");
   }
-  if (scene.has("sheet")) return readSheet(scene.at("sheet"), cell_size);
+  if (scene.has("sheet")) return readSheet(scene.at("sheet"), other);
   mesh::ClothMesh mesh = mesh::loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"), groups);
   requireTriangleCount(scene.at("mesh"), static_cast<long long>(mesh.triangles.size()));
   return mesh;
@@ -284,7 +314,7 @@ void readTimeSteps(const YamlValue& value, Scene& scene) {
   }
 }
 
-Scene readScene(const std::string& path, double cell_size) {
+Scene readScene(const std::string& path, OtherSheet other) {
   const YamlValue file = YamlValue::load(path);
   file.requireKeys({"fabric", "attach", "model", "time_step"},
                    {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind",
@@ -293,7 +323,8 @@ Scene readScene(const std::string& path, double cell_size) {
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.any_cells = allowsAnyCells(file);
   mesh::MeshGroups groups;
-  scene.mesh = readMesh(file, scene.any_cells ? cell_size : 0.0, groups);
+  if (!scene.any_cells) other.cell_size = 0.0;
+  scene.mesh = readMesh(file, other, groups);
   scene.attached_particles = readAttachedParticles(file.at("attach"), scene.mesh);
   if (file.has("state")) startFrom(file.at("state"), scene);
   const Listed listed = readModel(file);
@@ -349,14 +380,24 @@ Scene readScene(const std::string& path, double cell_size) {
 
 }  // namespace
 
-Scene loadScene(const std::string& path) { return readScene(path, 0.0); }
+Scene loadScene(const std::string& path) { return readScene(path, {}); }
+
+Scene loadScene(const std::string& path, const SheetChange& change) {
+  requireSound(change);
+  const YamlValue file = YamlValue::load(path);
+  if (!file.has("sheet")) file.refuseBecause("has a mesh from a file: allowed is another sheet");
+  if (file.has("state")) {
+    file.at("state").refuseBecause("is of the cells of the file: allowed is no other sheet");
+  }
+  return readScene(path, {0.0, change});
+}
 
 Scene loadScene(const std::string& path, double cell_size) {
   if (!std::isfinite(cell_size) || cell_size <= 0.0) {
     throw std::invalid_argument("cell_size is " + std::to_string(cell_size) +
                                 " m; it must be finite and > 0");
   }
-  return readScene(path, cell_size);
+  return readScene(path, {cell_size, {}});
 }
 
 }  // namespace haptex::scene

@@ -116,6 +116,7 @@ void ForceLoop::takeUpdate() {
   if (update->replaces_layer) {
     std::swap(layer_, update->layer);
     layer_particles_ = update->particles;
+    layer_mesh_ = update->mesh;
     liveness_.restart();
     receiveState(state_period_);
   }
@@ -147,11 +148,16 @@ bool ForceLoop::takeClothState() {
   return true;
 }
 
+/// Not of another sheet, though that may have as many particles.
+bool ForceLoop::isOfLayer(const LargeScaleState& state) const {
+  return state.mesh == layer_mesh_ && state.positions.size() == layer_particles_;
+}
+
 /// Also a new layer starts from the last state.
 void ForceLoop::receiveState(double period) {
   const LargeScaleState& state = states_.value().state;
   if (!layer_ || state.positions.empty()) return;
-  if (state.positions.size() != layer_particles_) {
+  if (!isOfLayer(state)) {
     ++status_.other_sizes;
     return;
   }
@@ -183,7 +189,7 @@ void ForceLoop::takeFingers(Time now) {
   news_.proximity_needed =
       layer_ && layer_->settings().layer == contact::HapticSettings::Layer::kPatch;
   news_.layer_ready =
-      layer_ready_ && layer_ && states_.value().state.positions.size() == layer_particles_;
+      layer_ready_ && layer_ && isOfLayer(states_.value().state);
 }
 
 /// Whether it is known where the fingertip is, or was until a moment ago.
@@ -286,6 +292,7 @@ void ForceLoop::showView(bool has_news) {
   view_.state_period = state_period_;
   view_.loads.clear();
   if (layer_) view_.loads.assign(layer_->loads().begin(), layer_->loads().end());
+  view_.mesh = layer_mesh_;
   view_.load_gain = loadGain();
   views_.write(view_);
   if (has_news) news_came_.post();

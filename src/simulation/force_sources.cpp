@@ -28,10 +28,12 @@ void requireSound(const std::string& source, const ParticleForces& request, std:
 }  // namespace
 
 void ForceSources::set(const std::string& source, ParticleForces forces) {
-  requireSound(source, forces, particle_count_);
+  const std::size_t particle_count = particle_count_;
+  requireSound(source, forces, particle_count);
   const bool ends = forces.particles.empty() || forces.lifetime == 0.0;
   if (ends) forces = ParticleForces();
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (particle_count != particle_count_) refuse("the cloth is being exchanged: ask again");
   Slot* slot = find(source);
   if (slot == nullptr) {
     if (ends) return;
@@ -80,6 +82,13 @@ void ForceSources::clear() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (Slot& slot : slots_) slot.waits = slot.acts = false;
   any_ = false;
+}
+
+void ForceSources::clearFor(std::size_t particle_count) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (Slot& slot : slots_) slot.waits = slot.acts = false;
+  any_ = false;
+  particle_count_ = particle_count;
 }
 
 std::size_t ForceSources::size() const {

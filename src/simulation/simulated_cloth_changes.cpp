@@ -23,6 +23,21 @@ enum Excluded : char { kIncluded, kWasFree, kWasAttached };
 void SimulatedCloth::setFabric(material::Fabric fabric) {
   if (collision_) collision_->requireFriction(fabric);
   cloth_.setFabric(std::move(fabric));
+  computeAnew();
+}
+
+void SimulatedCloth::setMaterial(std::vector<material::Fabric> fabrics,
+                                 const Eigen::Vector3d& gravity,
+                                 const std::optional<cloth::Air>& air) {
+  for (const material::Fabric& fabric : fabrics) {
+    if (collision_) collision_->requireFriction(fabric);
+  }
+  cloth_.setMaterial(std::move(fabrics), gravity, air);
+  computeAnew();
+}
+
+/// Of other fabrics.
+void SimulatedCloth::computeAnew() {
   cloth_.forget(state_);
   if (part_) {
     compute(std::move(excluded_));

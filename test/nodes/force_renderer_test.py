@@ -10,13 +10,14 @@ import statistics
 import tempfile
 import time
 
+import numpy as np
 import roslib.packages
 import rospy
 import rostest
 import yaml
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from haptex.msg import ClothState, Contact, ContactForces, ServoForce, ServoForces
-from haptex.srv import SetFabric
+from haptex.srv import SetFabric, SetProperties, SetSheet
 from ros_fixtures import WAIT, Diagnostics, DeviceTest, process_of
 
 NAN = float('nan')
@@ -183,6 +184,31 @@ class ForceRenderer(DeviceTest):
         self.await_touch()
         self.assertTrue(set_fabric('wool').success)
         self.await_touch()
+
+    def test_other_sheets_and_properties_come_without_a_force(self):
+        set_sheet = rospy.ServiceProxy('cloth/set_sheet', SetSheet)
+        set_properties = rospy.ServiceProxy('cloth/set_properties', SetProperties)
+        time.sleep(1.0)  # felt steadily
+        before = max(size for forces in self.commanded.values()
+                     for _, size in list(forces.series)[-500:])
+        for forces in self.commanded.values():
+            forces.series.clear()
+        for change in (lambda: set_sheet([0.22, 0.2], [0, 0], ''),  # of as many particles
+                       lambda: set_sheet([0.2, 0.2], [24, 24], ''),
+                       lambda: set_properties(['density', 'gravity_z'], [1.5, -5.0]),
+                       lambda: set_properties(['density', 'gravity_z'], [1.0, -9.80665]),
+                       lambda: set_sheet([0.0, 0.0], [0, 0], '')):
+            response = change()
+            self.assertTrue(response.success, response.message)
+            time.sleep(1.0)
+            self.await_touch()
+        sizes = [np.array([size for _, size in list(forces.series)])
+                 for forces in self.commanded.values()]
+        largest = max(size.max() for size in sizes)
+        step = max(np.abs(np.diff(size)).max() for size in sizes)
+        print(f'before {before:.3f} N, largest {largest:.3f} N, largest step of the force between '
+              f'two commands {step:.3f} N')
+        self.assertLess(largest, 1.5 * before + 0.1)
 
     def die(self, node, listeners, zero):
         """Kills a node under contact. @returns how long forces lasted (ms), the machine's standing

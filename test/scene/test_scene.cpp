@@ -323,6 +323,41 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
                        "wool_among_obstacles", "wool_in_wind", "wool_sample"}));
 }
 
+TEST_F(SceneFile, MayHaveAnotherSheet) {
+  load(kValid);
+  const Scene same = loadScene(path(), SheetChange{});
+  EXPECT_EQ(same.mesh.initial_positions, loadScene(path()).mesh.initial_positions);
+  SheetChange change;
+  change.size = {0.4, 0.1};
+  change.cells = {5, 1};
+  change.diagonals = mesh::Triangulation::kOneWay;
+  const Scene other = loadScene(path(), change);
+  const mesh::ClothMesh expected =
+      mesh::makeRectangle(0.4, 0.1, 5, 1, mesh::Triangulation::kOneWay);
+  EXPECT_EQ(other.mesh.triangles, expected.triangles);
+  EXPECT_EQ(other.mesh.initial_positions, expected.initial_positions);
+  EXPECT_EQ(other.attached_particles, (std::vector<int>{6, 7, 8, 9, 10, 11}));
+}
+
+TEST_F(SceneFile, RefusesSheetsThatCannotBe) {
+  load(kValid);
+  const auto refusal = [&](const SheetChange& change) -> std::string {
+    try {
+      loadScene(path(), change);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  SheetChange long_sheet, no_cells, fine;
+  long_sheet.size = {0.1, 101.0};
+  no_cells.cells = {3, 0};
+  fine.cells = {1000, 1000};
+  EXPECT_NE(refusal(long_sheet).find("size[1] = 101 m"), std::string::npos);
+  EXPECT_NE(refusal(no_cells).find("cells[1] = 0"), std::string::npos);
+  EXPECT_NE(refusal(fine).find("200000"), std::string::npos) << refusal(fine);
+}
+
 TEST(ShippedScenes, WoolSampleIsTheTwoHundredMillimetreSquare) {
   const Scene scene = loadScene((kConfig / "scenes/wool_sample.yaml").string());
   EXPECT_EQ(fs::path(scene.fabric_path).filename(), "wool.yaml");

@@ -82,6 +82,14 @@ TEST(ForceLoop, NoForceWhileTheStatesBelongToAnotherMesh) {
   EXPECT_GT(sheet->loop().status().other_sizes, 0u);
 }
 
+TEST(ForceLoop, NoForceWhileTheStatesAreOfAnotherSheetWithAsManyParticles) {
+  const auto sheet = touched();
+  sheet->state().mesh = 1;
+  sheet->run(40);
+  EXPECT_EQ(sheet->force().norm(), 0.0);
+  EXPECT_GT(sheet->loop().status().other_sizes, 0u);
+}
+
 TEST(ForceLoop, StartsAgainFromZeroWhenTheSimulationWasReset) {
   const auto sheet = touched();
   sheet->state().simulated_time = 0.0;

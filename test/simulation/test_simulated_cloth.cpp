@@ -126,6 +126,41 @@ TEST(SimulatedCloth, AnotherFabricAndAResetForgetHowTheClothWasBent) {
   EXPECT_EQ(simulation.state().memory, flat);
 }
 
+TEST(SimulatedCloth, OtherFabricsGravityAndAirActFromTheNextStepOn) {
+  SimulatedCloth simulation = smallSimulation();
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(simulation.step());
+  const cloth::ClothState before = simulation.state();
+  std::vector<material::Fabric> fabrics = simulation.cloth().fabrics();
+  fabrics.front().areal_density *= 3.0;
+  simulation.setMaterial(fabrics, {0.0, 1.0, 0.0}, std::nullopt);
+  EXPECT_EQ(simulation.state().positions, before.positions);
+  EXPECT_EQ(simulation.state().velocities, before.velocities);
+  std::vector<Eigen::Vector3d> forces;
+  simulation.cloth().computeForces(simulation.state(), forces);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& force : forces) sum += force;
+  EXPECT_NEAR(sum.y(), 3.0 * 0.1 * 0.2 * 0.2, 1e-12);  // kg times 1 m/s^2; the rest cancels
+  EXPECT_NEAR(sum.z(), 0.0, 1e-12);
+  ASSERT_TRUE(simulation.step());
+}
+
+TEST(SimulatedCloth, RefusesOtherMaterialThatDoesNotFit) {
+  const std::vector<material::Fabric> fabrics = smallSimulation().cloth().fabrics();
+  const auto refuse = [&](const std::vector<material::Fabric>& others,
+                          const std::optional<cloth::Air>& air, const std::string& says) {
+    expectRefused(
+        [&](SimulatedCloth& cloth) {
+          cloth.setMaterial(others, {0.0, 0.0, -1.0}, air);
+        },
+        says);
+  };
+  refuse({fabrics.front(), fabrics.front()}, std::nullopt, "there are 2 fabrics: allowed are 1");
+  refuse(fabrics, cloth::Air(), "modelled without air");
+  material::Fabric weightless = fabrics.front();
+  weightless.areal_density = 0.0;
+  refuse({weightless}, std::nullopt, "density");
+}
+
 /// The rail of this scene reaches through the sheet at the start.
 TEST(SimulatedCloth, ThatStartsInAnObstacleGoesOnOutsideOfIt) {
   const std::string path = HAPTEX_CONFIG_DIRECTORY "/scenes/dropped_sheet.yaml";

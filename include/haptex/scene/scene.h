@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,13 @@ struct Scene {
   bool recording = false;  ///< a bag is recorded without being asked for
 };
 
+/// What a sheet is to have instead of what its scene file says.
+struct SheetChange {
+  std::optional<std::array<double, 2>> size;  ///< m, along weft and warp
+  std::optional<std::array<int, 2>> cells;    ///< along weft and warp
+  std::optional<mesh::Triangulation> diagonals;
+};
+
 /// m, and m/s: how far a state may have an attached particle from where it is held.
 constexpr double kHeldTolerance = 1e-9;
 
@@ -55,6 +63,14 @@ constexpr double kHeldTolerance = 1e-9;
 /// @throws std::invalid_argument naming file, key, value and what is allowed, or what loadObj() and
 ///   loadState() say
 Scene loadScene(const std::string& path);
+
+/// The same with another sheet; sides, regions and obstacles are those of the file.
+/// @throws std::invalid_argument also if the cloth of the scene is no sheet, it starts from a saved
+///   state, a size is not finite and > 0 or beyond kLongestSide, or there would be too many
+///   triangles
+Scene loadScene(const std::string& path, const SheetChange& change);
+
+constexpr double kLongestSide = 100.0;  ///< m, of a sheet
 
 /// The same, but a sheet of a scene with any_cells has as few cells as make no edge along weft or
 /// warp longer than `cell_size` (m). Other scenes keep their mesh.

@@ -31,6 +31,7 @@ struct LayerUpdate {
   bool replaces_layer = false;
   std::unique_ptr<contact::HapticLayer> layer;  ///< null: none
   std::size_t particles = 0;                    ///< of the layer's large-scale mesh
+  std::uint32_t mesh = 0;                       ///< its number
   bool replaces_patch = false;                  ///< of the layer, the new one if there is one
   std::unique_ptr<contact::Patch> patch;        ///< null: none
 };
@@ -46,6 +47,7 @@ struct LoopView {
   /// when it is back.
   contact::Fingertips fingertips;
   std::vector<cloth::PointLoad> loads;
+  std::uint32_t mesh = 0;  ///< number of the one that they are on
   double load_gain = 0.0;  ///< share of them that is to act
 };
 
@@ -192,6 +194,7 @@ class ForceLoop {
 
   void takeUpdate();
   bool takeClothState();
+  bool isOfLayer(const LargeScaleState& state) const;
   void receiveState(double period);
   void takeFingers(Time now);
   bool isPresent(Finger finger) const;
@@ -208,6 +211,7 @@ class ForceLoop {
   // Of the thread that ticks.
   std::unique_ptr<contact::HapticLayer> layer_;
   std::size_t layer_particles_ = 0;
+  std::uint32_t layer_mesh_ = 0;
   RendererLiveness liveness_;
   RendererNews news_;
   FrameFollower follower_;

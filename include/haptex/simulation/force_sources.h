@@ -44,12 +44,15 @@ class ForceSources {
   /// are nearest to the lifetime, but at least one. Who repeats the same forces lengthens their
   /// time and does not wake a cloth that sleeps under them. Takes no lock as long as there are no
   /// forces, and allocates nothing.
-  /// @param simulation always the same one
+  /// @param simulation the same one until clearFor()
   void apply(SimulatedCloth& simulation);
 
   /// Ends all forces, those that wait included. The simulation's stay: SimulatedCloth::reset() ends
   /// them.
   void clear();
+  /// The same, and from now on they are for another cloth. Allocates.
+  /// @param particle_count of it
+  void clearFor(std::size_t particle_count);
 
   std::size_t size() const;  ///< sources that act or wait; by any thread
 
@@ -70,7 +73,7 @@ class ForceSources {
 
   Slot* find(const std::string& source);
 
-  const std::size_t particle_count_;
+  std::atomic<std::size_t> particle_count_;
   std::atomic<bool> any_{false};  // whether a slot is not free
   mutable std::mutex mutex_;      // guards the following
   std::array<Slot, kMax> slots_;

@@ -122,6 +122,11 @@ class SimulatedCloth {
   /// positions and velocities stay.
   /// @throws std::invalid_argument if the cloth cannot be made of it; nothing has changed then
   void setFabric(material::Fabric fabric);
+  /// Changes all fabrics, gravity and air, likewise.
+  /// @throws std::invalid_argument what cloth::Cloth::setMaterial() throws; nothing has changed
+  /// then
+  void setMaterial(std::vector<material::Fabric> fabrics, const Eigen::Vector3d& gravity,
+                   const std::optional<cloth::Air>& air);
 
   /// Act until replaced. @throws std::invalid_argument what Cloth::setPointLoads() throws
   void setPointLoads(const std::vector<cloth::PointLoad>& loads);
@@ -192,6 +197,7 @@ class SimulatedCloth {
   std::vector<int> requireAttached(const std::vector<std::uint32_t>& particles) const;
   void requireIncluded(const std::vector<int>& particles) const;
   void compute(std::vector<char> excluded);
+  void computeAnew();
   cloth::Cloth& computed() { return part_ ? part_->cloth() : cloth_; }
   void requireHeld(int particle, const Eigen::Vector3d* position,
                    const Eigen::Vector3d* velocity) const;

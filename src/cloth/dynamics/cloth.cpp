@@ -126,6 +126,29 @@ void Cloth::setFabric(material::Fabric fabric) {
   revision_ = nextRevision();
 }
 
+void Cloth::setMaterial(std::vector<material::Fabric> fabrics, const Eigen::Vector3d& gravity,
+                        const std::optional<Air>& air) {
+  if (fabrics.size() != fabrics_.size()) {
+    throw std::invalid_argument("there are " + std::to_string(fabrics.size()) +
+                                " fabrics: allowed are " + std::to_string(fabrics_.size()) +
+                                ", as many as the cloth has");
+  }
+  if (air.has_value() != effects_.air.has_value()) {
+    throw std::invalid_argument(effects_.air ? "the cloth is modelled with air; there is none"
+                                             : "the cloth is modelled without air; none can be set");
+  }
+  const ModelledEffects before = effects_;
+  effects_.gravity = gravity;
+  effects_.air = air;
+  try {
+    takeFabrics(std::move(fabrics));
+  } catch (...) {
+    effects_ = before;
+    throw;
+  }
+  revision_ = nextRevision();
+}
+
 void Cloth::computeForces(const ClothState& state, std::vector<Eigen::Vector3d>& forces) const {
   requireState(state);
   forces.assign(particleCount(), Eigen::Vector3d::Zero());

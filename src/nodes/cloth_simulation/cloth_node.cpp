@@ -126,6 +126,9 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       quality_(quality),
       time_step_(scene.time_step),
       tolerance_(scene.step.tolerance),
+      scene_path_(parameters.scene_path),
+      strain_scale_(parameters.strain_scale),
+      colour_by_(parameters.colour_by),
       particle_count_(scene.mesh.initial_positions.size()),
       triangle_count_(scene.mesh.triangles.size()),
       force_input_(node, particle_count_),
@@ -139,14 +142,16 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
           },
           [this](simulation::SimulatedCloth& simulation) { takeForces(simulation); }) {
   ROS_INFO("Scene %s: %zu particles, %zu triangles, steps of %g ms", parameters.scene_path.c_str(),
-           particle_count_, triangle_count_, 1e3 * time_step_);
+           particle_count_.load(), triangle_count_.load(), 1e3 * time_step_);
   warnOfTangles(scene);
   advertiseTopics();
   loop_.start();
   loop_.execute([this](simulation::SimulatedCloth& simulation) {
+    fabrics_ = simulation.cloth().fabrics();
     publishMesh(simulation.cloth());
     publishQuality(simulation);
   });
+  offerProperties(private_node, scene.effects);
   advertiseServices();
   diagnostics_.setHardwareID("none");
   diagnostics_.add("cloth simulation", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -173,7 +178,7 @@ void ClothNode::advertiseTopics() {
 }
 
 void ClothNode::publishMesh(const cloth::Cloth& cloth) {
-  mesh_publisher_.publish(meshMessage(cloth, mesh_, ros::Time::now()));
+  mesh_publisher_.publish(meshMessage(cloth, mesh_, factors_, ros::Time::now()));
 }
 
 void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double until_next) {
@@ -215,6 +220,7 @@ void ClothNode::publishState(const simulation::SimulatedCloth& simulation, doubl
     restampStateMessage(simulation, state_stamp_, state_message_);
   } else {
     fillStateMessage(simulation, state_stamp_, forces_, state_message_);
+    state_message_.mesh = mesh_;
     filled_step_ = simulation.computedSteps();
   }
   state_message_.until_next = until_next;
@@ -292,8 +298,8 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
                 static_cast<int>(particle_count_));
   }
   status.add("asleep", loop.asleep ? "yes" : "no");
-  status.add("particles", particle_count_);
-  status.add("triangles", triangle_count_);
+  status.add("particles", particle_count_.load());
+  status.add("triangles", triangle_count_.load());
   if (quality_) diagnoseQuality(status);
   addInput(status, "external forces", force_input_.status());
   status.add("sources of external forces", force_input_.sources().size());

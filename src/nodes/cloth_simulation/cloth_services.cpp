@@ -6,10 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/material/fabric_file.h"
 #include "haptex/nodes/cloth_simulation/cloth_node.h"
 #include "haptex/nodes/common/cloth_messages.h"
-#include "haptex/nodes/common/config_files.h"
 #include "haptex/nodes/common/service_answer.h"
 #include "haptex/scene/cloth_state_file.h"
 #include "haptex/simulation/particle_requests.h"
@@ -38,6 +36,8 @@ void ClothNode::advertiseServices() {
                node_.advertiseService("cloth/pause", &ClothNode::pause, this),
                node_.advertiseService("cloth/step", &ClothNode::step, this),
                node_.advertiseService("cloth/set_fabric", &ClothNode::setFabric, this),
+               node_.advertiseService("cloth/set_sheet", &ClothNode::setSheet, this),
+               node_.advertiseService("cloth/set_properties", &ClothNode::setProperties, this),
                node_.advertiseService("cloth/attach", &ClothNode::attach, this),
                node_.advertiseService("cloth/move", &ClothNode::move, this),
                node_.advertiseService("cloth/release", &ClothNode::release, this),
@@ -84,24 +84,6 @@ bool ClothNode::step(StepCloth::Request& request, StepCloth::Response& response)
     if (taken.end == simulation::StepsRun::End::kInterrupted) {
       throw std::runtime_error(message + "; then the simulation was resumed or ended");
     }
-    return message;
-  });
-}
-
-bool ClothNode::setFabric(SetFabric::Request& request, SetFabric::Response& response) {
-  return answer("set_fabric", response, [&] {
-    // Read here: the loop does not wait for files.
-    material::Fabric fabric = material::loadFabric(findConfigFile("fabrics", request.fabric));
-    std::string message = "the fabric is " + fabric.name;
-    loop_.execute([&](simulation::SimulatedCloth& simulation) {
-      simulation.setFabric(std::move(fabric));
-      publishMesh(simulation.cloth());
-      publishQuality(simulation);
-      const std::vector<material::Fabric>& fabrics = simulation.cloth().fabrics();
-      for (std::size_t f = 1; f < fabrics.size(); ++f) {
-        message += (f == 1 ? "; regions stay of " : ", ") + fabrics[f].name;
-      }
-    });
     return message;
   });
 }

@@ -47,6 +47,12 @@ scene::Quality presetFor(const material::Fabric& fabric, const std::string& path
   return qualities.front();
 }
 
+/// By how much a cycle of a scene takes longer than of another, about.
+double growthOf(const scene::Scene& scene, const scene::Scene& other) {
+  return static_cast<double>(scene.mesh.triangles.size()) /
+         static_cast<double>(other.mesh.triangles.size());
+}
+
 double milliseconds(double seconds) { return 1e3 * seconds; }
 
 }  // namespace
@@ -173,17 +179,28 @@ std::vector<simulation::Candidate> RuntimeQuality::borrowed(const std::string& s
                                {kBorrowedAllowance, std::numeric_limits<double>::infinity()});
 }
 
-simulation::SimulatedCloth RuntimeQuality::simulate() const {
+simulation::SimulatedCloth RuntimeQuality::simulate(const scene::Scene& scene,
+                                                    std::vector<material::Fabric> fabrics) const {
+  const double growth = growthOf(scene, scene_);
   std::vector<simulation::StepPlan> plans;
   std::vector<double> costs;
   for (const simulation::Candidate& rung : rungs_) {
     plans.push_back(simulation::planOf(rung, scene_.step.threads));
-    costs.push_back(rung.seconds);
+    costs.push_back(growth * rung.seconds);
   }
-  simulation::SimulatedCloth simulation(scene_, fabrics_, std::move(plans));
+  simulation::SimulatedCloth simulation(scene, std::move(fabrics), std::move(plans));
   simulation.setController(
       simulation::QualityController(std::move(costs), budget_, scene_.time_step, first_));
   return simulation;
+}
+
+void RuntimeQuality::setScene(const scene::Scene& scene) {
+  const double growth = growthOf(scene, scene_);
+  for (std::vector<simulation::Candidate>* candidates : {&candidates_, &rungs_}) {
+    for (simulation::Candidate& candidate : *candidates) candidate.seconds *= growth;
+  }
+  scene_ = scene;
+  cell_size_ = 0.0;  // none that was measured
 }
 
 haptex::QualityPoint RuntimeQuality::pointMessage(const simulation::Candidate& candidate,

@@ -2,7 +2,9 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "haptex/material/fabric_factors.h"
 #include "haptex/material/fabric_file.h"
 
 namespace haptex::nodes {
@@ -12,6 +14,16 @@ void requireAtMost(const std::string& field, std::size_t bytes, std::size_t allo
   if (bytes <= allowed) return;
   throw std::invalid_argument(field + " has " + std::to_string(bytes) +
                               " bytes: allowed are up to " + std::to_string(allowed));
+}
+
+material::FabricFactors factorsOf(const haptex::ClothMesh& message) {
+  const std::vector<double>& factors = message.factors;
+  if (factors.empty()) return {};
+  if (factors.size() != 5) {
+    throw std::invalid_argument("factors has " + std::to_string(factors.size()) +
+                                " elements: allowed are 5, or none");
+  }
+  return {factors[0], factors[1], factors[2], factors[3], factors[4]};
 }
 
 }  // namespace
@@ -45,7 +57,7 @@ material::Fabric fabricOfCloth(const haptex::ClothMesh& message, std::size_t ind
     throw std::invalid_argument("fabric '" + name + "' in cloth/mesh: its file is of the fabric '" +
                                 fabric.name + "'");
   }
-  return fabric;
+  return material::scaledBy(factorsOf(message), std::move(fabric));
 }
 
 }  // namespace haptex::nodes

@@ -31,7 +31,7 @@ std::vector<Eigen::Vector3d> fromXyz(const std::vector<Message>& messages) {
 }  // namespace
 
 haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
-                              const ros::Time& stamp) {
+                              const material::FabricFactors& factors, const ros::Time& stamp) {
   haptex::ClothMesh message;
   message.header.stamp = stamp;
   message.header.frame_id = kFixedFrame;
@@ -40,6 +40,7 @@ haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
     message.fabrics.push_back(fabric.name);
     message.fabric_files.push_back(fabric.file);
   }
+  message.factors = {factors.weft, factors.warp, factors.shear, factors.bending, factors.density};
   message.gravity = vectorMessage(cloth.effects().gravity);
   for (const Eigen::Vector2d& rest : cloth.mesh().rest_coordinates) {
     message.rest_weft_coordinates.push_back(rest.x());

@@ -116,6 +116,7 @@ RestMesh restMesh(const haptex::ClothMesh& message) {
                                 " elements: allowed are three per triangle, of one or more");
   }
   RestMesh mesh;
+  mesh.number = message.mesh;
   mesh.triangles.resize(message.triangles.size() / 3);
   for (std::size_t i = 0; i < message.triangles.size(); ++i) {
     const std::uint32_t particle = message.triangles[i];

@@ -22,7 +22,7 @@ constexpr Time kFall = simulation::RendererLiveness::kFall + std::chrono::millis
 /// And the same number and gravity.
 bool hasSameFabric(const haptex::ClothMesh& a, const haptex::ClothMesh& b) {
   return a.mesh == b.mesh && a.fabrics == b.fabrics && a.fabric_files == b.fabric_files &&
-         a.gravity == b.gravity;
+         a.factors == b.factors && a.gravity == b.gravity;
 }
 
 }  // namespace
@@ -110,6 +110,7 @@ void PatchSupplier::buildLayer(const haptex::ClothMesh& message) {
   }
   update->replaces_layer = true;
   update->particles = message.rest_weft_coordinates.size();
+  update->mesh = message.mesh;
   layer_ = update->layer.get();
   while ((realtime::steadyNow() < begin + kFall || !loop_.canOffer()) && !stopping_) {
     loop_.waitForNews(kPatience);
@@ -132,6 +133,7 @@ void PatchSupplier::publishForces(const simulation::LoopView& view) {
   }
   if (loads_.empty() && !published_forces_) return;
   fillContactForces(loads_, ros::Time::now(), forces_);
+  forces_.mesh = view.mesh;
   force_publisher_.publish(forces_);
   published_forces_ = !loads_.empty();
 }

@@ -96,6 +96,7 @@ void readState(const haptex::ClothState& message, simulation::LargeScaleState& s
          << kLongestStep;
     throw std::invalid_argument(text.str());
   }
+  state.mesh = message.mesh;
   const std::size_t particles = message.positions.size();
   requireCount("velocities", message.velocities.size(), particles);
   state.positions.resize(particles);

@@ -76,7 +76,10 @@ void ClothProximity::setMesh(const haptex::ClothMesh& message) try {
   // A state that came before the first mesh may be of this one, but a state of another mesh is not,
   // even if it has as many particles.
   const haptex::ClothStateConstPtr& state = latest_.state.message;
-  if (before || (state && state->positions.size() != particles)) latest_.state.message.reset();
+  if (before || (state && (state->mesh != fitted->mesh().number ||
+                           state->positions.size() != particles))) {
+    latest_.state.message.reset();
+  }
   latest_.fitted = fitted;
   ++status_.builds;
   status_.triangles = fitted->mesh().triangles.size();
@@ -93,6 +96,10 @@ void ClothProximity::setState(const haptex::ClothStateConstPtr& message,
     throw std::invalid_argument(
         "positions has " + std::to_string(count) + " elements: cloth/mesh has " +
         std::to_string(latest_.fitted->mesh().rest_coordinates.size()) + " particles");
+  }
+  if (latest_.fitted && message->mesh != latest_.fitted->mesh().number) {
+    throw std::invalid_argument("mesh = " + std::to_string(message->mesh) + ": cloth/mesh is " +
+                                std::to_string(latest_.fitted->mesh().number));
   }
   ++latest_.state.number;
   latest_.state.message = message;

@@ -102,6 +102,17 @@ TEST_F(ClothProximityTest, BuildsOnceForAMeshThatComesAgain) {
   EXPECT_EQ(ask(sphere()).step, 7u);  // and keeps the state
 }
 
+TEST_F(ClothProximityTest, TakesNoStateWithTheNumberOfAnotherMesh) {
+  setCloth();
+  haptex::ClothMesh other = testMeshMessage(mesh_);
+  other.mesh = 1;  // of the same shape
+  proximity_.setMesh(other);
+  expectRefused(sphere(), "no good message on cloth/state");
+  proximity_.setState(testState(7, positions_), kArrival);  // of mesh 0
+  expectRefused(sphere(), "no good message on cloth/state");
+  EXPECT_EQ(proximity_.status(kNow).dropped_why, "cloth/state: mesh = 0: cloth/mesh is 1");
+}
+
 TEST_F(ClothProximityTest, ForgetsTheStateOfAnotherMesh) {
   setCloth();
   EXPECT_TRUE(ask(sphere()).success);

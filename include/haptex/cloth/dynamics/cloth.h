@@ -83,6 +83,12 @@ class Cloth {
   ///   nothing has changed then
   void setFabric(material::Fabric fabric);
 
+  /// Changes all fabrics, gravity (m/s^2) and air from the next step on, likewise.
+  /// @throws std::invalid_argument also if there are not as many fabrics as before, or air is given
+  ///   where it is not modelled or the other way round; nothing has changed then
+  void setMaterial(std::vector<material::Fabric> fabrics, const Eigen::Vector3d& gravity,
+                   const std::optional<Air>& air);
+
   /// Makes the state one without friction in what is bent: the fabric's past is forgotten.
   /// @throws std::invalid_argument if positions or velocities are not as many as particles
   void forget(ClothState& state) const;

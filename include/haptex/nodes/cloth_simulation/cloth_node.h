@@ -2,7 +2,9 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <dynamic_reconfigure/server.h>
 #include <haptex/AttachParticles.h>
+#include <haptex/ClothConfig.h>
 #include <haptex/ClothState.h>
 #include <haptex/GetJacobian.h>
 #include <haptex/MoveParticles.h>
@@ -11,6 +13,8 @@
 #include <haptex/SaveState.h>
 #include <haptex/SelectParticles.h>
 #include <haptex/SetFabric.h>
+#include <haptex/SetProperties.h>
+#include <haptex/SetSheet.h>
 #include <haptex/SetState.h>
 #include <haptex/StepCloth.h>
 #include <ros/ros.h>
@@ -18,6 +22,8 @@
 #include <std_srvs/Trigger.h>
 
 #include <Eigen/Core>
+#include <atomic>
+#include <boost/thread/recursive_mutex.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -26,6 +32,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/material/fabric_factors.h"
 #include "haptex/nodes/cloth_simulation/cloth_markers.h"
 #include "haptex/nodes/cloth_simulation/contact_input.h"
 #include "haptex/nodes/cloth_simulation/external_force_input.h"
@@ -59,7 +66,9 @@ struct ClothNodeParameters {
 ///   cloth/quality (ClothQuality, latched), with ~quality or ~budget_ms;
 ///   services cloth/reset (std_srvs/Trigger), cloth/pause (std_srvs/SetBool), cloth/step,
 ///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian,
-///   cloth/query_budget, cloth/set_state, cloth/save_state (srv/).
+///   cloth/query_budget, cloth/set_state, cloth/save_state, cloth/set_sheet, cloth/set_properties
+///   (srv/). By dynamic_reconfigure the same properties can be set (cfg/Cloth.cfg), which begin
+///   with the scene's.
 /// It subscribes to cloth/external_forces (ExternalForces; simulation::ForceSources). In a scene
 /// with fingers it subscribes to cloth/contact_forces (ContactForces), which act for
 /// NewestLoads::kLifetime.
@@ -99,6 +108,11 @@ class ClothNode {
   bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool step(StepCloth::Request& request, StepCloth::Response& response);
   bool setFabric(SetFabric::Request& request, SetFabric::Response& response);
+  bool setSheet(SetSheet::Request& request, SetSheet::Response& response);
+  bool setProperties(SetProperties::Request& request, SetProperties::Response& response);
+  void offerProperties(const ros::NodeHandle& private_node, const cloth::ModelledEffects& effects);
+  void apply(const haptex::ClothConfig& properties);
+  void exchange(simulation::SimulatedCloth next, const scene::Scene& scene);
   bool attach(AttachParticles::Request& request, AttachParticles::Response& response);
   bool move(MoveParticles::Request& request, MoveParticles::Response& response);
   bool release(ReleaseParticles::Request& request, ReleaseParticles::Response& response);
@@ -125,6 +139,7 @@ class ClothNode {
   std::uint64_t steps_per_markers_;
   ClothMarkers markers_;
   std::uint32_t mesh_ = 0;  // its number
+  material::FabricFactors factors_;
   haptex::ClothState state_message_;
   std::vector<Eigen::Vector3d> forces_;
   ros::Time state_stamp_;
@@ -137,18 +152,29 @@ class ClothNode {
   mutable std::mutex quality_mutex_;
   haptex::ClothQuality quality_message_;  // the last; guarded by quality_mutex_
 
+  std::optional<RuntimeQuality> quality_;  // changed by the loop's thread only
+
   // Constant.
-  std::optional<RuntimeQuality> quality_;
   double time_step_;  // s
   double tolerance_;
-  std::size_t particle_count_;
-  std::size_t triangle_count_;
+  std::string scene_path_;
+  double strain_scale_;
+  ClothColours colour_by_;
+
+  std::atomic<std::size_t> particle_count_;
+  std::atomic<std::size_t> triangle_count_;
 
   ExternalForceInput force_input_;
   std::unique_ptr<ContactInput> contact_input_;  // null in a scene without fingers
   Heartbeat heartbeat_;
 
-  simulation::RealTimeLoop loop_;  // last: its thread uses the members above
+  simulation::RealTimeLoop loop_;  // its thread uses the members above
+
+  // One change of fabrics, properties or sheet at a time.
+  boost::recursive_mutex changing_;
+  std::vector<material::Fabric> fabrics_;  // as their files say, without factors; guarded by it
+  haptex::ClothConfig properties_;         // that act; likewise
+  std::unique_ptr<dynamic_reconfigure::Server<haptex::ClothConfig>> reconfigure_;  // likewise
 };
 
 }  // namespace haptex::nodes

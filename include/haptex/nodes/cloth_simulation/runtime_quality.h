@@ -53,7 +53,13 @@ class RuntimeQuality {
   const scene::Scene& scene() const { return scene_; }
 
   /// Can take its steps by everything that it may switch to, and has a controller.
-  simulation::SimulatedCloth simulate() const;
+  simulation::SimulatedCloth simulate() const { return simulate(scene_, fabrics_); }
+  /// The same for another mesh and other fabrics. Nothing is measured anew: what a cycle takes
+  /// grows with the triangles at first, and then it is the load that tells.
+  simulation::SimulatedCloth simulate(const scene::Scene& scene,
+                                      std::vector<material::Fabric> fabrics) const;
+  /// From now on the simulation is that of this scene.
+  void setScene(const scene::Scene& scene);
 
   /// @param simulation of simulate(); here and below
   haptex::ClothQuality message(const simulation::SimulatedCloth& simulation,

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/material/fabric_factors.h"
 #include "haptex/simulation/simulated_cloth.h"
 
 namespace haptex::nodes {
@@ -21,10 +22,10 @@ namespace haptex::nodes {
 /// The one frame of everything this package sends and takes; its origin is that of the scene.
 constexpr char kFixedFrame[] = "world";
 
-/// @param mesh  the number of the mesh
+/// @param mesh  the number of the mesh @param factors that the fabrics have on their files
 /// @param stamp when all of it became so
 haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
-                              const ros::Time& stamp);
+                              const material::FabricFactors& factors, const ros::Time& stamp);
 
 /// Fills a state message in place but for until_next, without allocation once its arrays have their
 /// size.

@@ -18,11 +18,13 @@ namespace haptex::nodes {
 
 /// The triangles of a mesh message and where its particles are in the fabric.
 struct RestMesh {
+  std::uint32_t number = 0;                       ///< of the mesh
   std::vector<std::array<int, 3>> triangles;      ///< particle indices
   std::vector<Eigen::Vector3d> rest_coordinates;  ///< (u along the weft, v along the warp, 0), m
 
   bool operator==(const RestMesh& other) const {
-    return triangles == other.triangles && rest_coordinates == other.rest_coordinates;
+    return number == other.number && triangles == other.triangles &&
+           rest_coordinates == other.rest_coordinates;
   }
 };
 
