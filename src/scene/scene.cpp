@@ -65,17 +65,11 @@ mesh::ClothMesh readSheet(const YamlValue& value, const OtherSheet& other) {
   value.requireKeys({"size", "cells", "diagonals"}, {"position", "rpy"});
   const auto size = value.at("size").items(2);
   const auto cells = value.at("cells").items(2);
-  double width = readSize(size[0]), height = readSize(size[1]);
-  int cells_u = readCells(cells[0]), cells_v = readCells(cells[1]);
   const SheetChange& change = other.change;
-  if (change.size) {
-    width = (*change.size)[0];
-    height = (*change.size)[1];
-  }
-  if (change.cells) {
-    cells_u = (*change.cells)[0];
-    cells_v = (*change.cells)[1];
-  }
+  const auto [width, height] =
+      change.size.value_or(std::array{readSize(size[0]), readSize(size[1])});
+  auto [cells_u, cells_v] =
+      change.cells.value_or(std::array{readCells(cells[0]), readCells(cells[1])});
   // Each factor alone is bounded first, so that the product cannot overflow.
   requireTriangleCount(cells[0], 2LL * cells_u);
   requireTriangleCount(value.at("cells"), 2LL * cells_u * cells_v);

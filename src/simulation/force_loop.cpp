@@ -188,8 +188,7 @@ void ForceLoop::takeFingers(Time now) {
   news_.question = timeOf(question_);
   news_.proximity_needed =
       layer_ && layer_->settings().layer == contact::HapticSettings::Layer::kPatch;
-  news_.layer_ready =
-      layer_ready_ && layer_ && isOfLayer(states_.value().state);
+  news_.layer_ready = layer_ready_ && layer_ && isOfLayer(states_.value().state);
 }
 
 /// Whether it is known where the fingertip is, or was until a moment ago.

@@ -9,9 +9,7 @@
 namespace haptex::material::test_fabric_factors {
 namespace {
 
-Fabric wool() {
-  return loadFabric(std::string(HAPTEX_CONFIG_DIRECTORY) + "/fabrics/wool.yaml");
-}
+Fabric wool() { return loadFabric(std::string(HAPTEX_CONFIG_DIRECTORY) + "/fabrics/wool.yaml"); }
 
 TEST(FabricFactors, MultiplyWhatTheyNameAndNothingElse) {
   const Fabric before = wool();

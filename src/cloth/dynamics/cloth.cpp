@@ -134,8 +134,9 @@ void Cloth::setMaterial(std::vector<material::Fabric> fabrics, const Eigen::Vect
                                 ", as many as the cloth has");
   }
   if (air.has_value() != effects_.air.has_value()) {
-    throw std::invalid_argument(effects_.air ? "the cloth is modelled with air; there is none"
-                                             : "the cloth is modelled without air; none can be set");
+    throw std::invalid_argument(effects_.air
+                                    ? "the cloth is modelled with air; there is none"
+                                    : "the cloth is modelled without air; none can be set");
   }
   const ModelledEffects before = effects_;
   effects_.gravity = gravity;

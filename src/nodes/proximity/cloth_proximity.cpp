@@ -76,8 +76,8 @@ void ClothProximity::setMesh(const haptex::ClothMesh& message) try {
   // A state that came before the first mesh may be of this one, but a state of another mesh is not,
   // even if it has as many particles.
   const haptex::ClothStateConstPtr& state = latest_.state.message;
-  if (before || (state && (state->mesh != fitted->mesh().number ||
-                           state->positions.size() != particles))) {
+  if (before ||
+      (state && (state->mesh != fitted->mesh().number || state->positions.size() != particles))) {
     latest_.state.message.reset();
   }
   latest_.fitted = fitted;
