@@ -1,0 +1,119 @@
+"""Judges a fabric by what a device measured, and by nothing else: neither by the fabric's file nor by
+the cloth's state. The rater knows the sample's size and its own fingertips. Formulas:
+docs/evaluation_by_machine.md"""
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+GRAVITY = 9.80665  # m/s^2
+AREA = 0.04  # m^2, of the sample
+BLOCKS = 8  # that means are taken over, for their deviation
+KES_PRESSURE = 50 * 98.0665  # Pa, under which Tm is measured
+FIRST_FORCE = 1e-4  # N, of a pinch
+EXPONENT = 0.2  # of a compression curve, for a linearity LC = 2 EXPONENT / (1 + EXPONENT) of 1/3
+
+
+class Judgement(NamedTuple):
+    value: float
+    uncertainty: float  # standard deviation
+
+
+class Fingertips(NamedTuple):
+    index_radius: float  # m
+    thumb_radius: float  # m
+    pulp_stiffness: float  # Pa/m, of each
+
+    @property
+    def radius(self):
+        """Of a sphere that presses a plane as both press each other."""
+        return 1.0 / (1.0 / self.index_radius + 1.0 / self.thumb_radius)
+
+
+def of_blocks(values, combine=np.mean):
+    """The value of all and the standard deviation of it, by blocks in time."""
+    blocks = [combine(block) for block in np.array_split(values, BLOCKS)]
+    return Judgement(float(combine(values)), float(np.std(blocks, ddof=1) / np.sqrt(BLOCKS)))
+
+
+def weight(record):
+    """kg/m^2: of a sample that hangs from the fingertips alone."""
+    carried, deviation = of_blocks(-record.sums[:, 2])
+    return Judgement(carried / (GRAVITY * AREA), deviation / (GRAVITY * AREA))
+
+
+def friction(record, begin=0.006):
+    """Coefficient: friction of both fingers, which face each other along x and slide along z, over what
+    they press with. @param begin m of the way, before which the fabric may stick"""
+    way = np.abs(record.places[:, 2] - record.places[0, 2])
+    slides = way > begin
+    if slides.sum() < 100:
+        raise ValueError(f'the fingers slide for {slides.sum()} samples: allowed are 100 or more')
+    pairs = np.column_stack([record.sums[slides, 2],
+                             np.abs(record.forces[slides, :, 0]).sum(axis=1)])
+    return of_blocks(pairs, lambda part: abs(part[:, 0].mean()) / part[:, 1].mean())
+
+
+def pinch_force(gap, thickness, compressed, fingertips):
+    """N, of two spheres whose surfaces are the gap (m) apart with fabric in between whose thickness falls
+    by `compressed` (p / 50 gf/cm^2)^EXPONENT under the pressure p, with the pulps in series. Each ring of
+    the contact has the pressure of its gap: F = 2 pi R integral of p over the gap."""
+    pressures = KES_PRESSURE * np.linspace(0.0, 1.0, 400) ** 2 * 4.0
+    shares = pressures / KES_PRESSURE
+    gaps = thickness - compressed * shares ** EXPONENT - 2.0 * pressures / fingertips.pulp_stiffness
+    integral = (compressed * EXPONENT / (EXPONENT + 1.0) * KES_PRESSURE * shares ** (EXPONENT + 1.0)
+                + pressures ** 2 / fingertips.pulp_stiffness)
+    forces = 2.0 * np.pi * fingertips.radius * integral
+    return np.interp(gap, gaps[::-1], forces[::-1], right=0.0)
+
+
+def compression(record, fingertips):
+    """Thickness without pressure, thickness under 50 gf/cm^2 (m) and compressibility (T0 - Tm) / T0. The
+    first force is felt at T0; then the fabric is the one whose pinch_force() is that of the record."""
+    apart = record.positions[:, 0] - record.positions[:, 1]
+    distance = np.linalg.norm(apart, axis=1)
+    gap = distance - fingertips.index_radius - fingertips.thumb_radius
+    force = 0.5 * np.abs(np.einsum('ni,ni->n', record.forces[:, 0] - record.forces[:, 1],
+                                   apart / distance[:, None]))
+    if force.max() < 0.02:
+        raise ValueError(f'the pinch presses with up to {force.max():.3g} N: allowed are 0.02 N or more')
+    parts = [judge_pinch(gap[part::BLOCKS], force[part::BLOCKS], fingertips)
+             for part in range(BLOCKS)]
+    return [Judgement(float(value), float(deviation)) for value, deviation in
+            zip(np.mean(parts, axis=0), np.std(parts, axis=0, ddof=1) / np.sqrt(BLOCKS))]
+
+
+def judge_pinch(gap, force, fingertips):
+    """T0, Tm and (T0 - Tm) / T0 of samples of a pinch."""
+    pressed = force > FIRST_FORCE
+    thick = gap[pressed].max()
+    if thick <= 0.0:
+        raise ValueError(f'the first force is felt at a gap of {thick:.3g} m: allowed are > 0')
+    def residual(compressed):
+        return (np.sqrt(pinch_force(gap[pressed], thick, compressed[0], fingertips))
+                - np.sqrt(force[pressed]))
+    compressed = least_squares(residual, (0.2 * thick,), x_scale=(1e-4,),
+                               bounds=((0.0,), (thick,))).x[0]
+    return thick, thick - compressed, compressed / thick
+
+
+def stiffness(record, direction, least, largest):
+    """N/m: force that both fingertips feel against a direction over their way along it, between two forces
+    (N), as far as it rises for the first time."""
+    direction = np.asarray(direction, float)
+    way = record.places @ direction
+    force = -record.sums @ direction
+    smooth = np.convolve(force, np.ones(50) / 50.0, 'same')  # over the tremor
+    begin = int(np.argmax(smooth > least))
+    reached = np.flatnonzero(smooth[begin:] > largest)
+    end = begin + int(reached[0]) if len(reached) else begin + int(np.argmax(smooth[begin:]))
+    if end - begin < 20:
+        raise ValueError(f'the hand draws with {least} to {largest} N for {end - begin} samples: allowed '
+                         'are 20 or more')
+    (slope, _), covariance = np.polyfit(way[begin:end], force[begin:end], 1, cov=True)
+    return Judgement(float(slope), float(np.sqrt(covariance[0, 0])))
+
+
+def fold_push(record):
+    """N: how a fold pushes the fingertips aside, along x."""
+    return of_blocks(np.abs(record.sums[:, 0]))
