@@ -137,8 +137,8 @@ def parse_wrench(raw):
 def parse_state(data):
     """A serialized haptex/ClothState, much faster than its Python class does it."""
     stamp, offset = parse_header(data)
-    step, time = struct.unpack_from('<Qd', data, offset)
-    offset += 16
+    _, step, time = struct.unpack_from('<IQd', data, offset)  # the first is the number of the mesh
+    offset += 20
     arrays = []
     for _ in range(3):  # positions, velocities, forces
         count, = struct.unpack_from('<I', data, offset)

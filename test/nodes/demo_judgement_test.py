@@ -1,18 +1,24 @@
 #!/usr/bin/python3
 """A demo is judged by what was felt: synthetic demos that are as the path asks, and some that are not."""
+import io
 import pathlib
 import sys
 import types
 import unittest
 
 import numpy as np
+import rospy
 import rostest
+from geometry_msgs.msg import Point, Vector3, WrenchStamped
+from haptex.msg import ClothState, Contact
+from std_msgs.msg import Header
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'scripts'))
 from demo_report.holds import Hold, holds_of, load_holds  # noqa: E402
 from demo_report.host import steal_of  # noqa: E402
 from demo_report.judgement import judge, spells_below  # noqa: E402
+from demo_report.recording import parse_contact, parse_state, parse_wrench  # noqa: E402
 from demo_report.series import FINGERS, WITH_CONTACT, Series  # noqa: E402
 
 START = 1000.0  # s since the epoch
@@ -208,12 +214,46 @@ class Steal(unittest.TestCase):
         self.assertEqual(steal_of('cpu 1 2 3 4 5 6 7'), 0.0)
 
 
+class Parsing(unittest.TestCase):
+    """What is read by hand, because that is much faster, is what the messages' own classes say."""
+
+    @staticmethod
+    def serialized(message):
+        message.header = Header(seq=3, stamp=rospy.Time(12, 500000000), frame_id='world')
+        buffer = io.BytesIO()
+        message.serialize(buffer)
+        return buffer.getvalue()
+
+    def test_states(self):
+        state = ClothState(mesh=7, step=1 << 40, simulated_time=2.5, attached=[1], excluded=[],
+                           positions=[Point(1.0, 2.0, 3.0), Point(4.0, 5.0, 6.0)],
+                           velocities=[Vector3()] * 2, until_next=0.01,
+                           forces=[Vector3(7.0, 8.0, 9.0), Vector3(-1.0, 0.0, 1.0)])
+        stamp, step, time, positions, forces = parse_state(self.serialized(state))
+        self.assertEqual((stamp, step, time), (12.5, 1 << 40, 2.5))
+        self.assertEqual(positions.tolist(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+        self.assertEqual(forces.tolist(), [[7.0, 8.0, 9.0], [-1.0, 0.0, 1.0]])
+
+    def test_contacts(self):
+        contact = Contact(touching=True, slipping=True, force=Vector3(3.0, 0.0, 4.0),
+                          normal_force=2.0, area=1e-4, sliding_velocity=Vector3(0.0, 0.3, 0.4),
+                          fabric=2)
+        stamp, values = parse_contact((None, self.serialized(contact)))
+        self.assertEqual(stamp, 12.5)
+        np.testing.assert_allclose(values, (5.0, 2.0, 1e-4, 0.5))
+
+    def test_wrenches(self):
+        wrench = WrenchStamped()
+        wrench.wrench.force = Vector3(1.0, -2.0, 3.0)
+        self.assertEqual(parse_wrench((None, self.serialized(wrench))), (12.5, (1.0, -2.0, 3.0)))
+
+
 class Tests(unittest.TestSuite):
     """All of them, for rostest."""
 
     def __init__(self):
         load = unittest.TestLoader().loadTestsFromTestCase
-        super().__init__(map(load, [Judging, Spells, Holds, Steal]))
+        super().__init__(map(load, [Judging, Spells, Holds, Steal, Parsing]))
 
 
 if __name__ == '__main__':
