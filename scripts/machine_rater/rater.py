@@ -112,8 +112,3 @@ def stiffness(record, direction, least, largest):
                          'are 20 or more')
     (slope, _), covariance = np.polyfit(way[begin:end], force[begin:end], 1, cov=True)
     return Judgement(float(slope), float(np.sqrt(covariance[0, 0])))
-
-
-def fold_push(record):
-    """N: how a fold pushes the fingertips aside, along x."""
-    return of_blocks(np.abs(record.sums[:, 0]))

@@ -19,8 +19,6 @@ constexpr double kStep = 1e-3;        // s
 constexpr double kOpen = 4e-3;        // m, gap in which nothing touches
 constexpr double kLowerEdge = -0.19;  // m, where a hand pinches there
 constexpr double kMiddle = -0.1;      // m
-constexpr double kLift = 0.13;        // m, of the lower edge in a fold
-constexpr double kAside = 0.03;       // m
 const Vector3d kStill = Vector3d::Zero();
 
 /// Sums of sines, alike for the same seed on every platform.
@@ -151,24 +149,12 @@ DeviceRecord shear(const material::Fabric& fabric, const ManipulationSettings& s
   return trial.result();
 }
 
-DeviceRecord fold(const material::Fabric& fabric, const ManipulationSettings& settings) {
-  Trial trial(hanging(fabric, true, settings), kLowerEdge, settings);
-  trial.move(kStill, -1.75 * kOpen, 0.3);
-  trial.rest(0.2);
-  trial.move({kAside, 0.0, 0.0}, 0.0, 0.5);  // so that the fold knows to which side
-  trial.move({-kAside, 0.0, kLift}, 0.0, 3.0);
-  trial.rest(2.0);
-  trial.record();
-  trial.rest(2.0);
-  return trial.result();
-}
-
 }  // namespace
 
 const std::vector<Manipulation>& manipulations() {
   static const std::vector<Manipulation> all = {
-      {"weigh", weigh},           {"drag", drag},   {"pinch", pinch}, {"draw_warp", draw<true>},
-      {"draw_weft", draw<false>}, {"shear", shear}, {"fold", fold}};
+      {"weigh", weigh},           {"drag", drag},  {"pinch", pinch}, {"draw_warp", draw<true>},
+      {"draw_weft", draw<false>}, {"shear", shear}};
   return all;
 }
 

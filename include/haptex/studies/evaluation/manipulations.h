@@ -38,7 +38,6 @@ struct Manipulation {
 /// pinch: pinched in its middle, slowly, until the fingertips would be 1.6 mm deep in each other.
 /// draw_warp, draw_weft: pinched firmly above its lower edge and drawn down by 8 mm.
 /// shear: the same, drawn sideways by 12 mm.
-/// fold: its lower edge is lifted to 60 mm below the bar, and held.
 const std::vector<Manipulation>& manipulations();
 
 /// Of the emulated device, and the pulp that the force renderer gives them.
