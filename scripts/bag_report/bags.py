@@ -21,6 +21,7 @@ class OpenBag:
         self.path = path
         self.size = os.path.getsize(path)  # bytes
         self.cut_off = cut_off  # it had no index, because its recorder was killed
+        self.compression = bag.get_compression_info().compression
         self.types = {topic: information.msg_type for topic, information
                       in bag.get_type_and_topic_info().topics.items()}
 

@@ -5,7 +5,7 @@ import numpy as np
 import yaml
 
 from . import figures, plots
-from .mechanics import FabricFile
+from .fabric_chapters import MOST_CLOTHS, extension, friction
 from .page import Chapter
 from .reading import FINGERS
 
@@ -22,35 +22,18 @@ def all_chapters(opened, reading):
     if opened.cut_off:
         rows.insert(0, ('the end of the recording', 'the bag was cut off: it had no index. What is '
                                                     'shown ends with its last whole chunk'))
-    rows += [(topic, f'{count} messages could not be read')
-             for topic, count in sorted(reading.unreadable.items())]
+    if reading.damage:
+        rows.insert(0, ('the rest of the recording', f'after {reading.end_read - reading.begin:.1f} s of '
+                        f'{reading.end - reading.begin:.1f} s the bag is damaged ({reading.damage})'))
+    rows += [(topic, f'{count} messages could not be read: {why}')
+             for topic, (count, why) in sorted(reading.unreadable.items())]
+    rows += [(topic, f'{count} messages with numbers that are not finite were left out')
+             for topic, count in sorted(reading.not_finite.items())]
     if rows:
         lacks.table(('of', 'what is not there'), rows, text=True)
     else:
         lacks.say('Nothing: every chapter had its topics.')
     return [*chapters, lacks]
-
-
-def chapter(title):
-    made = Chapter(title)
-    made.lacks = []
-    return made
-
-
-def lack(made, text):
-    made.lacks.append(text)
-    made.missing('Not there: ' + text)
-
-
-def fabrics_of(reading):
-    """One per fabric of the cloth; none where its text cannot be read."""
-    fabrics = []
-    for text in (reading.mesh.fabric_files if reading.mesh else []):
-        try:
-            fabrics.append(FabricFile(text))
-        except (ValueError, KeyError, TypeError, yaml.YAMLError):
-            fabrics.append(None)
-    return fabrics
 
 
 def date_of(seconds):
@@ -59,37 +42,52 @@ def date_of(seconds):
 
 
 def what_ran(opened, reading):
-    made = chapter('What ran')
+    made = Chapter('What ran')
     rows = [('bag', f'{opened.path}, {opened.size / 1e6:.1f} MB'),
             ('recorded', f'{date_of(reading.begin)}, {reading.end - reading.begin:.1f} s'),
-            ('whole', 'no: cut off, its index was made anew' if opened.cut_off else 'yes')]
+            ('compression', opened.compression),
+            ('whole', 'no: cut off, its index was made anew' if opened.cut_off else
+             'no: damaged' if reading.damage else 'yes')]
     about = about_of(reading)
     for key, name in (('scene', 'scene'), ('version', 'version of haptex'), ('commit', 'commit'),
                       ('host', 'machine')):
         if key in about:
             rows.append((name, str(about[key])))
-    mesh = reading.mesh
-    if mesh is not None:
-        size = reading.mechanics[mesh.mesh].size
-        rows.append(('cloth', f'{len(mesh.masses)} particles, {len(mesh.triangles) // 3} triangles, '
-                              f'{size[0]:.3f} m along weft, {size[1]:.3f} m along warp, '
-                              f'{1e3 * sum(mesh.masses):.2f} g'))
-        rows.append(('fabrics', ', '.join(mesh.fabrics)))
+    for cloth in reading.cloths[:MOST_CLOTHS]:
+        rows += rows_of(cloth, reading.begin)
+    if len(reading.cloths) > MOST_CLOTHS:
+        rows.append(('then', f'{len(reading.cloths) - MOST_CLOTHS} other fabrics, factors or sheets'))
     for time, name, cycle, _ in reading.qualities:
         rows.append((f'quality from {time - reading.begin:.1f} s', f'{name}, {cycle:.2f} ms a cycle'))
     made.table(('', ''), rows, text=True)
     if not about:
-        lack(made, 'scene and versions (recording/about, which the launch files record)')
+        made.lack('scene and versions (recording/about, which the launch files record)')
     elif 'scene_file' in about:
         made.quote(str(about['scene_file']))
-    if mesh is None:
-        lack(made, 'size, mass and fabrics of the cloth (cloth/mesh)')
-    for fabric in fabrics_of(reading):
-        if fabric is not None:
-            made.say(f'Fabric {fabric.name}: which properties were measured, and which are '
-                     'representative.')
-            made.table(('property', 'provenance'), sorted(fabric.provenances().items()), text=True)
+    if not reading.cloths:
+        made.lack('size, mass and fabrics of the cloth (cloth/mesh)')
+    if not reading.qualities:
+        made.say('The quality is as the scene file says: cloth/quality was not recorded, which is there '
+                 'with a quality or a budget only.')
+    fabrics = {file.name: file for cloth in reading.cloths for file in cloth.files if file}
+    for name, fabric in fabrics.items():
+        made.say(f'Fabric {name}: which properties were measured, and which are representative.')
+        made.table(('property', 'provenance'), sorted(fabric.provenances().items()), text=True)
     return made
+
+
+def rows_of(cloth, begin):
+    """What a Cloth is."""
+    numbers, since = cloth.mechanics, f' from {max(0.0, cloth.time - begin):.1f} s'
+    rows = [('cloth' + since, f'{numbers.count} particles, {len(numbers.triangles)} triangles, '
+                              f'{numbers.size[0]:.3f} m along weft, {numbers.size[1]:.3f} m along '
+                              f'warp, {1e3 * numbers.mass:.2f} g'),
+            ('fabrics' + since, ', '.join(cloth.fabrics))]
+    names = ('weft', 'warp', 'shear', 'bending', 'areal density')
+    changed = [f'{name} {factor:g}' for name, factor in zip(names, cloth.factors) if factor != 1.0]
+    if changed:
+        rows.append(('factors' + since, ', '.join(changed)))
+    return rows
 
 
 def about_of(reading):
@@ -101,7 +99,7 @@ def about_of(reading):
 
 
 def rates_and_losses(reading):
-    made = chapter('Rates and losses')
+    made = Chapter('Rates and losses')
     made.say('By the stamps of the messages, or where they have none by when the recorder had them. A '
              'gap is longer than five median periods. Lost: what the numbers in the headers jump '
              'over; - where several nodes publish, or one began anew. Latency: from the stamp to the '
@@ -121,7 +119,7 @@ def rates_and_losses(reading):
 
 
 def forces(reading):
-    made = chapter('Forces and dips')
+    made = Chapter('Forces and dips')
     made.say('A dip: in contact with the cloth, the force on a finger is below half of its running '
              'median (over 0.5 s, at least 0.05 N) for 5 ms or longer.')
     found, lines, spells = [], [], []
@@ -134,7 +132,7 @@ def forces(reading):
             made.missing(f'{name}: what was felt ({name}/measured_cf) is not there; shown is what '
                          'the contact asked for')
         if felt is None:
-            lack(made, f'forces of the {name} ({name}/measured_cf, {name}/contact)')
+            made.lack(f'forces of the {name} ({name}/measured_cf, {name}/contact)')
             continue
         finite = np.isfinite(felt[1])
         times, norms = felt[0][finite], felt[1][finite]
@@ -159,110 +157,13 @@ def forces(reading):
     return made
 
 
-def friction(reading):
-    made = chapter('Friction')
-    fabrics = fabrics_of(reading)
-    made.say('Where a finger slides faster than 1 mm/s under more than 0.02 N: friction, which is '
-             'the part of the force along the cloth, over the normal force.')
-    rows = []
-    for name in FINGERS:
-        finger = reading.fingers[name]
-        if len(finger.contact) == 0:
-            lack(made, f'friction of the {name} ({name}/contact)')
-            continue
-        for fabric, count, low, middle, high in figures.friction_of(finger):
-            known = fabrics[fabric].friction() if fabric < len(fabrics) and fabrics[fabric] else None
-            rows.append((name, reading.mesh.fabrics[fabric] if known else fabric, count, low, middle,
-                         high, known[0] if known else np.nan, known[1] if known else '-'))
-        made.picture(friction_loop(name, finger, known_friction(fabrics)),
-                     f'{name}: friction against the way over the fabric, positive against the '
-                     'sliding, and the cone of the fabric file.')
-        table = finger.contact.table()
-        made.numbers(f'friction_{name}', ('time (s)', 'normal force (N)', 'friction (N)',
-                                          'against sliding (N)', 'weft (m)', 'warp (m)',
-                                          'speed (m/s)'),
-                     table[table[:, 2] > 0.0][:, [0, 2, 3, 4, 7, 8, 9]]
-                     - np.array([reading.begin] + 6 * [0.0]))
-    header = ('finger', 'fabric', 'samples', 'lower quartile', 'median', 'upper quartile',
-              'coefficient of the file', 'provenance')
-    if rows:
-        made.table(header, rows)
-    else:
-        made.say('No finger slid.')
-    made.numbers('friction', header, rows)
-    return made
-
-
-def known_friction(fabrics):
-    return fabrics[0].friction()[0] if fabrics and fabrics[0] and fabrics[0].friction() else None
-
-
-def friction_loop(name, finger, coefficient):
-    table = finger.contact.table()
-    table = table[table[:, 2] > figures.PRESSED]
-    picture, axes = plots.figure(1, 2, 2.8)
-    for place, (column, axis) in enumerate(((7, 'weft'), (8, 'warp'))):
-        axes[0, place].plot(1e3 * table[:, column], table[:, 4] / np.maximum(table[:, 2], 1e-9), '.',
-                            ms=1.5, color=plots.COLOURS[name], rasterized=True)
-        if coefficient is not None:
-            for sign in (-1, 1):
-                axes[0, place].axhline(sign * coefficient, color='#555', ls='--', lw=0.8)
-        axes[0, place].set(xlabel=f'place along {axis} (mm)', ylabel='friction / normal force')
-        axes[0, place].set_ylim(-1.0, 1.0)
-    return plots.as_uri(picture, 'png')
-
-
-def extension(reading):
-    made = chapter('Force against extension')
-    made.say('Strain: mean over all elements. Force: what the side of the cloth with the largest '
-             'coordinate carries along the way from the middle to it, over the width of the cloth. '
-             'Cloth that is drawn evenly lies on the curve of its fabric; a pinch or its own weight '
-             'draws it unevenly, and the mean of the strains lies beside it.')
-    found = figures.extension_of(reading)
-    if found is None:
-        lack(made, 'strains (cloth/state with its cloth/mesh)')
-        return made
-    times, directions = found
-    fabrics = fabrics_of(reading)
-    picture, axes = plots.figure(1, 2, 3.0)
-    for place, (name, (strains, widths)) in enumerate(directions.items()):
-        axes[0, place].plot(100.0 * strains, widths, '.', ms=2, color=plots.COLOURS[name],
-                            label='recorded')
-        draw_curve(axes[0, place], fabrics, name, strains, widths)
-        axes[0, place].set(xlabel=f'strain along {name} (%)', ylabel='force per width (N/m)')
-        axes[0, place].legend(frameon=False)
-    made.picture(plots.as_uri(picture), 'Force per width against mean strain, and the curve of the '
-                                        'fabric file.')
-    made.numbers('extension', ('time (s)', 'weft strain', 'weft force (N/m)', 'warp strain',
-                               'warp force (N/m)'),
-                 np.column_stack([times - reading.begin, *directions['weft'], *directions['warp']]))
-    if not any(fabrics):
-        made.missing('The fabric file is not in cloth/mesh, so its curve is not drawn.')
-    return made
-
-
-def draw_curve(axes, fabrics, name, strains, widths):
-    """As far as the recording goes."""
-    if not fabrics or fabrics[0] is None:
-        return
-    try:
-        curve_strains, curve_forces = fabrics[0].curve(name)
-    except (KeyError, TypeError, ValueError):
-        return
-    reach = 1.2 * max(strains.max(initial=0.0), 1e-3)
-    inside = (curve_strains <= reach) & (curve_strains >= min(0.0, strains.min(initial=0.0)))
-    axes.plot(100.0 * curve_strains[inside], curve_forces[inside], color='#333', lw=1,
-              label=f'{fabrics[0].name}, file')
-    axes.set(xlim=(None, 100.0 * reach), ylim=(None, 1.1 * max(widths.max(initial=0.0), 1.0)))
-
-
 def tactile(reading):
-    made = chapter('Tactile amplitudes')
+    made = Chapter('Tactile amplitudes')
     lines, rows = [], []
     for name in FINGERS:
         finger = reading.fingers[name]
         if len(finger.tactile) == 0:
-            lack(made, f'contactors of the {name} ({name}/tactile)')
+            made.lack(f'contactors of the {name} ({name}/tactile)')
             continue
         table = finger.tactile.table()
         table = table[np.isfinite(table).all(axis=1)]
@@ -308,13 +209,13 @@ def contactor_maps(reading):
 
 
 def faults(reading):
-    made = chapter('Faults')
+    made = Chapter('Faults')
     states = [(time - reading.begin, what, text) for time, what, text in reading.states]
     header = ('time (s)', 'of', 'state')
     if states:
         made.table(header, states, text=True)
     else:
-        lack(made, 'states of the device (exoskeleton/operating_state)')
+        made.lack('states of the device (exoskeleton/operating_state)')
     made.numbers('states', header, states)
     rows = [(first - reading.begin, last - reading.begin, count, kind, name, text)
             for (name, kind, _), (first, last, count, text) in
@@ -327,13 +228,13 @@ def faults(reading):
     elif any(name == 'diagnostic_msgs/DiagnosticArray' for name in reading.types.values()):
         made.say('No node warned.')
     if 'diagnostic_msgs/DiagnosticArray' not in reading.types.values():
-        lack(made, 'warnings of the nodes (/diagnostics)')
+        made.lack('warnings of the nodes (/diagnostics)')
     made.numbers('warnings', header, rows)
     return made
 
 
 def pictures(reading):
-    made = chapter('Pictures')
+    made = Chapter('Pictures')
     for picture in reading.pictures:
         made.picture(plots.image_uri(picture),
                      f'{picture.topic} at {picture.time - reading.begin:.1f} s')
@@ -344,5 +245,5 @@ def pictures(reading):
                      'The cloth, drawn from cloth/mesh and cloth/state, coloured by the larger of '
                      'its strains along weft and warp.')
     else:
-        lack(made, 'the shape of the cloth (cloth/state with its cloth/mesh)')
+        made.lack('the shape of the cloth (cloth/state with its cloth/mesh)')
     return made

@@ -58,6 +58,8 @@ def dips(times, forces, touching=None):
     @param touching times (s) and whether the cloth is touched, or none: wherever it is felt"""
     if len(times) < 3:
         return []
+    order = np.argsort(times, kind='stable')
+    times, forces = times[order], forces[order]
     median = running_median(times, forces)
     low = (forces < DIP * median) & (median > DIP_LEAST)
     if touching is not None:
@@ -89,25 +91,23 @@ def touching(finger):
 
 
 def friction_of(finger):
-    """By fabric, of what slips under force: samples, quartiles of friction over normal force."""
+    """By cloth (-1 without its cloth/mesh) and fabric, of what slips under force: samples, quartiles of
+    friction over normal force."""
     table = finger.contact.table()
-    slides = (table[:, 5] > 0.5) & (table[:, 9] > SLIDING) & (table[:, 2] > PRESSED)
+    table = table[(table[:, 4] > 0.5) & (table[:, 10] > SLIDING) & (table[:, 2] > PRESSED)]
     result = []
-    for fabric in np.unique(table[slides, 6]).astype(int):
-        rows = table[slides & (table[:, 6] == fabric)]
-        result.append((fabric, len(rows), *np.percentile(rows[:, 3] / rows[:, 2], [25, 50, 75])))
+    for cloth, fabric in np.unique(table[:, [11, 5]], axis=0).astype(int):
+        rows = table[(table[:, 11] == cloth) & (table[:, 5] == fabric)]
+        result.append((cloth, fabric, len(rows),
+                       *np.percentile(rows[:, 3] / rows[:, 2], [25, 50, 75])))
     return result
 
 
 def extension_of(reading):
-    """Per state time, strain (1) and force per width (N/m) along weft and warp; none without a mesh."""
-    if reading.mesh is None or len(reading.cloth) == 0:
-        return None
+    """Rows of Reading.cloth whose cloth/mesh is there; none if there are none."""
     table = reading.cloth.table()
-    table = table[np.isfinite(table[:, 3:7]).all(axis=1)]
-    size = reading.mechanics[reading.mesh.mesh].size
-    return table[:, 0], {'weft': (table[:, 3], table[:, 5] / size[1]),
-                         'warp': (table[:, 4], table[:, 6] / size[0])}
+    table = table[np.isfinite(table[:, 3:]).all(axis=1)]
+    return table if len(table) > 0 else None
 
 
 def binned(values, by, edges):

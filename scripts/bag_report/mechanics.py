@@ -17,6 +17,8 @@ class ClothMechanics:
         corners = rest[self.triangles]
         first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         doubled = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+        if not (np.isfinite(doubled).all() and doubled.all()):
+            raise ValueError('the mesh has triangles without an area')
         self.areas = 0.5 * np.abs(doubled)
         # Images of the unit vectors along weft and warp: U = P w_u, V = P w_v.
         self.weights = np.empty((2, len(self.triangles), 3))
@@ -24,6 +26,8 @@ class ClothMechanics:
         self.weights[1, :, 1], self.weights[1, :, 2] = -second[:, 0] / doubled, first[:, 0] / doubled
         self.weights[:, :, 0] = -self.weights[:, :, 1] - self.weights[:, :, 2]
         self.rest = rest
+        self.count = len(rest)
+        self.mass = float(sum(message.masses))  # kg
         self.size = rest.max(axis=0) - rest.min(axis=0)  # m, weft and warp
         self.sides = [rest[:, axis] >= rest[:, axis].max() - TOUCHES for axis in range(2)]
 
@@ -49,6 +53,21 @@ class ClothMechanics:
             carried.append(float(force.dot(direction) / length) if length > 0.0 else 0.0)
         return tuple(carried)
 
+    def forces_per_width(self, forces, positions):
+        """N/m: those forces over the width of the cloth at rest."""
+        weft, warp = self.forces(forces, positions)
+        return weft / self.size[1], warp / self.size[0]
+
+    def held(self, attached):
+        """Whether these particles hold more than half of the side at the largest weft, and warp
+        coordinate: of a sheet that hangs from its upper edge the corners alone hold no other side."""
+        particles = np.array([particle for particle in attached if particle < self.count], dtype=int)
+        found = []
+        for axis, side in enumerate(self.sides):
+            along = self.rest[particles[side[particles]], 1 - axis]
+            found.append(len(along) > 0 and bool(np.ptp(along) > 0.5 * self.size[1 - axis]))
+        return tuple(found)
+
     def largest_strains(self, positions):
         """Per triangle, the larger of weft and warp."""
         corners = positions[self.triangles]
@@ -68,7 +87,10 @@ class FabricFile:
     def friction(self):
         """Coefficient and provenance, or none."""
         friction = self.data.get('friction')
-        return (float(friction['value']), friction['provenance']) if friction else None
+        try:
+            return float(friction['value']), str(friction['provenance'])
+        except (KeyError, TypeError, ValueError):
+            return None
 
     def provenances(self):
         """By property, of those that state one."""
@@ -83,26 +105,39 @@ class FabricFile:
                     found[f'{key} {part}'] = inner['provenance']
         return found
 
-    def curve(self, direction):
-        """Engineering strains and forces per width (N/m) of the elastic curve of weft or warp."""
+    def curve(self, direction, factor=1.0):
+        """Engineering strains and forces per width (N/m) of the elastic curve of weft or warp, straight
+        between the points of the file.
+        @param factor on the stress (haptex/ClothMesh)"""
         elastic = self.data[direction]['elastic']
-        if 'modulus' in elastic:
-            strains = np.linspace(0.0, 0.2, 50)
-            stresses = elastic['modulus'] * strains
-        elif 'points' in elastic:
-            strains, stresses = np.array(elastic['points'], dtype=float).T
+        if 'points' in elastic:
+            points = np.array(elastic['points'], dtype=float)
+            if (points[:, 0] > 0.0).all():
+                points = np.concatenate([[[0.0, 0.0]], points])
+            strains, stresses = points.T
             if elastic['quantity'] == 'force_per_width_over_engineering_strain':
-                return strains, stresses
+                return strains, factor * stresses
+        elif 'modulus' in elastic:
+            strains = np.linspace(-0.4, 1.0, 701)
+            stresses = float(elastic['modulus']) * strains
         else:
-            strains, stresses = polynomial_curve(elastic['knots'], elastic['coefficients'])
+            strains, stresses = polynomial_curve(**elastic['polynomials'])
         stretches = np.sqrt(np.maximum(0.0, 1.0 + 2.0 * strains))
-        return stretches - 1.0, stretches * stresses
+        return stretches - 1.0, factor * stretches * stresses
+
+    def curve_between(self, direction, least, largest, factor=1.0):
+        """The part of the curve from one engineering strain to another, as far as the file goes."""
+        strains, forces = self.curve(direction, factor)
+        shown = np.linspace(max(least, strains[0]), min(largest, strains[-1]), 200)
+        return shown, np.interp(shown, strains, forces)
 
 
 def polynomial_curve(knots, coefficients):
     strains, stresses = [], []
+    knots = [float(knot) for knot in knots]
     for begin, end, row in zip(knots, knots[1:], coefficients):
         pieces = np.linspace(begin, end, 12)
         strains += list(pieces)
-        stresses += list(np.polynomial.polynomial.polyval(pieces - begin, row))
+        stresses += list(np.polynomial.polynomial.polyval(pieces - begin,
+                                                               [float(value) for value in row]))
     return np.array(strains), np.array(stresses)

@@ -6,17 +6,21 @@ import html
 import io
 import math
 
+MANY = 8  # columns: with more they are narrower
 LARGE = 1 << 20  # bytes: a larger table is compressed
 STYLE = '''
 body{font:15px/1.45 sans-serif;max-width:56rem;margin:2rem auto;padding:0 1rem;color:#222}
 h1{font-size:1.6rem;margin-bottom:.2rem} h2{border-bottom:1px solid #bbb;margin-top:2.2rem}
 table{border-collapse:collapse;margin:.8rem 0;font-size:.85rem;display:block;overflow-x:auto}
 td,th{padding:.15rem .6rem;border-bottom:1px solid #ddd;text-align:right;vertical-align:top}
+td:first-child{overflow-wrap:anywhere}
 td:first-child,th:first-child,.text td,.text th{text-align:left}
 figure{margin:1rem 0} figure img{max-width:100%} figcaption{font-size:.85rem;color:#555}
 .missing{background:#fff4e0;border-left:4px solid #e09000;padding:.4rem .8rem}
+.many{font-size:.72rem} .many td,.many th{padding:.15rem .3rem}
 .csv{font-size:.85rem} nav{font-size:.9rem} pre{overflow-x:auto;background:#f5f5f5;padding:.6rem}
-@media print{body{margin:0;max-width:none} h2{break-after:avoid} figure,table{break-inside:avoid}}
+@media print{body{margin:0;max-width:none} h2{break-after:avoid} figure,tr{break-inside:avoid}
+table{display:table} .many{font-size:7pt}}
 '''
 
 
@@ -30,6 +34,7 @@ class Chapter:
     def __init__(self, title):
         self.title = title
         self.parts = []
+        self.lacks = []  # what the bag has not got
 
     def say(self, text):
         self.parts.append(f'<p>{html.escape(text)}</p>')
@@ -37,11 +42,15 @@ class Chapter:
     def missing(self, text):
         self.parts.append(f'<p class="missing">{html.escape(text)}</p>')
 
+    def lack(self, text):
+        self.lacks.append(text)
+        self.missing('Not there: ' + text)
+
     def table(self, header, rows, text=False):
         cells = ''.join(f'<th>{html.escape(name)}</th>' for name in header)
         body = ''.join('<tr>' + ''.join(f'<td>{html.escape(text_of(value))}</td>' for value in row)
                        + '</tr>' for row in rows)
-        kind = ' class="text"' if text else ''
+        kind = ' class="text"' if text else ' class="many"' if len(header) > MANY else ''
         self.parts.append(f'<table{kind}><tr>{cells}</tr>{body}</table>')
 
     def picture(self, uri, caption):
@@ -64,7 +73,7 @@ class Chapter:
             data, name, kind = gzip.compress(data, 6, mtime=0), name + '.gz', 'application/gzip'
         self.parts.append(f'<p class="csv"><a download="{name}" href="data:{kind};base64,'
                           f'{base64.b64encode(data).decode()}">{name}</a> '
-                          f'({len(rows)} rows: {html.escape(", ".join(header))})</p>')
+                          f'({len(rows)} rows, {len(data) / 1e3:.1f} kB: {html.escape(", ".join(header))})</p>')
 
 
 def page(title, subtitle, chapters):

@@ -61,9 +61,11 @@ def time_lines(series, label, spans=()):
     picture, axes = figure()
     for name, times, values in series:
         axes[0, 0].plot(*envelope(times, values), lw=0.9, color=COLOURS.get(name), label=name)
-    for begin, length in spans:
-        axes[0, 0].axvspan(begin, begin + length, color='#c00000', alpha=0.4, lw=0)
     axes[0, 0].set(xlabel='time (s)', ylabel=label)
+    if len(spans) > 0:  # one shape, however many they are
+        least, largest = axes[0, 0].get_ylim()
+        axes[0, 0].broken_barh(spans, (least, largest - least), color='#c00000', alpha=0.4, lw=0,
+                               rasterized=True)
     if len(series) > 1:
         axes[0, 0].legend(frameon=False, ncol=len(series))
     return as_uri(picture)

@@ -18,6 +18,7 @@ import rosbag
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from genpy.dynamic import generate_dynamic
 from geometry_msgs.msg import Point, Vector3, WrenchStamped
 from sensor_msgs.msg import Image
 from std_msgs.msg import String
@@ -99,7 +100,7 @@ class Session:
         forces = [Vector3(0.0, 0.0, (1 if v else -1) * -0.5 * force)
                   for v in (0, 1) for _ in range(2)]
         return ClothState(step=step, simulated_time=step / 80, positions=places, forces=forces,
-                          velocities=[Vector3()] * 4)
+                          velocities=[Vector3()] * 4, attached=[2, 3])
 
     @staticmethod
     def felt(time):
@@ -113,11 +114,11 @@ class Session:
     def contact(time):
         if time < 1.0:
             return Contact()
-        slides = time >= 3.0
-        return Contact(touching=True, slipping=slides, normal_force=0.5,
-                       force=Vector3(-FRICTION * 0.5, 0.0, -0.5), normal=Vector3(0.0, 0.0, 1.0),
-                       sliding_velocity=Vector3(0.05 if slides else 0.0, 0.0, 0.0),
-                       fabric_position=[0.05 * max(0.0, time - 3.0), 0.1])
+        way = 0 if time < 3.0 else 1 if time < 3.5 else -1  # it slides along weft, and back
+        return Contact(touching=True, slipping=way != 0, normal_force=0.5,
+                       force=Vector3(-way * FRICTION * 0.5, 0.0, -0.5), normal=Vector3(0.0, 0.0, 1.0),
+                       sliding_velocity=Vector3(0.05 * way, 0.0, 0.0), fabric_velocity=[0.05 * way, 0.0],
+                       fabric_position=[0.05 * max(0.0, 0.5 - abs(time - 3.5)), 0.1])
 
     @staticmethod
     def tactile():
@@ -168,6 +169,10 @@ class Reports(Bags):
         rubbed, = self.numbers(page, 'friction')
         self.assertAlmostEqual(float(rubbed['median']), FRICTION, 6)
         self.assertEqual(rubbed['fabric'], 'plain')
+        loop = {round(float(row['time (s)']), 3): row for row in self.numbers(page, 'friction_index')}
+        self.assertEqual([float(loop[time]['along weft (N)']) for time in (3.2, 3.8)],
+                         [0.5 * FRICTION, -0.5 * FRICTION])
+        self.assertEqual(float(loop[3.2]['along warp (N)']), 0.0)
         drawn = self.numbers(page, 'extension')[-1]
         self.assertAlmostEqual(float(drawn['warp strain']), WIDTH_STRAIN, 9)
         self.assertAlmostEqual(float(drawn['warp force (N/m)']), FORCE / SIDE, 9)
@@ -182,7 +187,8 @@ class Reports(Bags):
     def test_say_what_ran_and_what_is_missing(self):
         Session().write(self.bag, 'lz4')
         page = self.report(self.bag)
-        for text in ('sheet.yaml', '1.2.3', 'plain', 'forces of the thumb', 'No camera'):
+        for text in ('sheet.yaml', '1.2.3', 'plain', 'forces of the thumb', 'No camera', 'lz4',
+                     'a pull along weft'):
             self.assertIn(text, page)
         self.assertNotIn('src="http', page)
 
@@ -205,8 +211,58 @@ class Reports(Bags):
                 yield '/haptex/index/measured_cf', stamped(broken, 2.0001, 0), 2.0001
                 yield '/haptex/cloth/state', ClothState(mesh=7, positions=[Point()]), 2.0
                 yield '/haptex/cloth/state', ClothState(positions=[Point()]), 2.0
+                lost = self.state(0)
+                lost.positions[0].x = float('nan')
+                yield '/haptex/cloth/state', stamped(lost, 0.001, 0), 0.001
+                yield '/camera', Image(height=5, width=3, step=9, encoding='rgb8'), 1.0
+                yield '/depth', Image(height=1, width=1, step=2, encoding='16UC1', data=bytes(2)), 1.0
+                for time in (1.1, 1.2):
+                    yield '/other/cloth/mesh', ClothMesh(mesh=9, triangles=[0, 1, 2],
+                                                         rest_weft_coordinates=[0.0] * 3,
+                                                         rest_warp_coordinates=[0.0] * 3), time
         Odd().write(self.bag)
-        self.assertIn('1 messages could not be read', self.report(self.bag))
+        page = self.report(self.bag)
+        missing = page[page.index('>What is missing</h2>'):]
+        for topic, text in (('/haptex/cloth/state', '1 messages could not be read'),
+                            ('/haptex/cloth/state', '1 messages with numbers that are not finite'),
+                            ('/haptex/index/measured_cf', '1 messages with numbers that are'),
+                            ('/camera', '1 messages could not be read'),
+                            ('/depth', '1 messages could not be read: pictures are drawn of rgb8'),
+                            ('/other/cloth/mesh', '2 messages could not be read: the mesh has')):
+            self.assertIn(f'<td>{topic}</td><td>{text}', missing)
+
+    def test_read_what_they_know_of_messages_of_another_version(self):
+        Session().write(self.bag)
+        other = self.folder / 'older.bag'
+        of_state = generate_dynamic('haptex/ClothState', 'uint64 step')['haptex/ClothState']
+        with rosbag.Bag(self.bag) as bag, rosbag.Bag(other, 'w') as older:
+            for topic, message, time in bag:
+                older.write(topic, of_state(step=1) if topic == '/haptex/cloth/state' else message, time)
+        page = self.report(other)
+        self.assertIn(f'{int(80 * LENGTH)} messages could not be read: they are of another version', page)
+        self.assertEqual(len(self.numbers(page, 'dips')), 1)
+
+    def test_follow_sheets_and_factors_that_change(self):
+        class Changed(Session):
+            def messages(self):
+                yield from super().messages()
+                mesh = self.mesh()
+                mesh.factors = [1.0, 2.0, 1.0, 1.0, 1.0]
+                yield '/haptex/cloth/mesh', mesh, 1.0
+                yield '/haptex/cloth/mesh', mesh, 1.5  # says the same again
+                wide = self.mesh()
+                wide.mesh, wide.rest_weft_coordinates = 1, [0.0, 2 * SIDE] * 2
+                yield '/haptex/cloth/mesh', wide, LENGTH
+                state = self.state(320)
+                state.mesh = 1
+                yield '/haptex/cloth/state', stamped(state, LENGTH, 320), LENGTH
+        Changed().write(self.bag)
+        page = self.report(self.bag)
+        rows = self.numbers(page, 'extension')
+        self.assertEqual([row['cloth'] for row in rows], 80 * ['0.0'] + 240 * ['1.0'] + ['2.0'])
+        self.assertAlmostEqual(float(rows[-2]['warp force (N/m)']), FORCE / SIDE, 9)
+        self.assertAlmostEqual(float(rows[-1]['warp force (N/m)']), FORCE / (2 * SIDE), 9)
+        self.assertIn('<td>factors from 1.0 s</td><td>warp 2</td>', page)
 
     def test_do_without_any_topic_but_one(self):
         with rosbag.Bag(self.bag, 'w') as bag:
@@ -229,6 +285,26 @@ class Reports(Bags):
         self.assertEqual(spans, sorted(spans))
         self.assertGreater(spans[0], 0.15 * LENGTH)
         self.assertGreater(spans[-1], 0.7 * LENGTH)
+
+    def test_of_damaged_bags_end_where_the_damage_is(self):
+        Session().write(self.bag)
+        data = bytearray(self.bag.read_bytes())
+        middle = data.index(b'op=\x02', len(data) // 2)  # the header of a message
+        data[middle:middle + 2] = b'xx'
+        self.bag.write_bytes(data)
+        page = self.report(self.bag)
+        self.assertIn('the bag is damaged', page)
+        end = float(self.numbers(page, 'extension')[-1]['time (s)'])
+        self.assertGreater(end, 0.3 * LENGTH)
+        self.assertLess(end, 0.7 * LENGTH)
+
+    def test_do_not_replace_their_bag(self):
+        Session().write(self.bag)
+        data = self.bag.read_bytes()
+        run = subprocess.run([PROGRAM, self.bag, self.bag], capture_output=True, text=True)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn('that is the bag itself', run.stderr)
+        self.assertEqual(self.bag.read_bytes(), data)
 
     def test_are_refused_clearly(self):
         other, empty, text = (self.folder / name for name in ('other', 'empty', 'text'))
@@ -260,9 +336,20 @@ class Figures(unittest.TestCase):
         fabric = FabricFile(text)
         strains, forces = fabric.curve('weft')
         self.assertEqual([strains[-1], forces[-1]], [0.1, 5.0])
+        polynomials = FabricFile(FABRIC.replace(
+            'modulus: 50', 'polynomials: {knots: [0, 0.1, 0.3], coefficients: [[0, 50, 0, 0], '
+                           '[5, 50, 100, 0]]}'))
+        strains, forces = polynomials.curve('weft', 2.0)  # stress 5 + 50 x + 100 x^2, x = strain - 0.1
+        self.assertAlmostEqual(strains[-1], np.sqrt(1.6) - 1.0, 12)
+        self.assertAlmostEqual(forces[-1], 2.0 * np.sqrt(1.6) * (5.0 + 10.0 + 4.0), 9)
         strains, forces = fabric.curve('warp')  # stress = modulus times Green strain
         np.testing.assert_allclose(
             forces, (1.0 + strains) * MODULUS * 0.5 * ((1.0 + strains) ** 2 - 1.0), atol=1e-9)
+
+    def test_curves_are_drawn_where_the_cloth_was(self):
+        strains, forces = FabricFile(FABRIC).curve_between('warp', 0.0, 1e-4)
+        self.assertEqual([strains[0], strains[-1]], [0.0, 1e-4])
+        np.testing.assert_allclose(forces, MODULUS * strains, rtol=5e-3)
 
 
 class Tests(unittest.TestSuite):
