@@ -1,5 +1,6 @@
 """Numbers from what was read: rates, losses, dips, friction, extension."""
 import numpy as np
+from demo_report.series import runs
 
 LONG_GAP = 5.0  # times the median period: a gap
 DIP = 0.5  # of the running median: less is a dip
@@ -65,9 +66,8 @@ def dips(times, forces, touching=None):
     if touching is not None:
         places = np.clip(np.searchsorted(touching[0], times, side='right') - 1, 0, None)
         low &= touching[1][places]
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], low.astype(int), [0]])))
     spells = []
-    for begin, end in zip(edges[::2], edges[1::2]):
+    for begin, end in runs(low):
         length = times[min(end, len(times) - 1)] - times[begin]
         if length >= DIP_SHORTEST:
             place = begin + int(np.argmin(forces[begin:end]))

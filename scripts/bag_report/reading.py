@@ -11,6 +11,7 @@ import yaml
 from . import mechanics
 
 FINGERS = ('index', 'thumb')
+HEADERS = ['Header'], ['std_msgs/Header']  # types of a first field
 WARNING, ERROR = 1, 2  # of diagnostic_msgs/DiagnosticStatus; 3 is stale
 LOG_WARNING = 4  # of rosgraph_msgs/Log
 
@@ -144,9 +145,7 @@ class Reading:
         return takers
 
     def read(self, bag):
-        headers = {connection.topic: connection.msg_def.lstrip().startswith(('Header header',
-                                                                             'std_msgs/Header'))
-                   or first_field(connection.msg_def).endswith('Header header')
+        headers = {connection.topic: first_field(connection.msg_def).split()[:1] in HEADERS
                    for connection in bag._get_connections()}
         try:
             for topic, raw, time in bag.read_messages(raw=True):

@@ -3,7 +3,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .series import FINGERS
+from .series import FINGERS, runs
 
 DIP_SHARE = 0.8  # of the median of a hold: what is felt less is a dip
 SHORTEST_DIP = 0.005  # s
@@ -35,11 +35,9 @@ class Judgement(NamedTuple):
 def spells_below(times, values, bound):
     """(begin, length) of every run of values below a bound, until the next that is not, or until
     the last time."""
-    below = np.concatenate([[False], np.asarray(values) < bound, [False]])
-    changes = np.flatnonzero(below[1:] != below[:-1])
     last = len(times) - 1
     return [(times[first], times[min(after, last)] - times[first])
-            for first, after in zip(changes[::2], changes[1::2])]
+            for first, after in runs(np.asarray(values) < bound)]
 
 
 def judge(demo, holds):

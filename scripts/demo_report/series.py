@@ -6,6 +6,12 @@ WITH_CONTACT = ['pinch', 'lift', 'stretch', 'slide', 'rub']
 FINGERS = ['index', 'thumb']
 
 
+def runs(flags):
+    """(first, after) of every run of places where the flag is set."""
+    changes = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(flags, int), [0]])))
+    return list(zip(changes[::2], changes[1::2]))
+
+
 class Series:
     """Times (s since the epoch, of the headers) and values of the messages of a topic."""
 

@@ -52,8 +52,8 @@ struct OtherSheet {
 void requireSound(const SheetChange& change) {
   for (int i = 0; change.size && i < 2; ++i) {
     const double length = (*change.size)[i];
-    if (length > 0.0 && length <= kLongestSide) continue;
-    base::refuse("size[", i, "] = ", length, " m: allowed are numbers > 0 up to ", kLongestSide);
+    if (length > 0.0 && length <= kMaxSize) continue;
+    base::refuse("size[", i, "] = ", length, " m: allowed are numbers > 0 up to ", kMaxSize);
   }
   for (int i = 0; change.cells && i < 2; ++i) {
     if ((*change.cells)[i] >= 1) continue;

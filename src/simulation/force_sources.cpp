@@ -78,11 +78,7 @@ void ForceSources::apply(SimulatedCloth& simulation) {
   });
 }
 
-void ForceSources::clear() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  for (Slot& slot : slots_) slot.waits = slot.acts = false;
-  any_ = false;
-}
+void ForceSources::clear() { clearFor(particle_count_); }
 
 void ForceSources::clearFor(std::size_t particle_count) {
   const std::lock_guard<std::mutex> lock(mutex_);

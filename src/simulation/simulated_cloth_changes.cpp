@@ -21,9 +21,9 @@ enum Excluded : char { kIncluded, kWasFree, kWasAttached };
 }  // namespace
 
 void SimulatedCloth::setFabric(material::Fabric fabric) {
-  if (collision_) collision_->requireFriction(fabric);
-  cloth_.setFabric(std::move(fabric));
-  computeAnew();
+  std::vector<material::Fabric> fabrics = cloth_.fabrics();
+  fabrics.front() = std::move(fabric);
+  setMaterial(std::move(fabrics), cloth_.effects().gravity, cloth_.effects().air);
 }
 
 void SimulatedCloth::setMaterial(std::vector<material::Fabric> fabrics,
@@ -33,11 +33,6 @@ void SimulatedCloth::setMaterial(std::vector<material::Fabric> fabrics,
     if (collision_) collision_->requireFriction(fabric);
   }
   cloth_.setMaterial(std::move(fabrics), gravity, air);
-  computeAnew();
-}
-
-/// Of other fabrics.
-void SimulatedCloth::computeAnew() {
   cloth_.forget(state_);
   if (part_) {
     compute(std::move(excluded_));

@@ -12,6 +12,7 @@ import rostest
 from geometry_msgs.msg import Point, Vector3, WrenchStamped
 from haptex.msg import ClothState, Contact
 from std_msgs.msg import Header
+from unit_fixtures import suite_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'scripts'))
@@ -248,12 +249,7 @@ class Parsing(unittest.TestCase):
         self.assertEqual(parse_wrench((None, self.serialized(wrench))), (12.5, (1.0, -2.0, 3.0)))
 
 
-class Tests(unittest.TestSuite):
-    """All of them, for rostest."""
-
-    def __init__(self):
-        load = unittest.TestLoader().loadTestsFromTestCase
-        super().__init__(map(load, [Judging, Spells, Holds, Steal, Parsing]))
+Tests = suite_of(Judging, Spells, Holds, Steal, Parsing)
 
 
 if __name__ == '__main__':

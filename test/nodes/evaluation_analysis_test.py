@@ -5,12 +5,12 @@ import csv
 import io
 import pathlib
 import sys
-import tempfile
 import unittest
 
 import numpy as np
 import rostest
 import yaml
+from unit_fixtures import Folder, suite_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'src' / 'nodes' / 'evaluation'))
@@ -26,13 +26,6 @@ TOLERANCE = 1e-12
 
 def values_of(name):
     return FabricValues(find_fabric(name, CONFIG))
-
-
-class Folder(unittest.TestCase):
-    def setUp(self):
-        place = tempfile.TemporaryDirectory()
-        self.addCleanup(place.cleanup)
-        self.folder = pathlib.Path(place.name)
 
 
 class KesValues(unittest.TestCase):
@@ -261,12 +254,7 @@ class Analysis(Folder):
             analysis.read_all([self.folder / 'empty.csv'])
 
 
-class Tests(unittest.TestSuite):
-    """All of them, for rostest."""
-
-    def __init__(self):
-        load = unittest.TestLoader().loadTestsFromTestCase
-        super().__init__(map(load, [KesValues, HandValues, Analysis]))
+Tests = suite_of(KesValues, HandValues, Analysis)
 
 
 if __name__ == '__main__':

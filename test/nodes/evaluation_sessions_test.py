@@ -4,12 +4,12 @@ import collections
 import pathlib
 import resource
 import sys
-import tempfile
 import unittest
 
 import numpy as np
 import rostest
 import yaml
+from unit_fixtures import Folder, suite_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'src' / 'nodes' / 'evaluation'))
@@ -22,13 +22,6 @@ from haptex_evaluation.session import Session  # noqa: E402
 
 CONFIG = ROOT / 'config'
 SHIPPED = CONFIG / 'protocols' / 'eight_properties.yaml'
-
-
-class Folder(unittest.TestCase):
-    def setUp(self):
-        place = tempfile.TemporaryDirectory()
-        self.addCleanup(place.cleanup)
-        self.folder = pathlib.Path(place.name)
 
 
 class LatinSquares(unittest.TestCase):
@@ -336,12 +329,7 @@ class Sessions(Folder):
                 self.open()
 
 
-class Tests(unittest.TestSuite):
-    """All of them, for rostest."""
-
-    def __init__(self):
-        load = unittest.TestLoader().loadTestsFromTestCase
-        super().__init__(map(load, [LatinSquares, Protocols, HandPaths, Plans, Sessions]))
+Tests = suite_of(LatinSquares, Protocols, HandPaths, Plans, Sessions)
 
 
 if __name__ == '__main__':

@@ -10,7 +10,6 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import numpy as np
@@ -24,6 +23,7 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import String
 
 from haptex.msg import ClothMesh, ClothState, Contact, OperatingState, Tactile
+from unit_fixtures import Folder, suite_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / 'scripts' / 'report'
@@ -126,11 +126,9 @@ class Session:
                        velocity=[0.015, 0.0], normal_force=0.5)
 
 
-class Bags(unittest.TestCase):
+class Bags(Folder):
     def setUp(self):
-        place = tempfile.TemporaryDirectory()
-        self.addCleanup(place.cleanup)
-        self.folder = pathlib.Path(place.name)
+        super().setUp()
         self.bag = self.folder / 'session.bag'
 
     def report(self, bag, expected=0):
@@ -352,12 +350,7 @@ class Figures(unittest.TestCase):
         np.testing.assert_allclose(forces, MODULUS * strains, rtol=5e-3)
 
 
-class Tests(unittest.TestSuite):
-    """All of them, for rostest."""
-
-    def __init__(self):
-        load = unittest.TestLoader().loadTestsFromTestCase
-        super().__init__(map(load, [Reports, Figures]))
+Tests = suite_of(Reports, Figures)
 
 
 if __name__ == '__main__':

@@ -66,11 +66,9 @@ Scene loadScene(const std::string& path);
 
 /// The same with another sheet; sides, regions and obstacles are those of the file.
 /// @throws std::invalid_argument also if the cloth of the scene is no sheet, it starts from a saved
-///   state, a size is not finite and > 0 or beyond kLongestSide, or there would be too many
+///   state, a size is not > 0 and at most 100 m, or there would be too many
 ///   triangles
 Scene loadScene(const std::string& path, const SheetChange& change);
-
-constexpr double kLongestSide = 100.0;  ///< m, of a sheet
 
 /// The same, but a sheet of a scene with any_cells has as few cells as make no edge along weft or
 /// warp longer than `cell_size` (m). Other scenes keep their mesh.

@@ -50,7 +50,7 @@ class ForceSources {
   /// Ends all forces, those that wait included. The simulation's stay: SimulatedCloth::reset() ends
   /// them.
   void clear();
-  /// The same, and from now on they are for another cloth. Allocates.
+  /// The same, and from now on they are for another cloth.
   /// @param particle_count of it
   void clearFor(std::size_t particle_count);
 

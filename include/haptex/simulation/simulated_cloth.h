@@ -123,8 +123,8 @@ class SimulatedCloth {
   /// @throws std::invalid_argument if the cloth cannot be made of it; nothing has changed then
   void setFabric(material::Fabric fabric);
   /// Changes all fabrics, gravity and air, likewise.
-  /// @throws std::invalid_argument what cloth::Cloth::setMaterial() throws; nothing has changed
-  /// then
+  /// @throws std::invalid_argument what cloth::Cloth::setMaterial() and
+  ///   contact::ObstacleCollision::requireFriction() throw; nothing has changed then
   void setMaterial(std::vector<material::Fabric> fabrics, const Eigen::Vector3d& gravity,
                    const std::optional<cloth::Air>& air);
 
@@ -197,7 +197,6 @@ class SimulatedCloth {
   std::vector<int> requireAttached(const std::vector<std::uint32_t>& particles) const;
   void requireIncluded(const std::vector<int>& particles) const;
   void compute(std::vector<char> excluded);
-  void computeAnew();
   cloth::Cloth& computed() { return part_ ? part_->cloth() : cloth_; }
   void requireHeld(int particle, const Eigen::Vector3d* position,
                    const Eigen::Vector3d* velocity) const;

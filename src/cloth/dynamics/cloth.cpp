@@ -122,8 +122,7 @@ void Cloth::remember(ClothState& state) const {
 void Cloth::setFabric(material::Fabric fabric) {
   std::vector<material::Fabric> fabrics = fabrics_;
   fabrics.front() = std::move(fabric);
-  takeFabrics(std::move(fabrics));
-  revision_ = nextRevision();
+  setMaterial(std::move(fabrics), effects_.gravity, effects_.air);
 }
 
 void Cloth::setMaterial(std::vector<material::Fabric> fabrics, const Eigen::Vector3d& gravity,

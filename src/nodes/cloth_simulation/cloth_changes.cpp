@@ -11,7 +11,7 @@
 #include "haptex/base/require.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/nodes/cloth_simulation/cloth_node.h"
-#include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/cloth_simulation/cloth_properties.h"
 #include "haptex/nodes/common/config_files.h"
 #include "haptex/nodes/common/service_answer.h"
 
@@ -21,77 +21,6 @@ namespace {
 using base::refuse;
 using haptex::ClothConfig;
 using Lock = std::lock_guard<boost::recursive_mutex>;
-
-struct Property {
-  const char* name;
-  double ClothConfig::*value;
-  bool of_air = false;
-};
-
-constexpr std::array<Property, 14> kProperties = {
-    {{"weft", &ClothConfig::weft},
-     {"warp", &ClothConfig::warp},
-     {"shear", &ClothConfig::shear},
-     {"bending", &ClothConfig::bending},
-     {"density", &ClothConfig::density},
-     {"gravity_x", &ClothConfig::gravity_x},
-     {"gravity_y", &ClothConfig::gravity_y},
-     {"gravity_z", &ClothConfig::gravity_z},
-     {"wind_x", &ClothConfig::wind_x, true},
-     {"wind_y", &ClothConfig::wind_y, true},
-     {"wind_z", &ClothConfig::wind_z, true},
-     {"air_normal", &ClothConfig::air_normal, true},
-     {"air_tangential", &ClothConfig::air_tangential, true},
-     {"air_lift", &ClothConfig::air_lift, true}}};
-
-/// @throws std::invalid_argument naming the property, its value and what is allowed
-void requireAllowed(const ClothConfig& properties, bool has_air) {
-  for (const Property& property : kProperties) {
-    const double value = properties.*property.value;
-    const double least = ClothConfig::__getMin__().*property.value;
-    const double most = ClothConfig::__getMax__().*property.value;
-    if (!(value >= least && value <= most)) {
-      refuse(property.name, " = ", value, ": allowed are ", least, " to ", most);
-    }
-    if (property.of_air && !has_air && value != 0.0) {
-      refuse(property.name, " = ", value, ": the scene models no air: allowed is 0");
-    }
-  }
-}
-
-material::FabricFactors factorsOf(const ClothConfig& properties) {
-  return {properties.weft, properties.warp, properties.shear, properties.bending,
-          properties.density};
-}
-
-ClothConfig propertiesOf(const cloth::ModelledEffects& effects) {
-  ClothConfig properties = ClothConfig::__getDefault__();
-  properties.gravity_x = effects.gravity.x();
-  properties.gravity_y = effects.gravity.y();
-  properties.gravity_z = effects.gravity.z();
-  if (!effects.air) return properties;
-  properties.wind_x = effects.air->wind.mean.x();
-  properties.wind_y = effects.air->wind.mean.y();
-  properties.wind_z = effects.air->wind.mean.z();
-  properties.air_normal = effects.air->coefficients.normal;
-  properties.air_tangential = effects.air->coefficients.tangential;
-  properties.air_lift = effects.air->coefficients.lift;
-  return properties;
-}
-
-Eigen::Vector3d gravityOf(const ClothConfig& properties) {
-  return {properties.gravity_x, properties.gravity_y, properties.gravity_z};
-}
-
-/// @param air that of the scene, whose gusts stay
-std::optional<cloth::Air> airOf(const ClothConfig& properties, std::optional<cloth::Air> air) {
-  if (!air) return air;
-  air->wind.mean = {properties.wind_x, properties.wind_y, properties.wind_z};
-  air->coefficients.normal = properties.air_normal;
-  air->coefficients.tangential = properties.air_tangential;
-  air->coefficients.lift = properties.air_lift;
-  return air;
-}
 
 std::vector<material::Fabric> scaledBy(const material::FabricFactors& factors,
                                        std::vector<material::Fabric> fabrics) {
@@ -148,9 +77,7 @@ scene::SheetChange changeOf(const SetSheet::Request& request) {
 }  // namespace
 
 /// By dynamic_reconfigure. What a node before has left on the parameter server does not count.
-void ClothNode::offerProperties(const ros::NodeHandle& private_node,
-                                const cloth::ModelledEffects& effects) {
-  properties_ = propertiesOf(effects);
+void ClothNode::offerProperties(const ros::NodeHandle& private_node) {
   reconfigure_ =
       std::make_unique<dynamic_reconfigure::Server<ClothConfig>>(changing_, private_node);
   reconfigure_->setConfigDefault(properties_);
@@ -167,22 +94,20 @@ void ClothNode::offerProperties(const ros::NodeHandle& private_node,
 
 /// @throws std::invalid_argument if one is not allowed; nothing has changed then
 void ClothNode::apply(const ClothConfig& properties) {
-  const material::FabricFactors factors = factorsOf(properties);
-  bool same = true;
-  for (const Property& property : kProperties) {
-    same = same && properties.*property.value == properties_.*property.value;
-  }
+  const bool same =
+      std::all_of(kProperties.begin(), kProperties.end(), [&](const Property& property) {
+        return properties.*property.value == properties_.*property.value;
+      });
   if (same) return;
   loop_.execute([&](simulation::SimulatedCloth& simulation) {
     const std::optional<cloth::Air>& air = simulation.cloth().effects().air;
     requireAllowed(properties, air.has_value());
-    simulation.setMaterial(scaledBy(factors, fabrics_), gravityOf(properties),
+    simulation.setMaterial(scaledBy(factorsOf(properties), fabrics_), gravityOf(properties),
                            airOf(properties, air));
-    factors_ = factors;
+    properties_ = properties;
     publishMesh(simulation.cloth());
     publishQuality(simulation);
   });
-  properties_ = properties;
 }
 
 bool ClothNode::setProperties(SetProperties::Request& request, SetProperties::Response& response) {
@@ -206,7 +131,7 @@ bool ClothNode::setFabric(SetFabric::Request& request, SetFabric::Response& resp
     const Lock lock(changing_);
     std::string message = "the fabric is " + fabric.name;
     loop_.execute([&](simulation::SimulatedCloth& simulation) {
-      simulation.setFabric(material::scaledBy(factors_, fabric));
+      simulation.setFabric(material::scaledBy(factorsOf(properties_), fabric));
       publishMesh(simulation.cloth());
       publishQuality(simulation);
       const std::vector<material::Fabric>& fabrics = simulation.cloth().fabrics();
@@ -247,7 +172,7 @@ void ClothNode::exchange(simulation::SimulatedCloth next, const scene::Scene& sc
   loop_.execute([&](simulation::SimulatedCloth& simulation) {
     std::swap(simulation, next);  // the old one is destroyed by this thread
     std::swap(markers_, markers);
-    ++mesh_;
+    state_message_.mesh = ++mesh_;
     particle_count_ = particles;
     triangle_count_ = triangles;
     force_input_.sources().clearFor(particles);
@@ -255,9 +180,7 @@ void ClothNode::exchange(simulation::SimulatedCloth next, const scene::Scene& sc
     if (quality_) quality_->setScene(scene);
     state_stamp_ = ros::Time::now();
     stamped_step_ = simulation.steps();
-    filled_step_ = simulation.computedSteps();
-    fillStateMessage(simulation, state_stamp_, forces_, state_message_);
-    state_message_.mesh = mesh_;
+    filled_step_.reset();
     publishMesh(simulation.cloth());
     publishQuality(simulation);
   });

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "haptex/nodes/cloth_simulation/cloth_properties.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/loop_diagnostics.h"
@@ -148,10 +149,11 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
   loop_.start();
   loop_.execute([this](simulation::SimulatedCloth& simulation) {
     fabrics_ = simulation.cloth().fabrics();
+    properties_ = propertiesOf(simulation.cloth().effects());
     publishMesh(simulation.cloth());
     publishQuality(simulation);
   });
-  offerProperties(private_node, scene.effects);
+  offerProperties(private_node);
   advertiseServices();
   diagnostics_.setHardwareID("none");
   diagnostics_.add("cloth simulation", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -178,7 +180,7 @@ void ClothNode::advertiseTopics() {
 }
 
 void ClothNode::publishMesh(const cloth::Cloth& cloth) {
-  mesh_publisher_.publish(meshMessage(cloth, mesh_, factors_, ros::Time::now()));
+  mesh_publisher_.publish(meshMessage(cloth, mesh_, factorsOf(properties_), ros::Time::now()));
 }
 
 void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double until_next) {
@@ -220,7 +222,6 @@ void ClothNode::publishState(const simulation::SimulatedCloth& simulation, doubl
     restampStateMessage(simulation, state_stamp_, state_message_);
   } else {
     fillStateMessage(simulation, state_stamp_, forces_, state_message_);
-    state_message_.mesh = mesh_;
     filled_step_ = simulation.computedSteps();
   }
   state_message_.until_next = until_next;

@@ -130,23 +130,24 @@ DeviceRecord pinch(const material::Fabric& fabric, const ManipulationSettings& s
   return trial.result();
 }
 
-template <bool kAlongWarp>
-DeviceRecord draw(const material::Fabric& fabric, const ManipulationSettings& settings) {
-  Trial trial(hanging(fabric, kAlongWarp, settings), kLowerEdge, settings);
+/// Pinched firmly above its lower edge.
+DeviceRecord drawBy(const Vector3d& way, const oracles::HapticLoopSettings& sample,
+                    const ManipulationSettings& settings) {
+  Trial trial(sample, kLowerEdge, settings);
   trial.move(kStill, -3.25 * kOpen, 0.6);
   trial.rest(0.3);
   trial.record();
-  trial.move({0.0, 0.0, -8e-3}, 0.0, 2.0);
+  trial.move(way, 0.0, 2.0);
   return trial.result();
 }
 
+template <bool kAlongWarp>
+DeviceRecord draw(const material::Fabric& fabric, const ManipulationSettings& settings) {
+  return drawBy({0.0, 0.0, -8e-3}, hanging(fabric, kAlongWarp, settings), settings);
+}
+
 DeviceRecord shear(const material::Fabric& fabric, const ManipulationSettings& settings) {
-  Trial trial(hanging(fabric, true, settings), kLowerEdge, settings);
-  trial.move(kStill, -3.25 * kOpen, 0.6);
-  trial.rest(0.3);
-  trial.record();
-  trial.move({0.0, 12e-3, 0.0}, 0.0, 2.0);
-  return trial.result();
+  return drawBy({0.0, 12e-3, 0.0}, hanging(fabric, true, settings), settings);
 }
 
 }  // namespace

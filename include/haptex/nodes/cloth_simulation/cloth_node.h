@@ -32,7 +32,6 @@
 #include <string>
 #include <vector>
 
-#include "haptex/material/fabric_factors.h"
 #include "haptex/nodes/cloth_simulation/cloth_markers.h"
 #include "haptex/nodes/cloth_simulation/contact_input.h"
 #include "haptex/nodes/cloth_simulation/external_force_input.h"
@@ -110,7 +109,7 @@ class ClothNode {
   bool setFabric(SetFabric::Request& request, SetFabric::Response& response);
   bool setSheet(SetSheet::Request& request, SetSheet::Response& response);
   bool setProperties(SetProperties::Request& request, SetProperties::Response& response);
-  void offerProperties(const ros::NodeHandle& private_node, const cloth::ModelledEffects& effects);
+  void offerProperties(const ros::NodeHandle& private_node);
   void apply(const haptex::ClothConfig& properties);
   void exchange(simulation::SimulatedCloth next, const scene::Scene& scene);
   bool attach(AttachParticles::Request& request, AttachParticles::Response& response);
@@ -139,12 +138,12 @@ class ClothNode {
   std::uint64_t steps_per_markers_;
   ClothMarkers markers_;
   std::uint32_t mesh_ = 0;  // its number
-  material::FabricFactors factors_;
   haptex::ClothState state_message_;
   std::vector<Eigen::Vector3d> forces_;
   ros::Time state_stamp_;
   std::uint64_t stamped_step_ = 0;
-  std::uint64_t filled_step_ = 0;  // SimulatedCloth::computedSteps() in state_message_
+  // SimulatedCloth::computedSteps() in state_message_; nothing: it is of no state of this cloth.
+  std::optional<std::uint64_t> filled_step_;
   std::vector<cloth::PointLoad> loads_;
   std::size_t published_changes_ = 0;  // of the quality
   base::Time quality_due_{0};          // when its message is published without a change
@@ -173,7 +172,7 @@ class ClothNode {
   // One change of fabrics, properties or sheet at a time.
   boost::recursive_mutex changing_;
   std::vector<material::Fabric> fabrics_;  // as their files say, without factors; guarded by it
-  haptex::ClothConfig properties_;         // that act; likewise
+  haptex::ClothConfig properties_;         // that act; likewise, changed by the loop's thread
   std::unique_ptr<dynamic_reconfigure::Server<haptex::ClothConfig>> reconfigure_;  // likewise
 };
 

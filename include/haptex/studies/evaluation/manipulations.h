@@ -30,6 +30,7 @@ struct ManipulationSettings {
 /// A manipulation by its name, and what is done.
 struct Manipulation {
   const char* name;
+  /// @throws std::invalid_argument what oracles::HapticLoop throws for the fabric or the settings
   DeviceRecord (*run)(const material::Fabric& fabric, const ManipulationSettings& settings);
 };
 

@@ -1,12 +1,11 @@
 """What the ratings of one or several sessions say: tables, and a plot per property."""
 import csv
 import pathlib
-import sys
 from typing import NamedTuple
 
 import numpy as np
-import roslib.packages
 
+from . import programs
 from .kes_values import PROPERTY_UNITS, FabricValues, find_fabric
 from .protocol import PROPERTIES, REAL, VIRTUAL
 from .results import read_results
@@ -203,29 +202,21 @@ def read_all(paths):
     return results
 
 
+def _analyse(arguments, config):
+    from .plots import plot_group  # takes a second to load
+    folder = pathlib.Path(arguments[-1])
+    results = read_all(arguments[:-1])
+    values = {fabric: FabricValues(find_fabric(fabric, config))
+              for fabric in {result.fabric for result in results}}
+    groups = make_groups(results, values)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_tables(groups, folder)
+    for group in groups:
+        if group.raters:
+            plot_group(group, folder)
+    print(folder / 'evaluation.md')
+
+
 def main(arguments):
     """@returns the exit status"""
-    if arguments == ['--help']:
-        sys.stdout.write(USAGE)
-        return 0
-    if len(arguments) < 2:
-        sys.stderr.write(USAGE)
-        return 2
-    from .plots import plot_group  # takes a second to load
-    config = pathlib.Path(roslib.packages.get_pkg_dir('haptex')) / 'config'
-    folder = pathlib.Path(arguments[-1])
-    try:
-        results = read_all(arguments[:-1])
-        values = {fabric: FabricValues(find_fabric(fabric, config))
-                  for fabric in {result.fabric for result in results}}
-        groups = make_groups(results, values)
-        folder.mkdir(parents=True, exist_ok=True)
-        write_tables(groups, folder)
-        for group in groups:
-            if group.raters:
-                plot_group(group, folder)
-    except (OSError, ValueError) as error:
-        print(f'analyse_evaluation: {error}', file=sys.stderr)
-        return 1
-    print(folder / 'evaluation.md')
-    return 0
+    return programs.run('analyse_evaluation', USAGE, arguments, _analyse)

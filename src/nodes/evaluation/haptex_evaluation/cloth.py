@@ -5,13 +5,15 @@ import rospy
 from haptex.msg import ClothMesh
 from haptex.srv import SetFabric
 
+from .strict_yaml import path_of
+
 
 class Cloth:
     """Of the services and topics cloth/* of the node's namespace."""
 
     def __init__(self, config):
         """@param config the folder with fabrics/"""
-        self._config = pathlib.Path(config)
+        self._folder = pathlib.Path(config) / 'fabrics'
         self._text = None  # of the present fabric's file
         self._set_fabric = rospy.ServiceProxy('cloth/set_fabric', SetFabric)
         self._subscriber = rospy.Subscriber('cloth/mesh', ClothMesh, self._take, queue_size=1)
@@ -19,12 +21,9 @@ class Cloth:
     def _take(self, mesh):
         self._text = mesh.fabric_files[0] if mesh.fabric_files else None
 
-    def _file(self, fabric):
-        return pathlib.Path(fabric) if '/' in fabric else self._config / 'fabrics' / f'{fabric}.yaml'
-
     def has(self, fabric):
         """Whether cloth/mesh, which is published after the change, tells this fabric."""
-        return self._text == self._file(fabric).read_text('utf-8')
+        return self._text == path_of(fabric, self._folder).read_text('utf-8')
 
     def ask_for(self, fabric):
         """@returns why it was refused; empty: it was accepted, and has() will tell"""

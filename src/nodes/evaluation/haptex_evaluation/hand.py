@@ -14,10 +14,6 @@ RATE = 100.0  # Hz
 FINGERS = ('index', 'thumb')
 
 
-def _file_of(name, config):
-    return pathlib.Path(name) if '/' in name else pathlib.Path(config) / 'paths' / f'{name}.yaml'
-
-
 def _vector(value, where):
     if not isinstance(value, list) or len(value) != 3:
         raise ValueError(f'{where}: {value!r} must be a list of 3 numbers')
@@ -71,7 +67,8 @@ class EmulatedHand:
     def __init__(self, config, names):
         """@param config the folder with paths/ @param names of those that will be followed
         @throws ValueError naming a file that is no path file"""
-        self._paths = {name: HandPath(_file_of(name, config)) for name in names}
+        folder = pathlib.Path(config) / 'paths'
+        self._paths = {name: HandPath(strict.path_of(name, folder)) for name in names}
         self._fingers = [rospy.Publisher(f'{finger}/target', PointStamped, queue_size=1)
                          for finger in FINGERS]
         self._base = rospy.Publisher('hand_base/target', PoseStamped, queue_size=1)

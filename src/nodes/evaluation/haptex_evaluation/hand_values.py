@@ -5,12 +5,10 @@ the equations: Kawabata 1980, The Standardization and Analysis of Hand Evaluatio
     THV = C0 + sum_k [Ck1 (HVk - Mk1) / Sk1 + Ck2 (HVk^2 - Mk2) / Sk2]
 """
 import math
-import pathlib
 import sys
 from typing import NamedTuple
 
-import roslib.packages
-
+from . import programs
 from . import strict_yaml as strict
 from .kes_values import UNITS, FabricValues, find_fabric
 
@@ -149,20 +147,12 @@ def print_values(equations, fabrics, out):
             out.write(f'# {fabric.name}: {name} = {equations.assumed[name]:g} {UNITS[name]} is assumed\n')
 
 
+def _print(arguments, config):
+    equations = read_equations(arguments[0])
+    print_values(equations, [FabricValues(find_fabric(name, config)) for name in arguments[1:]],
+                 sys.stdout)
+
+
 def main(arguments):
     """@returns the exit status"""
-    if arguments == ['--help']:
-        sys.stdout.write(USAGE)
-        return 0
-    if len(arguments) < 2:
-        sys.stderr.write(USAGE)
-        return 2
-    config = pathlib.Path(roslib.packages.get_pkg_dir('haptex')) / 'config'
-    try:
-        equations = read_equations(arguments[0])
-        fabrics = [FabricValues(find_fabric(name, config)) for name in arguments[1:]]
-        print_values(equations, fabrics, sys.stdout)
-    except ValueError as error:
-        print(f'hand_values: {error}', file=sys.stderr)
-        return 1
-    return 0
+    return programs.run('hand_values', USAGE, arguments, _print)

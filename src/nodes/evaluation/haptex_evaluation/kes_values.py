@@ -186,7 +186,7 @@ PROPERTY_UNITS = {'tensile_stiffness': 'N/m, 500 gf/cm over EMT', 'shear_stiffne
 def find_fabric(name, config):
     """@param name of a file in config/fabrics, or the path of one @throws ValueError naming it"""
     folder = pathlib.Path(config) / 'fabrics'
-    path = pathlib.Path(name) if '/' in name else folder / f'{name}.yaml'
+    path = strict.path_of(name, folder)
     if not path.is_file():
         names = ', '.join(sorted(file.stem for file in folder.glob('*.yaml')))
         raise ValueError(f'there is no fabric {name!r}: allowed is the path of a file, or a name of {names}')

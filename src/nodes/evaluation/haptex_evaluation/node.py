@@ -18,6 +18,7 @@ from .plan import STANDARD, TRIAL
 from .protocol import VIRTUAL, read_protocol
 from .recording import LONGEST_END, TrialRecorder
 from .session import Session
+from .strict_yaml import path_of
 
 PERIOD = 0.05  # s, of the loop
 SHOW_PERIOD = 1.0  # s, of evaluation/trial
@@ -52,7 +53,7 @@ def _parameter(name, kind, default):
 def _make_session(config):
     """Of the parameters ~protocol, ~session, ~who and ~subject."""
     name = _parameter('protocol', str, 'eight_properties')
-    path = pathlib.Path(name) if '/' in name else config / 'protocols' / f'{name}.yaml'
+    path = path_of(name, config / 'protocols')
     protocol = read_protocol(path, config)
     directory = _parameter('session', str, '')
     if not os.path.isabs(directory):

@@ -67,8 +67,7 @@ def _known(folder):
     """Makes a check of the name of a file in a folder, or of a path."""
     def check(value, where):
         name = strict.text(value, where)
-        path = pathlib.Path(name) if '/' in name else folder / f'{name}.yaml'
-        if not path.is_file():
+        if not strict.path_of(name, folder).is_file():
             names = sorted(file.stem for file in folder.glob('*.yaml'))
             raise ValueError(f'{where}: there is no {name!r}: allowed is the path of a file, or a name '
                              f'of {", ".join(names)}')

@@ -26,6 +26,11 @@ def load(path):
         raise ValueError(f'{path}: {error}') from error
 
 
+def path_of(name, folder):
+    """@param name of a file in the folder without .yaml, or the path of one"""
+    return pathlib.Path(name) if '/' in name else pathlib.Path(folder) / f'{name}.yaml'
+
+
 def require_keys(value, where, required, optional=()):
     """@throws ValueError unless `value` is a mapping with all required keys and none beside them"""
     allowed = [*required, *optional]
