@@ -2,24 +2,14 @@
 // device with two fingertips measures meanwhile. docs/evaluation_by_machine.md
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "haptex/base/finger.h"
-#include "haptex/cloth/dynamics/step.h"
 #include "haptex/material/fabric.h"
 #include "haptex/studies/evaluation/device_record.h"
+#include "haptex/studies/evaluation/manipulation_settings.h"
 
 namespace haptex::studies {
-
-/// How the hand trembles and how finely the cloth is computed.
-struct ManipulationSettings {
-  std::uint64_t tremor = 0;  ///< seed of Tremor
-  int cells = 32;            ///< of the 200 mm sample, along each side; strips have their own
-  double large_scale_step = 0.0125;         ///< s, where there are two layers
-  std::optional<cloth::StepSettings> step;  ///< of the large-scale cloth; none: of the oracles
-};
 
 /// A manipulation by its name, and what is done.
 struct Manipulation {
@@ -41,12 +31,6 @@ const std::vector<Manipulation>& manipulations();
 
 /// What a hand knows of itself and of the samples that it cut.
 constexpr double kPinchSeconds = 4.0;  ///< closing and opening
-struct Strip {
-  double length = 0.0, width = 0.0;  ///< m
-};
-constexpr Strip kPressed{0.2, 0.012};   ///< between what holds it
-constexpr Strip kBiased{0.2, 0.015};    ///< likewise
-constexpr Strip kOverhang{0.03, 0.02};  ///< from the clamp on; the clamp's edge is at x = 0
 struct FingertipPair {
   base::PerFinger<double> radii = {};  ///< m, of the emulated device
   double pulp_stiffness = 0.0;         ///< Pa/m, of each, as the force renderer gives it

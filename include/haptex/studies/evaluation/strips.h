@@ -1,7 +1,9 @@
 // Manipulations of strips; manipulations() says what is done.
 #pragma once
 
-#include "haptex/studies/evaluation/manipulations.h"
+#include "haptex/material/fabric.h"
+#include "haptex/studies/evaluation/device_record.h"
+#include "haptex/studies/evaluation/manipulation_settings.h"
 
 namespace haptex::studies {
 
