@@ -50,7 +50,8 @@ class PatternReader {
   }
 
   Panel readPanel(const YamlValue& value) {
-    value.requireKeys({"name", "fabric", "outline"}, {"holes", "layer", "grain", "placement"});
+    value.requireKeys({"name", "fabric", "outline"},
+                      {"holes", "marks", "layer", "grain", "placement"});
     Panel panel;
     panel.name = value.at("name").text();
     panel.fabric = value.at("fabric").text();
@@ -61,6 +62,11 @@ class PatternReader {
     if (value.has("holes")) {
       for (const YamlValue& hole : itemsOf(value.at("holes"), kMostEdges)) {
         panel.outlines.push_back(readOutline(hole, panel));
+      }
+    }
+    if (value.has("marks")) {
+      for (const YamlValue& mark : itemsOf(value.at("marks"), kMostEdges)) {
+        panel.marks.push_back(readPoints(mark, kMostLines));
       }
     }
     return panel;
@@ -111,37 +117,34 @@ class PatternReader {
       kind = word;
     }
     if (kind.empty()) value.refuseBecause("must have one of line, quadratic, cubic, arc");
-    try {
-      Edge edge{readCurve(value.at(kind), kind)};
-      if (value.has("name")) edge.name = readName(value.at("name"));
-      return edge;
-    } catch (const OutOfCurve& error) {
-      value.refuseBecause("panel '" + panel.name + "': " + error.what());
-    }
+    Edge edge{readCurve(value.at(kind), kind, panel)};
+    if (value.has("name")) edge.name = readName(value.at("name"));
+    return edge;
   }
 
-  struct OutOfCurve : std::runtime_error {
-    using std::runtime_error::runtime_error;
-  };
-
-  Curve readCurve(const YamlValue& value, const std::string& kind) {
-    std::vector<Vector2d> points;
-    const std::size_t count = kind == "cubic" ? 4 : 3;
-    const auto items = kind == "line" ? itemsOf(value, kMostLines) : value.items(count);
-    points_ += items.size();
-    if (points_ > kMostPatternPoints) {
-      value.refuse("is too much: allowed are up to " + std::to_string(kMostPatternPoints) +
-                   " points in a file");
-    }
-    for (const YamlValue& item : items) points.push_back(readPoint(item));
+  Curve readCurve(const YamlValue& value, const std::string& kind, const Panel& panel) {
+    if (kind != "line") value.items(kind == "cubic" ? 4 : 3);
+    const std::vector<Vector2d> points = readPoints(value, kMostLines);
     try {
       if (kind == "line") return Curve::line(points);
       if (kind == "quadratic") return Curve::quadratic(points[0], points[1], points[2]);
       if (kind == "cubic") return Curve::cubic(points[0], points[1], points[2], points[3]);
       return Curve::arc(points[0], points[1], points[2]);
     } catch (const std::invalid_argument& error) {
-      throw OutOfCurve(error.what());
+      value.refuseBecause("panel '" + panel.name + "': " + error.what());
     }
+  }
+
+  std::vector<Vector2d> readPoints(const YamlValue& value, std::size_t most) {
+    const std::vector<YamlValue> items = itemsOf(value, most);
+    points_ += items.size();
+    if (points_ > kMostPatternPoints) {
+      value.refuse("is too much: allowed are up to " + std::to_string(kMostPatternPoints) +
+                   " points in a file");
+    }
+    std::vector<Vector2d> points;
+    for (const YamlValue& item : items) points.push_back(readPoint(item));
+    return points;
   }
 
   static std::string readName(const YamlValue& value) {

@@ -48,18 +48,21 @@ Eigen::Vector3d rollPitchYaw(const Eigen::Matrix3d& r) {
   return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
 }
 
+void writePoints(const std::vector<Eigen::Vector2d>& points, const std::string& indent,
+                 std::ostream& out) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0) out << (i % 4 == 0 ? ",\n" + indent : ", ");
+    out << list(points[i]);
+  }
+}
+
 void writeOutline(const Outline& outline, const std::string& first, const std::string& indent,
                   std::ostream& out) {
   const char* const kinds[] = {"line", "quadratic", "cubic", "arc"};
   std::string before = first;
   for (const Edge& edge : outline) {
     out << before << "- {" << kinds[static_cast<int>(edge.curve.kind())] << ": [";
-    std::size_t index = 0;
-    for (const Eigen::Vector2d& point : edge.curve.points()) {
-      if (index > 0) out << (index % 4 == 0 ? ",\n" + indent + "    " : ", ");
-      out << list(point);
-      ++index;
-    }
+    writePoints(edge.curve.points(), indent + "    ", out);
     out << ']';
     if (!edge.name.empty()) out << ", name: " << quoted(edge.name);
     out << "}\n";
@@ -85,10 +88,15 @@ void writePanel(const Panel& panel, std::ostream& out) {
   writePlacement(panel, out);
   out << "    outline:\n";
   writeOutline(panel.outlines.front(), "      ", "      ", out);
-  if (panel.outlines.size() == 1) return;
-  out << "    holes:\n";
+  if (panel.outlines.size() > 1) out << "    holes:\n";
   for (std::size_t k = 1; k < panel.outlines.size(); ++k) {
     writeOutline(panel.outlines[k], "      - ", "        ", out);
+  }
+  if (!panel.marks.empty()) out << "    marks:\n";
+  for (const auto& mark : panel.marks) {
+    out << "      - [";
+    writePoints(mark, "         ", out);
+    out << "]\n";
   }
 }
 

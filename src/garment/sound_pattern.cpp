@@ -77,6 +77,9 @@ class SoundPattern {
     for (std::size_t k = 0; k < panel.outlines.size(); ++k) {
       requireOutline(panel, static_cast<int>(k), names);
     }
+    for (const auto& mark : panel.marks) {
+      for (const Vector2d& point : mark) requireCoordinates(point, at(panel) + ": a mark");
+    }
     requireNoCrossing(panel);
     const double area = areaOf(panel);
     if (!(area >= kSmallestArea)) {
@@ -105,12 +108,14 @@ class SoundPattern {
     }
   }
 
+  static void requireCoordinates(const Vector2d& point, const std::string& where) {
+    if (point.allFinite() && point.cwiseAbs().maxCoeff() <= kLargestCoordinate) return;
+    refuse(where, ": has the point (", point.x(), ", ", point.y(), "): allowed are up to ",
+           kLargestCoordinate, " m in each direction");
+  }
+
   static void requirePoints(const Curve& curve, const std::string& where) {
-    for (const Vector2d& point : curve.points()) {
-      if (point.cwiseAbs().maxCoeff() <= kLargestCoordinate) continue;
-      refuse(where, ": has the point (", point.x(), ", ", point.y(), "): allowed are up to ",
-             kLargestCoordinate, " m in each direction");
-    }
+    for (const Vector2d& point : curve.points()) requireCoordinates(point, where);
     if (!(curve.length() >= kShortestEdge)) {
       refuse(where, ": is ", curve.length(), " m long: allowed is >= ", kShortestEdge, " m");
     }

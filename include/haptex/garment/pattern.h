@@ -62,6 +62,8 @@ struct Panel {
   int layer = 0;                                    ///< 0 is the nearest to the body
   Eigen::Vector2d warp = Eigen::Vector2d::UnitY();  ///< direction of the grain, of length 1
   std::vector<Outline> outlines;                    ///< its own, then those of its holes
+  /// What is drawn on it and not cut: a point each, as for a button, or a line of more (m).
+  std::vector<std::vector<Eigen::Vector2d>> marks = {};
   /// From its plane, as z = 0, into the world frame (m); or where it is laid on.
   std::variant<Eigen::Isometry3d, OnCarrier> placement = Eigen::Isometry3d::Identity();
 };

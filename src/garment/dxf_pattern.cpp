@@ -1,0 +1,109 @@
+#include "haptex/garment/dxf_pattern.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <utility>
+
+#include "haptex/base/require.h"
+#include "haptex/base/yaml_reader.h"
+#include "haptex/garment/dxf_piece.h"
+#include "haptex/garment/dxf_reader.h"
+#include "haptex/garment/seam_reader.h"
+
+namespace haptex::garment {
+namespace {
+
+using base::refuse;
+using base::YamlValue;
+
+double metreOf(const std::string& unit) {
+  if (unit == "mm") return 0.001;
+  if (unit == "cm") return 0.01;
+  return unit == "m" ? 1.0 : 0.0254;
+}
+
+// As the style's text "Units: METRIC" or "Units: ENGLISH" says it, or the header.
+double metreOf(const DxfDrawing& drawing, const std::string& name) {
+  std::string units = systemText(drawing.entities, "Units");
+  for (const DxfBlock& block : drawing.blocks) {
+    if (units.empty()) units = systemText(block.entities, "Units");
+  }
+  for (char& c : units) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  if (units == "METRIC") return metreOf("mm");
+  if (units == "ENGLISH") return metreOf("inch");
+  switch (drawing.unit) {
+    case 1:
+      return metreOf("inch");
+    case 4:
+      return metreOf("mm");
+    case 5:
+      return metreOf("cm");
+    case 6:
+      return metreOf("m");
+    default:
+      refuse(name, ": does not say its unit ('", units.substr(0, 40), "', $INSUNITS ", drawing.unit,
+             "): a sidecar with unit: mm, cm, m or inch must");
+  }
+}
+
+// Names of panels, of ASCII letters that files and terminals agree on.
+std::string plain(std::string text) {
+  for (char& c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code > 0x7e) c = '_';
+  }
+  return text.substr(0, 200);
+}
+
+// The piece's own name, if it is the only one of this name; the block's otherwise.
+void namePanels(const std::vector<const DxfBlock*>& blocks, Pattern& pattern) {
+  std::vector<std::string> names;
+  for (const DxfBlock* block : blocks)
+    names.push_back(plain(systemText(block->entities, "Piece Name")));
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const bool unique = std::count(names.begin(), names.end(), names[i]) == 1;
+    pattern.panels[i].name = unique && !names[i].empty() ? names[i] : plain(blocks[i]->name);
+  }
+}
+
+}  // namespace
+
+ImportedPattern importDxf(const std::string& text, const std::string& name,
+                          const std::string& sidecar, const std::string& sidecar_name,
+                          const std::string& fabric) {
+  ImportedPattern imported;
+  Pattern& pattern = imported.pattern;
+  pattern.source = name;
+  const DxfDrawing drawing = readDxf(text, name);
+  std::optional<YamlValue> said;
+  if (!sidecar.empty()) {
+    said = YamlValue::parse(sidecar, sidecar_name);
+    said->requireKeys({}, {"unit", "seams", "darts"});
+  }
+  const double metre = said && said->has("unit")
+                           ? metreOf(said->at("unit").oneOf({"mm", "cm", "m", "inch"}))
+                           : metreOf(drawing, name);
+  std::vector<const DxfBlock*> pieces;
+  for (const DxfBlock& block : drawing.blocks) {
+    if (!isPiece(block)) continue;
+    const std::string where = name + ": piece '" + plain(block.name) + "'";
+    if (pieces.size() == kMostPanels) refuse(where, ": allowed are up to ", kMostPanels, " pieces");
+    pieces.push_back(&block);
+    pattern.panels.push_back(readPiece(block, where, metre, imported.notes));
+    pattern.panels.back().fabric = fabric;
+    const std::string quantity = systemText(block.entities, "Quantity");
+    if (!quantity.empty() && quantity != "1") {
+      imported.notes.push_back(where + ": is cut " + plain(quantity) + " times: one panel is made");
+    }
+  }
+  namePanels(pieces, pattern);
+  requireSound(pattern, name);
+  if (said) {
+    readSeams(*said, pattern);
+    requireSound(pattern, sidecar_name);
+  }
+  return imported;
+}
+
+}  // namespace haptex::garment

@@ -1,0 +1,305 @@
+#include "haptex/garment/dxf_piece.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "haptex/base/require.h"
+
+namespace haptex::garment {
+namespace {
+
+using base::refuse;
+using Eigen::Vector2d;
+using Points = std::vector<Vector2d>;
+
+constexpr double kSame = 1e-5;        // m: points that near are one
+constexpr double kOnOutline = 1e-3;   // m: of mirror lines
+constexpr double kNotchReach = 0.03;  // m: of notches of the cut from the sew line
+constexpr double kNearSplit = 2e-3;   // m: no two divisions are nearer
+constexpr double kCorner = M_PI / 6.0;
+
+/// A closed polygon, some of whose corners divide it into edges.
+struct Polygon {
+  Points points;
+  std::vector<bool> divides;
+
+  std::size_t next(std::size_t i) const { return i + 1 == points.size() ? 0 : i + 1; }
+  std::size_t before(std::size_t i) const { return i == 0 ? points.size() - 1 : i - 1; }
+};
+
+bool onLayer(const DxfEntity& entity, const char* layer) { return entity.layer == layer; }
+
+bool isClosed(const DxfEntity& entity) {
+  return entity.kind == DxfEntity::Kind::kPolyline &&
+         (entity.closed || entity.points.front() == entity.points.back());
+}
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+class PieceReader {
+ public:
+  PieceReader(const DxfBlock& block, std::string where, double metre,
+              std::vector<std::string>& notes)
+      : block_(block), where_(std::move(where)), metre_(metre), notes_(notes) {}
+
+  Panel read() {
+    Panel panel;
+    panel.warp = readGrain();
+    std::vector<Polygon> polygons = {readOutline()};
+    for (const DxfEntity& entity : block_.entities) {
+      if (onLayer(entity, "11")) polygons.push_back(polygonOf(entity, "11"));
+      if (onLayer(entity, "8") && entity.points.size() >= 2) panel.marks.push_back(scaled(entity));
+      if (onLayer(entity, "13") && entity.kind == DxfEntity::Kind::kPoint) {
+        panel.marks.push_back(scaled(entity));
+      }
+    }
+    for (Polygon& polygon : polygons) divide(polygon);
+    unfold(polygons, panel.marks);
+    for (const Polygon& polygon : polygons) panel.outlines.push_back(outlineOf(polygon));
+    return panel;
+  }
+
+ private:
+  Points scaled(const DxfEntity& entity) const {
+    Points points;
+    for (const Vector2d& point : entity.points) points.push_back(point * metre_);
+    return points;
+  }
+
+  Points pointsOn(const char* layer) const {
+    Points points;
+    for (const DxfEntity& entity : block_.entities) {
+      if (!onLayer(entity, layer) || entity.kind != DxfEntity::Kind::kPoint) continue;
+      points.push_back(entity.points.front() * metre_);
+    }
+    return points;
+  }
+
+  Vector2d readGrain() const {
+    for (const DxfEntity& entity : block_.entities) {
+      if (!onLayer(entity, "7") || entity.points.size() < 2) continue;
+      const Vector2d along = (entity.points.back() - entity.points.front()) * metre_;
+      if (!(along.norm() > kSame)) refuse(where_, ": the grain line (layer 7) has no length");
+      return along.normalized();
+    }
+    notes_.push_back(where_ + ": has no grain line (layer 7): taken along y");
+    return Vector2d::UnitY();
+  }
+
+  Polygon readOutline() const {
+    const DxfEntity* sewn = nullptr;
+    const DxfEntity* cut = nullptr;
+    bool open_sew_line = false;
+    for (const DxfEntity& entity : block_.entities) {
+      if (entity.kind != DxfEntity::Kind::kPolyline && !onLayer(entity, "14")) continue;
+      if (onLayer(entity, "14")) {
+        if (!isClosed(entity) || sewn != nullptr) open_sew_line = true;
+        if (isClosed(entity)) sewn = &entity;
+      } else if (onLayer(entity, "1")) {
+        if (cut != nullptr) refuse(where_, ": has two outlines (layer 1): allowed is one");
+        cut = &entity;
+      }
+    }
+    if (open_sew_line) sewn = nullptr;
+    if (open_sew_line) {
+      notes_.push_back(where_ +
+                       ": its sew lines (layer 14) are not one closed line: the outline is "
+                       "that of layer 1");
+    }
+    return sewn != nullptr ? polygonOf(*sewn, "14") : polygonOf(*cut, "1");
+  }
+
+  Polygon polygonOf(const DxfEntity& entity, const char* layer) const {
+    if (entity.kind != DxfEntity::Kind::kPolyline) {
+      refuse(where_, ": layer ", layer, " has an entity that is no polyline: outlines must be");
+    }
+    Polygon polygon;
+    for (const Vector2d& point : entity.points) {
+      const Vector2d scaled = point * metre_;
+      if (polygon.points.empty() || (scaled - polygon.points.back()).norm() > kSame) {
+        polygon.points.push_back(scaled);
+      }
+    }
+    const double gap = (polygon.points.back() - polygon.points.front()).norm();
+    if (polygon.points.size() > 1 && gap <= kSame) {
+      polygon.points.pop_back();
+    } else if (!entity.closed) {
+      refuse(where_, ": the outline of layer ", layer, " is open, its ends are ", gap,
+             " m apart: allowed are ", kSame, " m");
+    }
+    if (polygon.points.size() < 3) {
+      refuse(where_, ": the outline of layer ", layer, " has ", polygon.points.size(),
+             " points: allowed are 3 or more");
+    }
+    polygon.divides.assign(polygon.points.size(), false);
+    return polygon;
+  }
+
+  // At turn points, or at corners where there is none, and at notches.
+  void divide(Polygon& polygon) const {
+    const Points turns = pointsOn("2"), curves = pointsOn("3");
+    const auto liesOn = [](const Points& points, const Vector2d& at) {
+      return std::any_of(points.begin(), points.end(),
+                         [&](const Vector2d& point) { return (point - at).norm() <= 1e-4; });
+    };
+    for (std::size_t i = 0; i < polygon.points.size(); ++i) {
+      if (turns.empty()) {
+        const Vector2d in = polygon.points[i] - polygon.points[polygon.before(i)];
+        const Vector2d out = polygon.points[polygon.next(i)] - polygon.points[i];
+        const double turn = std::abs(std::atan2(cross(in, out), in.dot(out)));
+        polygon.divides[i] = turn > kCorner && !liesOn(curves, polygon.points[i]);
+      } else {
+        polygon.divides[i] = liesOn(turns, polygon.points[i]);
+      }
+    }
+    for (const Vector2d& notch : pointsOn("4")) divideAt(polygon, notch);
+  }
+
+  static void divideAt(Polygon& polygon, const Vector2d& notch) {
+    double nearest = kNotchReach;
+    std::size_t after = 0;
+    Vector2d at = Vector2d::Zero();
+    for (std::size_t i = 0; i < polygon.points.size(); ++i) {
+      const Vector2d& a = polygon.points[i];
+      const Vector2d ab = polygon.points[polygon.next(i)] - a;
+      const double t = std::clamp((notch - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
+      const Vector2d point = a + t * ab;
+      if ((point - notch).norm() >= nearest) continue;
+      nearest = (point - notch).norm();
+      after = i;
+      at = point;
+    }
+    if (nearest == kNotchReach) return;
+    for (std::size_t i = 0; i < polygon.points.size(); ++i) {
+      if (polygon.divides[i] && (polygon.points[i] - at).norm() <= kNearSplit) return;
+    }
+    for (const std::size_t i : {after, polygon.next(after)}) {
+      if ((polygon.points[i] - at).norm() > kSame) continue;
+      polygon.divides[i] = true;
+      return;
+    }
+    polygon.points.insert(polygon.points.begin() + static_cast<std::ptrdiff_t>(after) + 1, at);
+    polygon.divides.insert(polygon.divides.begin() + static_cast<std::ptrdiff_t>(after) + 1, true);
+  }
+
+  // A mirror line that is a side of the outline is the fold of a half piece.
+  void unfold(std::vector<Polygon>& polygons, std::vector<Points>& marks) const {
+    for (const DxfEntity& entity : block_.entities) {
+      if (!onLayer(entity, "6") || entity.points.size() < 2) continue;
+      const Vector2d from = entity.points.front() * metre_, to = entity.points.back() * metre_;
+      if (!unfoldOutline(polygons.front(), from, to)) continue;
+      const auto mirrored = [&](const Vector2d& point) { return mirror(point, from, to); };
+      for (std::size_t k = polygons.size() - 1; k > 0; --k) {
+        Polygon hole = polygons[k];
+        std::transform(hole.points.begin(), hole.points.end(), hole.points.begin(), mirrored);
+        polygons.push_back(std::move(hole));
+      }
+      for (std::size_t m = marks.size(); m > 0; --m) {
+        Points mark = marks[m - 1];
+        std::transform(mark.begin(), mark.end(), mark.begin(), mirrored);
+        marks.push_back(std::move(mark));
+      }
+      return;
+    }
+  }
+
+  static Vector2d mirror(const Vector2d& point, const Vector2d& from, const Vector2d& to) {
+    const Vector2d along = (to - from).normalized();
+    const Vector2d foot = from + along * along.dot(point - from);
+    return 2.0 * foot - point;
+  }
+
+  static bool unfoldOutline(Polygon& polygon, const Vector2d& from, const Vector2d& to) {
+    if (!((to - from).norm() > kSame)) return false;
+    const Vector2d along = (to - from).normalized();
+    const auto onFold = [&](const Vector2d& point) {
+      return std::abs(cross(along, point - from)) <= kOnOutline;
+    };
+    const std::size_t count = polygon.points.size();
+    // The first corner of the fold, and the last one.
+    std::size_t begin = count;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (onFold(polygon.points[i]) && !onFold(polygon.points[polygon.before(i)])) begin = i;
+    }
+    if (begin == count) return false;
+    std::size_t end = begin;
+    while (onFold(polygon.points[polygon.next(end)])) end = polygon.next(end);
+    if (end == begin) return false;
+    Polygon whole;
+    for (std::size_t i = end; i != begin; i = polygon.next(i)) {
+      whole.points.push_back(polygon.points[i]);
+      whole.divides.push_back(i != end && polygon.divides[i]);
+    }
+    whole.points.push_back(polygon.points[begin]);
+    whole.divides.push_back(false);
+    for (std::size_t i = whole.points.size() - 1; i-- > 1;) {
+      whole.points.push_back(mirror(whole.points[i], from, to));
+      whole.divides.push_back(static_cast<bool>(whole.divides[i]));
+    }
+    // Where the two halves meet in a corner, they divide.
+    for (const std::size_t i : {std::size_t{0}, (whole.points.size()) / 2}) {
+      const Vector2d in = whole.points[i] - whole.points[whole.before(i)];
+      const Vector2d out = whole.points[whole.next(i)] - whole.points[i];
+      whole.divides[i] = std::abs(std::atan2(cross(in, out), in.dot(out))) > kCorner;
+    }
+    polygon = std::move(whole);
+    return true;
+  }
+
+  // From one corner that divides it to the next; from the first point if there is none.
+  static Outline outlineOf(const Polygon& polygon) {
+    const std::size_t count = polygon.points.size();
+    std::size_t begin = 0;
+    while (begin < count && !polygon.divides[begin]) ++begin;
+    if (begin == count) begin = 0;
+    Outline outline;
+    Points points = {polygon.points[begin]};
+    for (std::size_t step = 1; step <= count; ++step) {
+      const std::size_t i = (begin + step) % count;
+      points.push_back(polygon.points[i]);
+      if (!polygon.divides[i] && i != begin) continue;
+      outline.push_back({Curve::line(points)});
+      points = {polygon.points[i]};
+    }
+    return outline;
+  }
+
+  const DxfBlock& block_;
+  const std::string where_;
+  const double metre_;
+  std::vector<std::string>& notes_;
+};
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+}  // namespace
+
+bool isPiece(const DxfBlock& block) {
+  return std::any_of(block.entities.begin(), block.entities.end(), [](const DxfEntity& entity) {
+    return entity.kind == DxfEntity::Kind::kPolyline && onLayer(entity, "1");
+  });
+}
+
+std::string systemText(const std::vector<DxfEntity>& entities, const std::string& key) {
+  for (const DxfEntity& entity : entities) {
+    if (entity.kind != DxfEntity::Kind::kText) continue;
+    const std::size_t colon = entity.text.find(':');
+    if (colon == std::string::npos || lower(entity.text.substr(0, colon)) != lower(key)) continue;
+    const std::size_t begin = entity.text.find_first_not_of(" \t", colon + 1);
+    if (begin != std::string::npos) return entity.text.substr(begin);
+  }
+  return "";
+}
+
+Panel readPiece(const DxfBlock& block, const std::string& where, double metre,
+                std::vector<std::string>& notes) {
+  return PieceReader(block, where, metre, notes).read();
+}
+
+}  // namespace haptex::garment
