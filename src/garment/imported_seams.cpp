@@ -24,7 +24,7 @@ bool oppositeEndsMeet(const Pattern& pattern, const Seam& seam) {
   const auto a = endsOf(pattern, seam.sides[0]), b = endsOf(pattern, seam.sides[1]);
   const double same = (a[0] - b[0]).squaredNorm() + (a[1] - b[1]).squaredNorm();
   const double opposite = (a[0] - b[1]).squaredNorm() + (a[1] - b[0]).squaredNorm();
-  return opposite <= same * (1.0 + 1e-9);
+  return !(same < 0.5 * opposite);
 }
 
 double easingOf(const Pattern& pattern, const Seam& seam) {

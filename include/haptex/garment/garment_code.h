@@ -15,9 +15,9 @@ namespace haptex::garment {
 /// forward, y to the left, z up. A panel's own axes stay as they are, its grain is along y.
 ///
 /// Stitches do not say which ends meet. One that is marked "right_wrong" joins the starts of its
-/// edges; for the others those ends meet that lie nearer to each other as the panels are placed,
-/// where that makes no difference the end of one edge and the start of the other, as the format's
-/// own tools do. Lengths may differ as they do in the file: by that the easing is set.
+/// edges. The others join the end of one edge and the start of the other, as the format's own tools
+/// do, unless the panels are placed otherwise: oppositeEndsMeet(). Lengths may differ as they do in
+/// the file: by that the easing is set.
 ///
 /// @param text of the file @param name of it in messages
 /// @param fabric for all panels: these files know none

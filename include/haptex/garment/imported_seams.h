@@ -5,9 +5,10 @@
 
 namespace haptex::garment {
 
-/// Whether the start of one side lies nearer to the end of the other than starts to starts and
-/// ends to ends, as the panels are placed: by the sum of squared distances. True where both are
-/// equal to 1e-9 of themselves.
+/// Whether the start of each side meets the end of the other, as it does where panels lie beside
+/// each other with their right sides on the same side. Not so if, as the panels are placed, starts
+/// lie much nearer to starts and ends to ends: by less than half the sum of squared distances. A
+/// short edge far from the one it is sewn to decides nothing.
 /// @param seam of panels that are placed by a position
 bool oppositeEndsMeet(const Pattern& pattern, const Seam& seam);
 
