@@ -24,14 +24,14 @@ class Value {
 
   [[noreturn]] void refuseIt(const std::string& allowed) const {
     const std::string shown = json_->is_structured() ? json_->type_name() : json_->dump();
-    refuse(path_, ": is ", shown.substr(0, 60), ", must be ", allowed);
+    refuse(where(), "is ", shown.substr(0, 60), ", must be ", allowed);
   }
 
   bool has(const char* key) const { return json_->is_object() && json_->contains(key); }
   Value at(const char* key) const {
     if (!json_->is_object()) refuseIt("an object");
     const auto found = json_->find(key);
-    if (found == json_->end()) refuse(path_, ": '", key, "' is missing");
+    if (found == json_->end()) refuse(where(), "'", key, "' is missing");
     return {*found, below(key)};
   }
   std::vector<std::pair<std::string, Value>> members(std::size_t most) const {
@@ -88,6 +88,7 @@ class Value {
   const std::string& path() const { return path_; }
 
  private:
+  std::string where() const { return path_ + (path_.back() == ':' ? " " : ": "); }
   std::string below(const std::string& key) const {
     return path_ + (path_.back() == ':' ? " " : ".") + key;
   }

@@ -76,12 +76,18 @@ ImportedPattern import(const Request& request) {
 
 void print(const ImportedPattern& imported, std::ostream& out) {
   const Pattern& pattern = imported.pattern;
-  out << "# panel\tname\tedges\tarea_m2\n";
+  out << "# panel\tname\tholes\tarea_m2\n# edge\tnumber\tlength_m\tfrom_x\tfrom_y\tto_x\tto_y\n";
   for (const Panel& panel : pattern.panels) {
-    std::size_t edges = 0;
-    for (const Outline& outline : panel.outlines) edges += outline.size();
-    out << "panel\t" << panel.name << '\t' << edges << '\t' << base::shortNumber(areaOf(panel))
-        << '\n';
+    out << "panel\t" << panel.name << '\t' << panel.outlines.size() - 1 << '\t'
+        << base::shortNumber(areaOf(panel)) << '\n';
+    for (std::size_t e = 0; e < panel.outlines.front().size(); ++e) {
+      const Curve& curve = panel.outlines.front()[e].curve;
+      out << "edge\t" << e << '\t' << base::shortNumber(curve.length());
+      for (const Eigen::Vector2d& end : {curve.start(), curve.end()}) {
+        out << '\t' << base::shortNumber(end.x()) << '\t' << base::shortNumber(end.y());
+      }
+      out << '\n';
+    }
   }
   out << "# seam\tfirst\tsecond\tfirst_m\tsecond_m\teasing\n";
   for (const Seam& seam : pattern.seams) {

@@ -40,12 +40,14 @@ std::string list(const Vector& vector) {
   return text + "]";
 }
 
-// Roll, pitch and yaw of R = Rz(yaw) Ry(pitch) Rx(roll).
+// Roll, pitch and yaw of R = Rz(yaw) Ry(pitch) Rx(roll), to 1e-12 rad: so they stay the same when
+// they are read and written again.
 Eigen::Vector3d rollPitchYaw(const Eigen::Matrix3d& r) {
   const double across = std::hypot(r(0, 0), r(1, 0));
-  const double pitch = std::atan2(-r(2, 0), across);
-  if (across < 1e-12) return {std::atan2(-r(1, 2), r(1, 1)), pitch, 0.0};
-  return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
+  Eigen::Vector3d angles(std::atan2(r(2, 1), r(2, 2)), std::atan2(-r(2, 0), across),
+                         std::atan2(r(1, 0), r(0, 0)));
+  if (across < 1e-12) angles << std::atan2(-r(1, 2), r(1, 1)), angles.y(), 0.0;
+  return (angles * 1e12).array().round() / 1e12;
 }
 
 void writePoints(const std::vector<Eigen::Vector2d>& points, const std::string& indent,

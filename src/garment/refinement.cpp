@@ -209,8 +209,8 @@ class Refinement {
   }
 
   // A side of an outline that is seen from a point at a right angle or a larger one: a point there
-  // would make small angles (Ruppert, A Delaunay refinement algorithm for quality 2-dimensional mesh
-  // generation, 1995). It is a side of a triangle whose circle the point lies in.
+  // would make small angles (Ruppert, A Delaunay refinement algorithm for quality 2-dimensional
+  // mesh generation, 1995). It is a side of a triangle whose circle the point lies in.
   std::pair<int, int> sideCloseTo(const Vector2d& point, int triangle) {
     const auto& points = triangulation_.points();
     std::vector<int> open = {triangle}, seen = {triangle};

@@ -43,6 +43,20 @@ darts:
   - {panel: front, edges: [left of dart, right of dart], easing: 0}
 )";
 
+/// Two squares of 20 cm that face each other in front of and behind the body, sewn at their left
+/// sides, as edge 1 of the front and edge 3 of the back.
+inline const std::string kTwoSquares = R"({"pattern": {"panels": {
+  "front": {"translation": [0, 100, 10], "rotation": [0, 0, 0],
+    "vertices": [[0, 0], [20, 0], [20, 20], [0, 20]],
+    "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]},
+              {"endpoints": [3, 0]}]},
+  "back": {"translation": [20, 100, -10], "rotation": [0, 180, 0],
+    "vertices": [[0, 0], [20, 0], [20, 20], [0, 20]],
+    "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]},
+              {"endpoints": [3, 0]}]}},
+  "stitches": [[{"panel": "front", "edge": 1}, {"panel": "back", "edge": 3}]]},
+  "properties": {"units_in_meter": 100, "curvature_coords": "relative"}})";
+
 /// What is said to a text with the first `part` replaced.
 inline std::string refusalOf(std::string text, const std::string& part,
                              const std::string& replacement) {

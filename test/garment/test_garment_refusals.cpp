@@ -105,7 +105,8 @@ TEST(GarmentRefusals, NameTheKeyOfWhatCannotBeRead) {
       {"name: hem", "arc: [[0, 0], [1, 1], [2, 0]]",
        "panels[0].outline[0]: has line and arc: allowed is one"},
       {"[[0.15, 0.2], [0.2, 0.25], [0.25, 0.2]]", "[[0.15, 0.2], [0.2, 0.2], [0.25, 0.2]]",
-       "panels[0].holes[0][0].arc: panel 'front': the three points of an arc lie on a line: they must "
+       "panels[0].holes[0][0].arc: panel 'front': the three points of an arc lie on a line: they "
+       "must "
        "determine a circle"},
       {"[[0, 0], [0.4, 0]]", "[[0, 0]]",
        "panels[0].outline[0].line: panel 'front': a line has 1 points: allowed are >= 2"},
