@@ -11,7 +11,7 @@
 #include "haptex/base/repeatable_random.h"
 #include "haptex/garment/panel_mesh.h"
 #include "haptex/garment/refinement.h"
-#include "mesh_measures.h"
+#include "haptex/garment/triangle_quality.h"
 
 namespace haptex::garment::test_triangulation {
 namespace {
@@ -45,14 +45,31 @@ Panel mirrored(Panel panel) {
   return panel;
 }
 
+// m^2, of the polygons that the particles along the edges make.
+double outlinedArea(const PanelMesh& panel) {
+  double area = 0.0;
+  for (std::size_t k = 0; k < panel.edges.size(); ++k) {
+    double part = 0.0;
+    for (const EdgeParticles& edge : panel.edges[k]) {
+      for (std::size_t i = 1; i < edge.particles.size(); ++i) {
+        const auto& a = panel.mesh.rest_coordinates[edge.particles[i - 1]];
+        const auto& b = panel.mesh.rest_coordinates[edge.particles[i]];
+        part += 0.5 * (a.x() * b.y() - a.y() * b.x());
+      }
+    }
+    area += k == 0 ? std::abs(part) : -std::abs(part);
+  }
+  return area;
+}
+
 // What is promised of every panel.
 void expectSound(const PanelMesh& panel, double least_angle_of_all = 0.0) {
   requireSound(panel.mesh);
-  const MeshMeasures measures = measure(panel.mesh);
-  EXPECT_EQ(measures.clockwise, 0);
-  EXPECT_EQ(measures.not_delaunay, 0);
-  EXPECT_NEAR(measures.area, outlinedArea(panel), 1e-12 * measures.area);
-  EXPECT_GE(measures.least_angle, least_angle_of_all);
+  const TriangleQuality quality = qualityOf(panel.mesh);
+  EXPECT_EQ(quality.clockwise, 0);
+  EXPECT_EQ(quality.not_delaunay, 0);
+  EXPECT_NEAR(quality.area, outlinedArea(panel), 1e-12 * quality.area);
+  EXPECT_GE(quality.least_angle, least_angle_of_all);
 }
 
 const double kWell = kLeastAngle * (1.0 - 1e-9);
@@ -66,12 +83,12 @@ TEST(Triangulation, CoversShippedGarmentsWithNearlyEqualTriangles) {
         SCOPED_TRACE(panel.name);
         const PanelMesh result = triangulate(panel, edge_length);
         expectSound(result, kWell);
-        const MeshMeasures measures = measure(result.mesh);
-        EXPECT_NEAR(measures.mean, edge_length, 0.08 * edge_length);
-        EXPECT_LT(measures.spread, 0.25 * edge_length);
-        EXPECT_LT(measures.longest, 1.7 * edge_length);
+        const TriangleQuality quality = qualityOf(result.mesh);
+        EXPECT_NEAR(quality.mean, edge_length, 0.08 * edge_length);
+        EXPECT_LT(quality.spread, 0.25 * edge_length);
+        EXPECT_LT(quality.longest, 1.7 * edge_length);
         // Chords are shorter than curves: second order in the edge length.
-        EXPECT_NEAR(measures.area, areaOf(panel), 2.0 * edge_length * edge_length * areaOf(panel));
+        EXPECT_NEAR(quality.area, areaOf(panel), 2.0 * edge_length * edge_length * areaOf(panel));
       }
     }
   }
@@ -152,7 +169,7 @@ TEST(Triangulation, RestCoordinatesLieAlongTheGrain) {
   }
   EXPECT_NEAR(width, 0.1, 1e-15);
   EXPECT_NEAR(height, 0.3, 1e-15);
-  EXPECT_NEAR(measure(result.mesh).area, 0.03, 1e-15);
+  EXPECT_NEAR(qualityOf(result.mesh).area, 0.03, 1e-15);
 }
 
 TEST(Triangulation, HolesStayHoles) {
@@ -161,7 +178,7 @@ TEST(Triangulation, HolesStayHoles) {
                                polygon({{0.3, 0.3}, {0.35, 0.3}, {0.3, 0.35}})});
   const PanelMesh result = triangulate(panel, 0.02);
   expectSound(result, kWell);
-  EXPECT_NEAR(measure(result.mesh).area, 0.16 - 0.01 - 0.00125, 1e-15);
+  EXPECT_NEAR(qualityOf(result.mesh).area, 0.16 - 0.01 - 0.00125, 1e-15);
 }
 
 TEST(Triangulation, SharpCornersKeepSmallAnglesToThemselves) {
@@ -178,8 +195,8 @@ TEST(Triangulation, SharpCornersKeepSmallAnglesToThemselves) {
       return std::all_of(triangle.begin(), triangle.end(),
                          [&](int particle) { return rest[particle].norm() > 4.0 * edge_length; });
     };
-    EXPECT_GE(measure(result.mesh, far).least_angle, kWell);
-    EXPECT_GE(measure(result.mesh).shortest, std::min(0.03, std::sin(angle)) * edge_length);
+    EXPECT_GE(qualityOf(result.mesh, far).least_angle, kWell);
+    EXPECT_GE(qualityOf(result.mesh).shortest, std::min(0.03, std::sin(angle)) * edge_length);
   }
 }
 
@@ -199,8 +216,8 @@ TEST(Triangulation, NarrowPartsAreRefinedAsFarAsTheyAreNarrow) {
                                         {0.0, 0.1}})});
   const PanelMesh result = triangulate(panel, 0.02);
   expectSound(result, kWell);
-  EXPECT_NEAR(measure(result.mesh).area, 0.0202, 1e-15);
-  EXPECT_GT(measure(result.mesh).shortest, 0.0005);
+  EXPECT_NEAR(qualityOf(result.mesh).area, 0.0202, 1e-15);
+  EXPECT_GT(qualityOf(result.mesh).shortest, 0.0005);
   EXPECT_LT(result.mesh.triangles.size(), 1500u);
 }
 
@@ -247,7 +264,7 @@ TEST(Triangulation, OutlinesAtRandomAreCovered) {
     const Panel panel = randomStar(seed);
     const PanelMesh result = triangulate(seed % 2 == 0 ? panel : mirrored(panel), 0.015);
     expectSound(result);
-    EXPECT_NEAR(measure(result.mesh).area, areaOf(panel), 1e-12 * areaOf(panel));
+    EXPECT_NEAR(qualityOf(result.mesh).area, areaOf(panel), 1e-12 * areaOf(panel));
     // Angles are small only within reach of sharp corners.
     const auto& corners = panel.outlines[0];
     const auto far = [&](const std::array<int, 3>& triangle) {
@@ -262,7 +279,7 @@ TEST(Triangulation, OutlinesAtRandomAreCovered) {
       }
       return true;
     };
-    EXPECT_GE(measure(result.mesh, far).least_angle, kWell);
+    EXPECT_GE(qualityOf(result.mesh, far).least_angle, kWell);
   }
 }
 
