@@ -17,8 +17,10 @@ constexpr int before(int i) { return i == 0 ? 2 : i - 1; }
 
 }  // namespace
 
-Delaunay::Delaunay(const std::vector<std::vector<Vector2d>>& loops) {
+Delaunay::Delaunay(const std::vector<std::vector<Vector2d>>& loops,
+                   const std::vector<Vector2d>& inside) {
   for (const auto& loop : loops) points_.insert(points_.end(), loop.begin(), loop.end());
+  points_.insert(points_.end(), inside.begin(), inside.end());
   const int count = static_cast<int>(points_.size());
   enclose();
   int at = 0;
@@ -329,6 +331,12 @@ void Delaunay::around(int point, std::vector<int>& points, std::vector<int>& tri
   }
 }
 
+bool Delaunay::isOnOutline(int point) const {
+  std::vector<int> points, triangles;
+  around(point, points, triangles);
+  return points.size() != triangles.size();
+}
+
 Delaunay::Arrival Delaunay::walk(int triangle, const Vector2d& place) const {
   const auto corner = [&](int t, int i) -> const Vector2d& {
     return points_[triangles_[t].corners[i]];
@@ -371,9 +379,9 @@ int Delaunay::split(int triangle, int side, const Vector2d& point) {
 }
 
 bool Delaunay::move(int point, const Vector2d& to) {
+  if (isOnOutline(point)) return false;
   std::vector<int> points, triangles;
   around(point, points, triangles);
-  if (points.size() != triangles.size()) return false;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector2d &a = points_[points[i]], &b = points_[points[(i + 1) % points.size()]];
     if (turn(a, b, to) <= 0) return false;

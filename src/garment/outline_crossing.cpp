@@ -25,20 +25,6 @@ bool cross(const OutlineLine& a, const OutlineLine& b) {
   return touch(a.start, a.end, b.start, b.end);
 }
 
-// Whether a ray from the point along +x leaves through the lines of an outline an odd number of
-// times.
-bool inside(const Vector2d& point, const std::vector<OutlineLine>& lines, int outline) {
-  bool odd = false;
-  for (const OutlineLine& line : lines) {
-    if (line.of.outline != outline || (line.start.y() > point.y()) == (line.end.y() > point.y())) {
-      continue;
-    }
-    const bool up = line.end.y() > line.start.y();
-    if ((turn(line.start, line.end, point) > 0) == up) odd = !odd;
-  }
-  return odd;
-}
-
 // Whether one lies above the other.
 bool apart(const OutlineLine& a, const OutlineLine& b) {
   return std::max(a.start.y(), a.end.y()) < std::min(b.start.y(), b.end.y()) ||
@@ -86,13 +72,26 @@ std::optional<std::pair<OutlineEdge, OutlineEdge>> findCrossing(
   return std::nullopt;
 }
 
+// A ray from it along +x leaves through the outline an odd number of times.
+bool isInside(const Vector2d& point, const std::vector<OutlineLine>& lines, int outline) {
+  bool odd = false;
+  for (const OutlineLine& line : lines) {
+    if (line.of.outline != outline || (line.start.y() > point.y()) == (line.end.y() > point.y())) {
+      continue;
+    }
+    const bool up = line.end.y() > line.start.y();
+    if ((turn(line.start, line.end, point) > 0) == up) odd = !odd;
+  }
+  return odd;
+}
+
 int findHoleOutside(const std::vector<OutlineLine>& lines) {
   const int outlines = lines.empty() ? 0 : lines.back().of.outline + 1;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const int hole = lines[i].of.outline;
     if (hole == lines[i - 1].of.outline) continue;  // its first line is enough
     for (int other = 0; other < outlines; ++other) {
-      if (other != hole && inside(lines[i].start, lines, other) != (other == 0)) return hole - 1;
+      if (other != hole && isInside(lines[i].start, lines, other) != (other == 0)) return hole - 1;
     }
   }
   return -1;

@@ -61,14 +61,36 @@ std::vector<double> divide(const Curve& curve, double edge_length, double tolera
   return parameters;
 }
 
+/// Between the plane of a panel and its rest coordinates, as seen from the right side.
+class Threads {
+ public:
+  explicit Threads(const Panel& panel) : turned_over_(isTurnedOver(panel)), warp_(panel.warp) {
+    if (turned_over_) warp_.x() = -warp_.x();
+  }
+
+  Vector2d restOf(const Vector2d& point) const {
+    const double x = turned_over_ ? -point.x() : point.x();
+    return {warp_.y() * x - warp_.x() * point.y(), warp_.x() * x + warp_.y() * point.y()};
+  }
+  Vector2d pointOf(const Vector2d& rest) const {
+    const double x = warp_.y() * rest.x() + warp_.x() * rest.y();
+    return {turned_over_ ? -x : x, warp_.y() * rest.y() - warp_.x() * rest.x()};
+  }
+
+ private:
+  bool turned_over_;
+  Vector2d warp_;
+};
+
 struct DividedOutlines {
   std::vector<std::vector<Vector2d>> loops;
   std::vector<std::vector<EdgeParticles>> edges;
   std::vector<OutlineLine> lines;
 };
 
-// Mirrored if the fabric is turned over.
-DividedOutlines divide(const Panel& panel, double edge_length, double tolerance, bool turned_over) {
+// In rest coordinates.
+DividedOutlines divide(const Panel& panel, double edge_length, double tolerance) {
+  const Threads threads(panel);
   DividedOutlines all;
   int begin = 0;
   for (std::size_t k = 0; k < panel.outlines.size(); ++k) {
@@ -84,8 +106,7 @@ DividedOutlines divide(const Panel& panel, double edge_length, double tolerance,
         edge.particles.push_back(begin + static_cast<int>(loop.size()));
         edge.lengths.push_back(curve.length() * static_cast<double>(i) / count);
         if (i + 1 == parameters.size()) break;
-        const Vector2d point = curve.at(parameters[i]);
-        loop.emplace_back(turned_over ? -point.x() : point.x(), point.y());
+        loop.push_back(threads.restOf(curve.at(parameters[i])));
       }
     }
     edges.back().particles.back() = begin;
@@ -102,9 +123,8 @@ DividedOutlines divide(const Panel& panel, double edge_length, double tolerance,
 }
 
 DividedOutlines divideWithoutCrossing(const Panel& panel, double edge_length, double tolerance) {
-  const bool turned_over = isTurnedOver(panel);
   for (int finer = 0;; ++finer) {
-    DividedOutlines all = divide(panel, edge_length, tolerance, turned_over);
+    DividedOutlines all = divide(panel, edge_length, tolerance);
     const bool polygons = std::all_of(all.loops.begin(), all.loops.end(),
                                       [](const auto& loop) { return loop.size() >= 3; });
     const auto crossing = polygons ? findCrossing(all.lines) : std::nullopt;
@@ -146,16 +166,39 @@ void insertBetween(std::vector<std::vector<EdgeParticles>>& outlines,
   }
 }
 
+std::vector<Vector2d> gridPoints(const std::vector<OutlineLine>& lines, double edge_length) {
+  Vector2d low = lines.front().start, high = low;
+  for (const OutlineLine& line : lines) {
+    low = low.cwiseMin(line.start);
+    high = high.cwiseMax(line.start);
+  }
+  const auto far = [&](const Vector2d& point) {
+    return std::all_of(lines.begin(), lines.end(), [&](const OutlineLine& line) {
+      return distanceToLine(point, line.start, line.end) >= 0.5 * edge_length;
+    });
+  };
+  std::vector<Vector2d> points;
+  for (double j = std::ceil(low.y() / edge_length); j * edge_length < high.y(); ++j) {
+    for (double i = std::ceil(low.x() / edge_length); i * edge_length < high.x(); ++i) {
+      const Vector2d point(i * edge_length, j * edge_length);
+      bool inside = isInside(point, lines, 0) && far(point);
+      for (int hole = 1; inside && hole <= lines.back().of.outline; ++hole) {
+        inside = !isInside(point, lines, hole);
+      }
+      if (inside) points.push_back(point);
+    }
+  }
+  return points;
+}
+
 mesh::ClothMesh makeMesh(const Panel& panel, const Delaunay& triangulation) {
   mesh::ClothMesh mesh;
-  const bool turned_over = isTurnedOver(panel);
-  Vector2d warp = panel.warp;
-  if (turned_over) warp.x() = -warp.x();
-  const Vector2d weft(warp.y(), -warp.x());
+  const Threads threads(panel);
   const auto* pose = std::get_if<Eigen::Isometry3d>(&panel.placement);
-  for (const Vector2d& point : triangulation.points()) {
-    mesh.rest_coordinates.emplace_back(weft.dot(point), warp.dot(point));
-    const Eigen::Vector3d flat(turned_over ? -point.x() : point.x(), point.y(), 0.0);
+  mesh.rest_coordinates = triangulation.points();
+  for (const Vector2d& rest : mesh.rest_coordinates) {
+    const Vector2d point = threads.pointOf(rest);
+    const Eigen::Vector3d flat(point.x(), point.y(), 0.0);
     mesh.initial_positions.push_back(pose != nullptr ? *pose * flat : flat);
   }
   for (const auto& triangle : triangulation.triangles()) mesh.triangles.push_back(triangle.corners);
@@ -164,7 +207,7 @@ mesh::ClothMesh makeMesh(const Panel& panel, const Delaunay& triangulation) {
 
 }  // namespace
 
-PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance) {
+PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance, Interior interior) {
   base::require(edge_length >= kShortestMeshEdge && edge_length <= kLargestCoordinate,
                 "triangulate", "edge_length", edge_length, ">= 0.0005 m and <= 20 m");
   base::require(std::isfinite(tolerance) && tolerance > 0.0, "triangulate", "tolerance", tolerance,
@@ -175,8 +218,10 @@ PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance) 
                  triangles, " triangles: allowed are ", kMostTriangles);
   }
   DividedOutlines outlines = divideWithoutCrossing(panel, edge_length, tolerance);
-  Delaunay triangulation(outlines.loops);
-  const auto halvings = refine(triangulation, edge_length);
+  const bool grid = interior == Interior::kGrid;
+  Delaunay triangulation(outlines.loops,
+                         grid ? gridPoints(outlines.lines, edge_length) : std::vector<Vector2d>());
+  const auto halvings = refine(triangulation, edge_length, grid ? Filling::kGiven : Filling::kEven);
   PanelMesh result;
   result.edges = std::move(outlines.edges);
   insertBetween(result.edges, halvings);

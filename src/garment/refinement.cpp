@@ -68,6 +68,10 @@ class SharpCorners {
     std::vector<double> angles(points.size(), 0.0);
     std::vector<int> around, triangles;
     for (std::size_t p = 0; p < points.size(); ++p) {
+      if (!triangulation.isOnOutline(static_cast<int>(p))) {
+        angles[p] = 2.0 * M_PI;
+        continue;
+      }
       triangulation.around(static_cast<int>(p), around, triangles);
       beside[p] = {around.front(), around.back()};
       for (std::size_t i = 1; i < around.size(); ++i) {
@@ -125,16 +129,18 @@ class Refinement {
   Refinement(Delaunay& triangulation, double edge_length)
       : triangulation_(triangulation),
         edge_length_(edge_length),
-        sharp_corners_(triangulation, kArmLength * edge_length),
-        outline_points_(triangulation.points().size()) {
-    on_outline_.assign(outline_points_, true);
+        sharp_corners_(triangulation, kArmLength * edge_length) {
+    const int count = static_cast<int>(triangulation.points().size());
+    for (int p = 0; p < count; ++p) on_outline_.push_back(triangulation.isOnOutline(p));
   }
 
-  std::vector<std::array<int, 3>> run() {
-    addPoints(&Refinement::tooLarge);
+  std::vector<std::array<int, 3>> run(Filling filling) {
+    if (filling == Filling::kEven) addPoints(&Refinement::tooLarge);
     addPoints(&Refinement::tooSharp);
-    for (int i = 0; i < kSmoothings; ++i) smooth();
-    addPoints(&Refinement::tooSharp);
+    if (filling == Filling::kEven) {
+      for (int i = 0; i < kSmoothings; ++i) smooth();
+      addPoints(&Refinement::tooSharp);
+    }
     return std::move(halvings_);
   }
 
@@ -261,7 +267,7 @@ class Refinement {
 
   void smooth() {
     std::vector<int> points, triangles;
-    for (std::size_t p = outline_points_; p < triangulation_.points().size(); ++p) {
+    for (std::size_t p = 0; p < triangulation_.points().size(); ++p) {
       if (on_outline_[p]) continue;
       triangulation_.around(static_cast<int>(p), points, triangles);
       Vector2d middle = Vector2d::Zero();
@@ -277,7 +283,6 @@ class Refinement {
   Delaunay& triangulation_;
   const double edge_length_;
   SharpCorners sharp_corners_;
-  const std::size_t outline_points_;
   std::vector<bool> on_outline_;
   std::priority_queue<Waiting> waiting_;
   std::vector<std::array<int, 3>> halvings_;
@@ -285,8 +290,9 @@ class Refinement {
 
 }  // namespace
 
-std::vector<std::array<int, 3>> refine(Delaunay& triangulation, double edge_length) {
-  return Refinement(triangulation, edge_length).run();
+std::vector<std::array<int, 3>> refine(Delaunay& triangulation, double edge_length,
+                                       Filling filling) {
+  return Refinement(triangulation, edge_length).run(filling);
 }
 
 }  // namespace haptex::garment

@@ -81,6 +81,15 @@ TEST(GarmentFile, NamesMayHaveAnyCharacter) {
   EXPECT_EQ(again.panels[0].name, pattern.panels[0].name);
 }
 
+TEST(GarmentFile, TheExampleInItsDocumentationIsOne) {
+  const std::string page = readPatternText(HAPTEX_SOURCE_DIRECTORY "/docs/garments.md");
+  const std::string begin = "```yaml\n";
+  const std::size_t at = page.find(begin) + begin.size();
+  const Pattern pattern = parsePattern(page.substr(at, page.find("```", at) - at), "garments.md");
+  EXPECT_EQ(pattern.panels.size(), 2u);
+  EXPECT_EQ(pattern.seams.size(), 2u);
+}
+
 TEST(GarmentFile, EndsThatDifferByRoundingAreOneCorner) {
   std::string text = kSmallGarment;
   text.replace(text.find("[0.4, 0.6], [0.25, 0.6]]"), 24, "[0.4000004, 0.6], [0.25, 0.6]]");

@@ -234,6 +234,44 @@ TEST(Triangulation, PointsOnCommonCirclesAndLinesAreNoTrouble) {
   expectSound(result);
 }
 
+TEST(Triangulation, AGridOfWeftAndWarpIsCutAtTheOutline) {
+  const double h = 0.02;
+  Pattern pattern = parsePattern(kSmallGarment, "small.yaml");
+  pattern.panels[0].warp = Vector2d(0.6, 0.8);  // at an angle to its sides
+  for (const Panel& panel : pattern.panels) {
+    SCOPED_TRACE(panel.name);
+    const PanelMesh result = triangulate(panel, h, h / 20.0, Interior::kGrid);
+    expectSound(result, kWell);
+    std::set<int> on_outline;
+    for (const auto& edges : result.edges) {
+      for (const EdgeParticles& edge : edges) {
+        on_outline.insert(edge.particles.begin(), edge.particles.end());
+      }
+    }
+    const auto& rest = result.mesh.rest_coordinates;
+    double of_grid = 0.0;
+    for (const auto& triangle : result.mesh.triangles) {
+      const auto far = [&](int particle) {
+        return std::all_of(on_outline.begin(), on_outline.end(), [&](int other) {
+          return (rest[particle] - rest[other]).norm() > 2.0 * h;
+        });
+      };
+      if (!std::all_of(triangle.begin(), triangle.end(), far)) continue;
+      // Half a square: its sides along weft and warp are h long.
+      Vector2d low = rest[triangle[0]], high = low;
+      for (const int particle : triangle) {
+        low = low.cwiseMin(rest[particle]);
+        high = high.cwiseMax(rest[particle]);
+        EXPECT_NEAR(rest[particle].x() / h, std::round(rest[particle].x() / h), 1e-12);
+        EXPECT_NEAR(rest[particle].y() / h, std::round(rest[particle].y() / h), 1e-12);
+      }
+      EXPECT_NEAR((high - low - Vector2d(h, h)).norm(), 0.0, 1e-14);
+      of_grid += 0.5 * h * h;
+    }
+    EXPECT_GT(of_grid, 0.3 * areaOf(panel));
+  }
+}
+
 TEST(Triangulation, IsTheSameEveryTime) {
   const Pattern pattern = parsePattern(kSmallGarment, "small.yaml");
   const PanelMesh first = triangulate(pattern.panels[0], 0.01);

@@ -24,9 +24,11 @@ class Delaunay {
   /// @param loops closed polygons of points that differ, each joined to the next and the last to
   ///   the first: the outline counter-clockwise or clockwise, then holes inside of it, three points
   ///   or more each. They neither touch nor cross themselves or each other: findCrossing() tells.
-  explicit Delaunay(const std::vector<std::vector<Eigen::Vector2d>>& loops);
+  /// @param inside further points, inside of the polygon, that differ
+  explicit Delaunay(const std::vector<std::vector<Eigen::Vector2d>>& loops,
+                    const std::vector<Eigen::Vector2d>& inside = {});
 
-  /// In the order of the loops, then as they were added.
+  /// In the order of the loops, then those inside, then as they were added.
   const std::vector<Eigen::Vector2d>& points() const { return points_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
   /// Any triangle of a point.
@@ -48,6 +50,7 @@ class Delaunay {
   /// Moves a point that lies on no side that stays, to where all of its triangles still turn
   /// counter-clockwise. @return whether it did: otherwise nothing has changed
   bool move(int point, const Eigen::Vector2d& to);
+  bool isOnOutline(int point) const;
   /// The points around one, counter-clockwise, and the triangles between each and the next. Around
   /// a point of an outline there is one triangle less than points; the first and the last point are
   /// its neighbours on the outline.

@@ -33,6 +33,10 @@ std::vector<OutlineLine> straightLines(const std::vector<Outline>& outlines, dou
 std::optional<std::pair<OutlineEdge, OutlineEdge>> findCrossing(
     const std::vector<OutlineLine>& lines);
 
+/// Whether a point lies inside of an outline, exactly. A point on it may lie on either side.
+/// @param outline whose lines count, from 0
+bool isInside(const Eigen::Vector2d& point, const std::vector<OutlineLine>& lines, int outline);
+
 /// The first hole that does not lie inside of the first outline or lies in another hole, from 0;
 /// -1 if there is none.
 /// @param lines of outlines that do not cross

@@ -17,6 +17,14 @@ struct EdgeParticles {
   std::vector<double> lengths;  ///< m, of the edge up to each of them, from 0 to its own
 };
 
+/// How a panel is filled with triangles.
+enum class Interior {
+  kEven,  ///< nearly equilateral ones in all directions
+  /// A grid of weft and warp, cut at the outline: squares of two triangles whose corners lie at
+  /// multiples of the edge length, where they are half a length or more from it.
+  kGrid,
+};
+
 struct PanelMesh {
   /// One panel. Rest coordinates are (u along weft, v along warp) as seen from the right side of
   /// the fabric, m, from which all triangles turn counter-clockwise. Initial positions are those of
@@ -26,15 +34,16 @@ struct PanelMesh {
   std::vector<std::vector<EdgeParticles>> edges;  ///< per outline and edge
 };
 
-/// Triangles of nearly equal edges: the outline is divided evenly into edges of at most that length
+/// The outline is divided evenly into edges of at most that length
 /// that are no farther than the tolerance from its curves, or where they are near each other a part
-/// of it, refine() does the rest. Where it halves sides of the outline the new particles lie on
+/// of it; refine() does the rest. Where it halves sides of the outline the new particles lie on
 /// them.
 /// @param panel sound @param edge_length m, from kShortestMeshEdge
 /// @param tolerance m, > 0
 /// @throws std::invalid_argument naming panel, value and what is allowed, also where the outline so
 ///   divided would cross itself or there would be more than about kMostTriangles
-PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance);
+PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance,
+                      Interior interior = Interior::kEven);
 /// The same with a tolerance of a twentieth of the edge length.
 PanelMesh triangulate(const Panel& panel, double edge_length);
 

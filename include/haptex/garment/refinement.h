@@ -10,6 +10,12 @@ constexpr double kLeastAngle = 0.4363323129985824;
 /// rad, 60 degrees: corners of outlines that are sharper keep smaller angles near them.
 constexpr double kSharpCorner = 1.0471975511965976;
 
+/// What is inside of the outlines.
+enum class Filling {
+  kEven,   ///< points are added everywhere
+  kGiven,  ///< the points that are there
+};
+
 /// Adds points to a triangulation whose outlines have edges of about `edge_length`, until its other
 /// edges are of about that length, too, and no angle is smaller than kLeastAngle. Points are added
 /// in the centres of the circles of the largest triangles, then of those with small angles (Chew,
@@ -24,7 +30,9 @@ constexpr double kSharpCorner = 1.0471975511965976;
 /// too.
 ///
 /// @param edge_length m, finite and > 0
+/// @param filling kGiven: only triangles with small angles are refined, and no point moves
 /// @return for every point that was added to an outline, in order, between which two points
-std::vector<std::array<int, 3>> refine(Delaunay& triangulation, double edge_length);
+std::vector<std::array<int, 3>> refine(Delaunay& triangulation, double edge_length,
+                                       Filling filling = Filling::kEven);
 
 }  // namespace haptex::garment
