@@ -208,7 +208,7 @@ std::array<int, 2> Delaunay::findSide(int from, int to) const {
 
 // The ends of all sides that the way between two points crosses, in its order.
 std::vector<std::array<int, 2>> Delaunay::sidesAcross(int from, int to) const {
-  const auto sideOfWay = [&](int point) {
+  const auto side_of_way = [&](int point) {
     return turn(points_[from], points_[to], points_[point]);
   };
   std::vector<int> points, triangles;
@@ -217,7 +217,7 @@ std::vector<std::array<int, 2>> Delaunay::sidesAcross(int from, int to) const {
   for (const int triangle : triangles) {
     const int corner = cornerOf(triangle, from);
     const auto& corners = triangles_[triangle].corners;
-    if (sideOfWay(corners[next(corner)]) < 0 && sideOfWay(corners[before(corner)]) > 0) {
+    if (side_of_way(corners[next(corner)]) < 0 && side_of_way(corners[before(corner)]) > 0) {
       at = triangle;
     }
   }
@@ -231,7 +231,7 @@ std::vector<std::array<int, 2>> Delaunay::sidesAcross(int from, int to) const {
     const int opposite = triangles_[other].corners[entered];
     if (opposite == to) break;
     // Out through the side that has an end on each side of the way.
-    side = sideOfWay(opposite) > 0 ? before(entered) : next(entered);
+    side = side_of_way(opposite) > 0 ? before(entered) : next(entered);
     at = other;
   }
   return sides;
@@ -239,7 +239,7 @@ std::vector<std::array<int, 2>> Delaunay::sidesAcross(int from, int to) const {
 
 // Makes two points the ends of a side that stays: Sloan 1993.
 void Delaunay::fix(int from, int to) {
-  const auto sidesOfWay = [&](int a, int b) {
+  const auto sides_of_way = [&](int a, int b) {
     return turn(points_[from], points_[to], points_[a]) *
            turn(points_[from], points_[to], points_[b]);
   };
@@ -261,7 +261,7 @@ void Delaunay::fix(int from, int to) {
     }
     flip(triangle, side);
     const bool at_end = p == from || p == to || q == from || q == to;
-    if (!at_end && sidesOfWay(p, q) < 0) left.push_back({p, q});
+    if (!at_end && sides_of_way(p, q) < 0) left.push_back({p, q});
   }
   const auto [triangle, side] = findSide(from, to);
   if (triangle < 0) base::refuse("points ", from, " and ", to, " of a polygon cannot be joined");

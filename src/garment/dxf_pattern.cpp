@@ -76,11 +76,9 @@ ImportedPattern importDxf(const std::string& text, const std::string& name,
   Pattern& pattern = imported.pattern;
   pattern.source = name;
   const DxfDrawing drawing = readDxf(text, name);
-  std::optional<YamlValue> said;
-  if (!sidecar.empty()) {
-    said = YamlValue::parse(sidecar, sidecar_name);
-    said->requireKeys({}, {"unit", "seams", "darts"});
-  }
+  const auto said =
+      sidecar.empty() ? std::nullopt : std::make_optional(YamlValue::parse(sidecar, sidecar_name));
+  if (said) said->requireKeys({}, {"unit", "seams", "darts"});
   const double metre = said && said->has("unit")
                            ? metreOf(said->at("unit").oneOf({"mm", "cm", "m", "inch"}))
                            : metreOf(drawing, name);

@@ -103,8 +103,9 @@ class PieceReader {
         cut = &entity;
       }
     }
-    if (open_sew_line) sewn = nullptr;
+    if (cut == nullptr) refuse(where_, ": has no outline (layer 1)");
     if (open_sew_line) {
+      sewn = nullptr;
       notes_.push_back(where_ +
                        ": its sew lines (layer 14) are not one closed line: the outline is "
                        "that of layer 1");
@@ -141,7 +142,7 @@ class PieceReader {
   // At turn points, or at corners where there is none, and at notches.
   void divide(Polygon& polygon) const {
     const Points turns = pointsOn("2"), curves = pointsOn("3");
-    const auto liesOn = [](const Points& points, const Vector2d& at) {
+    const auto lies_on = [](const Points& points, const Vector2d& at) {
       return std::any_of(points.begin(), points.end(),
                          [&](const Vector2d& point) { return (point - at).norm() <= 1e-4; });
     };
@@ -150,9 +151,9 @@ class PieceReader {
         const Vector2d in = polygon.points[i] - polygon.points[polygon.before(i)];
         const Vector2d out = polygon.points[polygon.next(i)] - polygon.points[i];
         const double turn = std::abs(std::atan2(cross(in, out), in.dot(out)));
-        polygon.divides[i] = turn > kCorner && !liesOn(curves, polygon.points[i]);
+        polygon.divides[i] = turn > kCorner && !lies_on(curves, polygon.points[i]);
       } else {
-        polygon.divides[i] = liesOn(turns, polygon.points[i]);
+        polygon.divides[i] = lies_on(turns, polygon.points[i]);
       }
     }
     for (const Vector2d& notch : pointsOn("4")) divideAt(polygon, notch);
@@ -215,18 +216,18 @@ class PieceReader {
   static bool unfoldOutline(Polygon& polygon, const Vector2d& from, const Vector2d& to) {
     if (!((to - from).norm() > kSame)) return false;
     const Vector2d along = (to - from).normalized();
-    const auto onFold = [&](const Vector2d& point) {
+    const auto on_fold = [&](const Vector2d& point) {
       return std::abs(cross(along, point - from)) <= kOnOutline;
     };
     const std::size_t count = polygon.points.size();
     // The first corner of the fold, and the last one.
     std::size_t begin = count;
     for (std::size_t i = 0; i < count; ++i) {
-      if (onFold(polygon.points[i]) && !onFold(polygon.points[polygon.before(i)])) begin = i;
+      if (on_fold(polygon.points[i]) && !on_fold(polygon.points[polygon.before(i)])) begin = i;
     }
     if (begin == count) return false;
     std::size_t end = begin;
-    while (onFold(polygon.points[polygon.next(end)])) end = polygon.next(end);
+    while (on_fold(polygon.points[polygon.next(end)])) end = polygon.next(end);
     if (end == begin) return false;
     Polygon whole;
     for (std::size_t i = end; i != begin; i = polygon.next(i)) {

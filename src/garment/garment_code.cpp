@@ -173,8 +173,8 @@ class GarmentCodeReader {
 
   Curve readEdge(const Value& value, const std::vector<Vector2d>& vertices) const {
     const auto ends = value.at("endpoints").items(2, 2);
-    const Vector2d start = vertices[ends[0].index(vertices.size())];
-    const Vector2d end = vertices[ends[1].index(vertices.size())];
+    const Vector2d& start = vertices[ends[0].index(vertices.size())];
+    const Vector2d& end = vertices[ends[1].index(vertices.size())];
     if (!value.has("curvature")) return made(value, [&] { return Curve::line({start, end}); });
     const Value curvature = value.at("curvature");
     // The older format knows quadratic curves only, by their control point.
