@@ -23,12 +23,18 @@ double metreOf(const std::string& unit) {
   return unit == "m" ? 1.0 : 0.0254;
 }
 
+// What a text of the whole style says, which may stand in a block.
+std::string styleText(const DxfDrawing& drawing, const std::string& key) {
+  std::string text = systemText(drawing.entities, key);
+  for (const DxfBlock& block : drawing.blocks) {
+    if (text.empty()) text = systemText(block.entities, key);
+  }
+  return text;
+}
+
 // As the style's text "Units: METRIC" or "Units: ENGLISH" says it, or the header.
 double metreOf(const DxfDrawing& drawing, const std::string& name) {
-  std::string units = systemText(drawing.entities, "Units");
-  for (const DxfBlock& block : drawing.blocks) {
-    if (units.empty()) units = systemText(block.entities, "Units");
-  }
+  std::string units = styleText(drawing, "Units");
   for (char& c : units) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   if (units == "METRIC") return metreOf("mm");
   if (units == "ENGLISH") return metreOf("inch");
@@ -56,6 +62,21 @@ std::string plain(std::string text) {
   return text.substr(0, 200);
 }
 
+// Those of one size, if there are pieces of that size; all otherwise.
+std::vector<const DxfBlock*> piecesOf(const DxfDrawing& drawing, const std::string& size,
+                                      const std::string& name, std::vector<std::string>& notes) {
+  std::vector<const DxfBlock*> all, sized;
+  for (const DxfBlock& block : drawing.blocks) {
+    if (!isPiece(block)) continue;
+    all.push_back(&block);
+    if (!size.empty() && systemText(block.entities, "Size") == size) sized.push_back(&block);
+  }
+  if (sized.empty() || sized.size() == all.size()) return all;
+  notes.push_back(name + ": " + std::to_string(all.size() - sized.size()) +
+                  " pieces of other sizes than " + plain(size) + " are left out");
+  return sized;
+}
+
 // The piece's own name, if it is the only one of this name; the block's otherwise.
 void namePanels(const std::vector<const DxfBlock*>& blocks, Pattern& pattern) {
   std::vector<std::string> names;
@@ -78,16 +99,18 @@ ImportedPattern importDxf(const std::string& text, const std::string& name,
   const DxfDrawing drawing = readDxf(text, name);
   const auto said =
       sidecar.empty() ? std::nullopt : std::make_optional(YamlValue::parse(sidecar, sidecar_name));
-  if (said) said->requireKeys({}, {"unit", "seams", "darts"});
+  if (said) said->requireKeys({}, {"unit", "size", "seams", "darts"});
   const double metre = said && said->has("unit")
                            ? metreOf(said->at("unit").oneOf({"mm", "cm", "m", "inch"}))
                            : metreOf(drawing, name);
+  const std::string size =
+      said && said->has("size") ? said->at("size").text() : styleText(drawing, "Sample Size");
   std::vector<const DxfBlock*> pieces;
-  for (const DxfBlock& block : drawing.blocks) {
-    if (!isPiece(block)) continue;
+  for (const DxfBlock* piece : piecesOf(drawing, size, name, imported.notes)) {
+    const DxfBlock& block = *piece;
     const std::string where = name + ": piece '" + plain(block.name) + "'";
     if (pieces.size() == kMostPanels) refuse(where, ": allowed are up to ", kMostPanels, " pieces");
-    pieces.push_back(&block);
+    pieces.push_back(piece);
     pattern.panels.push_back(readPiece(block, where, metre, imported.notes));
     pattern.panels.back().fabric = fabric;
     const std::string quantity = systemText(block.entities, "Quantity");

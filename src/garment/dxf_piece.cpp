@@ -16,6 +16,7 @@ using Eigen::Vector2d;
 using Points = std::vector<Vector2d>;
 
 constexpr double kSame = 1e-5;        // m: points that near are one
+constexpr double kJoinLines = 1e-4;   // m: ends of lines that near are joined
 constexpr double kOnOutline = 1e-3;   // m: of mirror lines
 constexpr double kNotchReach = 0.03;  // m: of notches of the cut from the sew line
 constexpr double kNearSplit = 2e-3;   // m: no two divisions are nearer
@@ -32,11 +33,6 @@ struct Polygon {
 
 bool onLayer(const DxfEntity& entity, const char* layer) { return entity.layer == layer; }
 
-bool isClosed(const DxfEntity& entity) {
-  return entity.kind == DxfEntity::Kind::kPolyline &&
-         (entity.closed || entity.points.front() == entity.points.back());
-}
-
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 class PieceReader {
@@ -49,8 +45,8 @@ class PieceReader {
     Panel panel;
     panel.warp = readGrain();
     std::vector<Polygon> polygons = {readOutline()};
+    for (Polygon& hole : loopsOf("11", Open::kRefused)) polygons.push_back(std::move(hole));
     for (const DxfEntity& entity : block_.entities) {
-      if (onLayer(entity, "11")) polygons.push_back(polygonOf(entity, "11"));
       if (onLayer(entity, "8") && entity.points.size() >= 2) panel.marks.push_back(scaled(entity));
       if (onLayer(entity, "13") && entity.kind == DxfEntity::Kind::kPoint) {
         panel.marks.push_back(scaled(entity));
@@ -69,12 +65,19 @@ class PieceReader {
     return points;
   }
 
-  Points pointsOn(const char* layer) const {
+  void requireCount(const char* layer, const char* what, std::size_t count,
+                    std::size_t most) const {
+    if (count <= most) return;
+    refuse(where_, ": layer ", layer, " has ", count, " ", what, ": allowed are up to ", most);
+  }
+
+  Points pointsOn(const char* layer, std::size_t most) const {
     Points points;
     for (const DxfEntity& entity : block_.entities) {
       if (!onLayer(entity, layer) || entity.kind != DxfEntity::Kind::kPoint) continue;
       points.push_back(entity.points.front() * metre_);
     }
+    requireCount(layer, "points", points.size(), most);
     return points;
   }
 
@@ -90,58 +93,102 @@ class PieceReader {
   }
 
   Polygon readOutline() const {
-    const DxfEntity* sewn = nullptr;
-    const DxfEntity* cut = nullptr;
-    bool open_sew_line = false;
-    for (const DxfEntity& entity : block_.entities) {
-      if (entity.kind != DxfEntity::Kind::kPolyline && !onLayer(entity, "14")) continue;
-      if (onLayer(entity, "14")) {
-        if (!isClosed(entity) || sewn != nullptr) open_sew_line = true;
-        if (isClosed(entity)) sewn = &entity;
-      } else if (onLayer(entity, "1")) {
-        if (cut != nullptr) refuse(where_, ": has two outlines (layer 1): allowed is one");
-        cut = &entity;
-      }
+    std::vector<Polygon> cut = loopsOf("1", Open::kRefused);
+    if (cut.size() != 1) {
+      refuse(where_, ": has ", cut.size(), " outlines (layer 1): allowed is one");
     }
-    if (cut == nullptr) refuse(where_, ": has no outline (layer 1)");
-    if (open_sew_line) {
-      sewn = nullptr;
+    const bool any_sew_line = std::any_of(block_.entities.begin(), block_.entities.end(),
+                                          [](const auto& entity) { return onLayer(entity, "14"); });
+    std::vector<Polygon> sewn = loopsOf("14", Open::kLeftOut);
+    if (sewn.size() == 1) return sewn.front();
+    if (any_sew_line) {
       notes_.push_back(where_ +
                        ": its sew lines (layer 14) are not one closed line: the outline is "
                        "that of layer 1");
     }
-    return sewn != nullptr ? polygonOf(*sewn, "14") : polygonOf(*cut, "1");
+    return cut.front();
   }
 
-  Polygon polygonOf(const DxfEntity& entity, const char* layer) const {
-    if (entity.kind != DxfEntity::Kind::kPolyline) {
-      refuse(where_, ": layer ", layer, " has an entity that is no polyline: outlines must be");
-    }
-    Polygon polygon;
-    for (const Vector2d& point : entity.points) {
-      const Vector2d scaled = point * metre_;
-      if (polygon.points.empty() || (scaled - polygon.points.back()).norm() > kSame) {
-        polygon.points.push_back(scaled);
+  enum class Open { kRefused, kLeftOut };
+
+  // Outlines may be drawn as one polyline, or as several and lines that follow each other.
+  std::vector<Polygon> loopsOf(const char* layer, Open open) const {
+    std::vector<Polygon> loops;
+    std::vector<Points> pieces;
+    for (const DxfEntity& entity : block_.entities) {
+      if (!onLayer(entity, layer) || entity.points.size() < 2) continue;
+      Points points = scaled(entity);
+      const bool closed = entity.closed || (points.back() - points.front()).norm() <= kSame;
+      if (closed) {
+        loops.push_back(polygonOf({points}, layer));
+      } else {
+        pieces.push_back(std::move(points));
       }
     }
-    const double gap = (polygon.points.back() - polygon.points.front()).norm();
-    if (polygon.points.size() > 1 && gap <= kSame) {
-      polygon.points.pop_back();
-    } else if (!entity.closed) {
-      refuse(where_, ": the outline of layer ", layer, " is open, its ends are ", gap,
-             " m apart: allowed are ", kSame, " m");
+    requireCount(layer, "lines", pieces.size(), kMostEdges);
+    while (!pieces.empty()) {
+      const std::vector<Points> chain = takeChain(pieces);
+      const double gap = (chain.back().back() - chain.front().front()).norm();
+      if (gap <= kJoinLines) {
+        loops.push_back(polygonOf(chain, layer));
+      } else if (open == Open::kRefused) {
+        refuse(where_, ": the outline of layer ", layer, " is open, its ends are ", gap,
+               " m apart: allowed are ", kJoinLines, " m");
+      } else {
+        return {};
+      }
     }
+    return loops;
+  }
+
+  // The first piece and those that follow its end, turned around where need be.
+  static std::vector<Points> takeChain(std::vector<Points>& pieces) {
+    std::vector<Points> chain = {pieces.front()};
+    pieces.erase(pieces.begin());
+    for (;;) {
+      const Vector2d end = chain.back().back();
+      if ((end - chain.front().front()).norm() <= kJoinLines && chain.size() > 1) return chain;
+      const auto next = std::find_if(pieces.begin(), pieces.end(), [&](const Points& piece) {
+        return (piece.front() - end).norm() <= kJoinLines ||
+               (piece.back() - end).norm() <= kJoinLines;
+      });
+      if (next == pieces.end()) return chain;
+      if ((next->front() - end).norm() > kJoinLines) std::reverse(next->begin(), next->end());
+      chain.push_back(*next);
+      pieces.erase(next);
+    }
+  }
+
+  // Divided where the pieces meet.
+  Polygon polygonOf(const std::vector<Points>& chain, const char* layer) const {
+    Polygon polygon;
+    for (const Points& piece : chain) {
+      const double join = polygon.points.empty() ? 0.0 : kJoinLines;
+      for (std::size_t i = 0; i < piece.size(); ++i) {
+        const double same = i == 0 ? std::max(join, kSame) : kSame;
+        if (polygon.points.empty() || (piece[i] - polygon.points.back()).norm() > same) {
+          polygon.points.push_back(piece[i]);
+          polygon.divides.push_back(false);
+        }
+        if (i == 0) polygon.divides.back() = chain.size() > 1;
+      }
+    }
+    while (polygon.points.size() > 1 && (polygon.points.back() - polygon.points.front()).norm() <=
+                                            (chain.size() > 1 ? kJoinLines : kSame)) {
+      polygon.points.pop_back();
+      polygon.divides.pop_back();
+    }
+    requireCount(layer, "points in an outline", polygon.points.size(), kMostLines);
     if (polygon.points.size() < 3) {
       refuse(where_, ": the outline of layer ", layer, " has ", polygon.points.size(),
              " points: allowed are 3 or more");
     }
-    polygon.divides.assign(polygon.points.size(), false);
     return polygon;
   }
 
   // At turn points, or at corners where there is none, and at notches.
   void divide(Polygon& polygon) const {
-    const Points turns = pointsOn("2"), curves = pointsOn("3");
+    const Points turns = pointsOn("2", kMostLines), curves = pointsOn("3", kMostLines);
     const auto lies_on = [](const Points& points, const Vector2d& at) {
       return std::any_of(points.begin(), points.end(),
                          [&](const Vector2d& point) { return (point - at).norm() <= 1e-4; });
@@ -151,12 +198,12 @@ class PieceReader {
         const Vector2d in = polygon.points[i] - polygon.points[polygon.before(i)];
         const Vector2d out = polygon.points[polygon.next(i)] - polygon.points[i];
         const double turn = std::abs(std::atan2(cross(in, out), in.dot(out)));
-        polygon.divides[i] = turn > kCorner && !lies_on(curves, polygon.points[i]);
+        if (turn > kCorner && !lies_on(curves, polygon.points[i])) polygon.divides[i] = true;
       } else {
-        polygon.divides[i] = lies_on(turns, polygon.points[i]);
+        if (lies_on(turns, polygon.points[i])) polygon.divides[i] = true;
       }
     }
-    for (const Vector2d& notch : pointsOn("4")) divideAt(polygon, notch);
+    for (const Vector2d& notch : pointsOn("4", kMostEdges)) divideAt(polygon, notch);
   }
 
   static void divideAt(Polygon& polygon, const Vector2d& notch) {
@@ -283,7 +330,7 @@ std::string lower(std::string text) {
 
 bool isPiece(const DxfBlock& block) {
   return std::any_of(block.entities.begin(), block.entities.end(), [](const DxfEntity& entity) {
-    return entity.kind == DxfEntity::Kind::kPolyline && onLayer(entity, "1");
+    return onLayer(entity, "1") && entity.points.size() >= 2;
   });
 }
 

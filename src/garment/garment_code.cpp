@@ -142,7 +142,10 @@ class GarmentCodeReader {
     for (const Value& vertex : value.at("vertices").items(2, kMostEdges)) {
       vertices.push_back(vertex.point() * metre_);
     }
-    Vector3d translation = value.at("translation").vector() * metre_;
+    const auto placed = [&](const char* key) -> Vector3d {
+      return value.has(key) ? value.at(key).vector() : Vector3d::Zero();
+    };
+    Vector3d translation = placed("translation") * metre_;
     if (centred_) {
       Vector2d middle = Vector2d::Zero();
       for (const Vector2d& vertex : vertices)
@@ -150,7 +153,7 @@ class GarmentCodeReader {
       for (Vector2d& vertex : vertices) vertex -= middle;
       translation.head<2>() += middle;
     }
-    panel.placement = placement(translation, value.at("rotation").vector() * M_PI / 180.0);
+    panel.placement = placement(translation, placed("rotation") * M_PI / 180.0);
     Outline& outline = panel.outlines.emplace_back();
     for (const Value& edge : value.at("edges").items(1, kMostEdges)) {
       outline.push_back({readEdge(edge, vertices)});

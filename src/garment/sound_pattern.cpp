@@ -51,6 +51,7 @@ class SoundPattern {
       for (const Outline& outline : panel.outlines) {
         for (const Edge& edge : outline) points += edge.curve.points().size();
       }
+      for (const auto& mark : panel.marks) points += mark.size();
     }
     return points;
   }
@@ -76,6 +77,9 @@ class SoundPattern {
     std::set<std::string> names;
     for (std::size_t k = 0; k < panel.outlines.size(); ++k) {
       requireOutline(panel, static_cast<int>(k), names);
+    }
+    if (panel.marks.size() > kMostEdges) {
+      refuse(at(panel), ": has ", panel.marks.size(), " marks: allowed are up to ", kMostEdges);
     }
     for (const auto& mark : panel.marks) {
       for (const Vector2d& point : mark) requireCoordinates(point, at(panel) + ": a mark");

@@ -103,8 +103,43 @@ TEST(DxfPattern, SeamsAreThoseOfTheSidecar) {
             "skirt.seams.yaml: seams[0].sides[0].edges[0]: '9' is no edge: allowed are names of "
             "edges and 0 to 5");
   EXPECT_EQ(refusal(smallDxf(), "units: mm"),
-            "skirt.seams.yaml: units: unknown key, allowed here: unit, seams, darts");
+            "skirt.seams.yaml: units: unknown key, allowed here: unit, size, seams, darts");
   EXPECT_THROW(import(smallDxf(), "seams: ["), std::runtime_error);
+}
+
+TEST(DxfPattern, AnOutlineMayBeSeveralLinesThatFollowEachOther) {
+  // A quarter of a disc as AAMA files have it: a polyline per side, one of them turned around.
+  DxfText::Points arc;
+  for (int i = 0; i <= 12; ++i) {
+    const double angle = 0.5 * M_PI * i / 12;
+    arc.emplace_back(100 * std::cos(angle), 100 * std::sin(angle));
+  }
+  const auto text = [&] {
+    return DxfText().block("A").polyline("1", {{0, 0}, {100, 0}}, false).polyline("1", arc, false);
+  };
+  const auto whole = text().line("1", {0, 0}, {0, 100});
+  const Panel panel = import(whole.str()).pattern.panels[0];
+  ASSERT_EQ(panel.outlines[0].size(), 3u);
+  EXPECT_EQ(panel.outlines[0][1].curve.points().size(), 13u);
+  EXPECT_NEAR(areaOf(panel), 0.5 * 0.01 * 12.0 * std::sin(M_PI / 24.0), 1e-7);
+  EXPECT_EQ(refusal(text().str()),
+            "skirt.dxf: piece 'A': the outline of layer 1 is open, its ends are 0.1 m apart: "
+            "allowed are 0.0001 m");
+}
+
+TEST(DxfPattern, OnlyTheSampleSizeIsTaken) {
+  DxfText text;
+  for (const char* size : {"S", "M"}) {
+    text.block(std::string("A-") + size).text(std::string("Size: ") + size);
+    text.polyline("1", {{0, 0}, {99, 0}, {99, 99}});
+  }
+  EXPECT_EQ(import(text.str()).pattern.panels.size(), 2u);
+  const ImportedPattern small = import(text.str(), "size: S");
+  ASSERT_EQ(small.pattern.panels.size(), 1u);
+  EXPECT_EQ(small.pattern.panels[0].name, "A-S");
+  EXPECT_EQ(small.notes[0], "skirt.dxf: 1 pieces of other sizes than S are left out");
+  text.text("Sample Size: M");
+  EXPECT_EQ(import(text.str()).pattern.panels[0].name, "A-M");
 }
 
 TEST(DxfPattern, PiecesOfTheSameNameAreNamedByTheirBlocks) {
@@ -133,15 +168,20 @@ TEST(DxfPattern, ArcsOfPolylinesAreFollowed) {
 TEST(DxfPattern, RefusesWhatIsNoPattern) {
   EXPECT_EQ(refusal(DxfText().block("A").polyline("1", {{0, 0}, {50, 0}, {50, 60}}, false).str()),
             "skirt.dxf: piece 'A': the outline of layer 1 is open, its ends are 0.0781024967591 m "
-            "apart: allowed are 1e-05 m");
+            "apart: allowed are 0.0001 m");
   EXPECT_EQ(refusal(square().polyline("1", {{0, 0}, {50, 0}, {50, 60}}).str()),
-            "skirt.dxf: piece 'A': has two outlines (layer 1): allowed is one");
+            "skirt.dxf: piece 'A': has 2 outlines (layer 1): allowed is one");
   EXPECT_EQ(refusal(DxfText().block("A").polyline("1", {{0, 0}, {50, 0}}).str()),
             "skirt.dxf: piece 'A': the outline of layer 1 has 2 points: allowed are 3 or more");
   EXPECT_EQ(
       refusal(DxfText().block("A").polyline("1", {{0, 0}, {90, 0}, {0, 80}, {90, 80}}).str()),
       "skirt.dxf: panel 'A', edge 1: crosses or touches panel 'A', edge 3: outlines may meet in "
       "the corners between successive edges only");
+  DxfText lines;
+  lines.block("A");
+  for (int i = 0; i <= 2000; ++i) lines.line("1", {i, 0}, {i, 1});
+  EXPECT_EQ(refusal(lines.str()),
+            "skirt.dxf: piece 'A': layer 1 has 2001 lines: allowed are up to 2000");
   EXPECT_EQ(refusal(square().line("7", {5, 5}, {5, 5}).str()),
             "skirt.dxf: piece 'A': the grain line (layer 7) has no length");
   EXPECT_EQ(refusal(DxfText().str()), "skirt.dxf: has 0 panels: allowed are 1 to 500");

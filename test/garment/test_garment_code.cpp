@@ -98,6 +98,12 @@ TEST(GarmentCode, PanelsLieInTheWorldAsTheyLieInTheFile) {
   EXPECT_NEAR((pose.linear() * Vector3d::UnitY() - Vector3d(0.0, 1.0, 0.0)).norm(), 0.0, 1e-15);
 }
 
+TEST(GarmentCode, PanelsThatTheFileDoesNotPlaceLieInTheOrigin) {
+  const Pattern pattern = import(R"("translation": [0, 100, 10], "rotation": [0, 0, 0],)", "");
+  const auto& pose = std::get<Eigen::Isometry3d>(pattern.panels[0].placement);
+  EXPECT_EQ(pose.translation(), Vector3d::Zero());
+}
+
 TEST(GarmentCode, LengthsAreInTheFilesUnit) {
   const Pattern pattern = import("\"units_in_meter\": 100", "\"units_in_meter\": 1000");
   EXPECT_NEAR(areaOf(pattern.panels[0]), 0.02 * 0.02, 1e-15);
@@ -205,8 +211,7 @@ TEST(GarmentCode, RefusesWhatItCannotRead) {
        "two.json: pattern.panels.front.edges[0].curvature.params: the radius is 0.09 m: allowed "
        "are "
        "0.1, half the distance of its ends, to 1000"},
-      {"\"translation\": [0, 100, 10], ", "",
-       "two.json: pattern.panels.front: 'translation' is missing"},
+      {"\"edges\": [{", "\"sides\": [{", "two.json: pattern.panels.front: 'edges' is missing"},
       {"\"panel\": \"back\"", "\"panel\": \"sleeve\"",
        "two.json: pattern.stitches[0][1].panel: is \"sleeve\", must be the name of a panel"},
       {"\"edge\": 3}", "\"edge\": 4}",

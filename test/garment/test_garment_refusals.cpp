@@ -172,6 +172,13 @@ TEST(GarmentRefusals, PatternsThatDidNotComeFromAFile) {
   EXPECT_EQ(refusal(broken),
             "made: panel 'front': the direction of the grain is (nan, nan): must be of length 1");
   broken = pattern;
+  broken.panels[0].marks.assign(2001, {Eigen::Vector2d::Zero()});
+  EXPECT_EQ(refusal(broken), "made: panel 'front': has 2001 marks: allowed are up to 2000");
+  broken.panels[0].marks = {{Eigen::Vector2d(0.0, 21.0)}};
+  EXPECT_EQ(refusal(broken),
+            "made: panel 'front': a mark: has the point (0, 21): allowed are up to 20 m in each "
+            "direction");
+  broken = pattern;
   broken.seams[0].sides[0].panel = 2;
   EXPECT_EQ(refusal(broken), "made: seam 0: has panel 2: allowed are 0 to 1");
   broken = pattern;
