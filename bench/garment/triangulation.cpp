@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "haptex/garment/panel_mesh.h"
-#include "haptex/garment/pattern_file.h"
-#include "haptex/garment/triangle_quality.h"
+#include "haptex/garment/pattern/pattern_file.h"
+#include "haptex/garment/triangulation/panel_mesh.h"
+#include "haptex/garment/triangulation/triangle_quality.h"
 #include "tab_lines.h"
 
 namespace {

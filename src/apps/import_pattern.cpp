@@ -1,6 +1,6 @@
 // The program import_pattern: from a pattern in JSON or DXF to a garment file, see
 // docs/garments.md. Needs no ROS master.
-#include "haptex/garment/import_pattern.h"
+#include "haptex/garment/importers/import_pattern.h"
 
 #include <iostream>
 #include <string>

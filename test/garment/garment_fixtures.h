@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/garment/pattern_file.h"
+#include "haptex/garment/pattern/pattern_file.h"
 
 namespace haptex::garment {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "haptex/garment/curve.h"
+#include "haptex/garment/pattern/curve.h"
 
 namespace haptex::garment::test_curve {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "dxf_text.h"
-#include "haptex/garment/dxf_pattern.h"
-#include "haptex/garment/dxf_reader.h"
+#include "haptex/garment/importers/dxf_pattern.h"
+#include "haptex/garment/importers/dxf_reader.h"
 
 namespace haptex::garment::test_dxf_pattern {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "expected_patterns.h"
 #include "garment_fixtures.h"
-#include "haptex/garment/garment_code.h"
+#include "haptex/garment/importers/garment_code.h"
 
 namespace haptex::garment::test_garment_code {
 namespace {

@@ -10,9 +10,9 @@
 #include "dxf_text.h"
 #include "garment_fixtures.h"
 #include "haptex/base/repeatable_random.h"
-#include "haptex/garment/dxf_pattern.h"
-#include "haptex/garment/garment_code.h"
-#include "haptex/garment/panel_mesh.h"
+#include "haptex/garment/importers/dxf_pattern.h"
+#include "haptex/garment/importers/garment_code.h"
+#include "haptex/garment/triangulation/panel_mesh.h"
 
 namespace haptex::garment::test_malformed_patterns {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "garment_fixtures.h"
 #include "haptex/base/repeatable_random.h"
-#include "haptex/garment/panel_mesh.h"
-#include "haptex/garment/refinement.h"
-#include "haptex/garment/triangle_quality.h"
+#include "haptex/garment/triangulation/panel_mesh.h"
+#include "haptex/garment/triangulation/refinement.h"
+#include "haptex/garment/triangulation/triangle_quality.h"
 
 namespace haptex::garment::test_triangulation {
 namespace {

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "haptex/garment/curve.h"
+#include "haptex/garment/pattern/curve.h"
 
 namespace haptex::garment {
 

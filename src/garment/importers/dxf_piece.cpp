@@ -1,4 +1,4 @@
-#include "haptex/garment/dxf_piece.h"
+#include "haptex/garment/importers/dxf_piece.h"
 
 #include <algorithm>
 #include <cctype>

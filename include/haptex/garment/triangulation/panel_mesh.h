@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "haptex/garment/pattern.h"
+#include "haptex/garment/pattern/pattern.h"
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::garment {

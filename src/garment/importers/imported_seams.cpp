@@ -1,4 +1,4 @@
-#include "haptex/garment/imported_seams.h"
+#include "haptex/garment/importers/imported_seams.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "haptex/garment/triangle_quality.h"
+#include "haptex/garment/triangulation/triangle_quality.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "haptex/garment/plane_predicates.h"
+#include "haptex/garment/pattern/plane_predicates.h"
 
 namespace haptex::garment {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptex/garment/import_pattern.h"
+#include "haptex/garment/importers/import_pattern.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,9 +8,9 @@
 #include <ostream>
 
 #include "haptex/base/require.h"
-#include "haptex/garment/dxf_pattern.h"
-#include "haptex/garment/garment_code.h"
-#include "haptex/garment/pattern_file.h"
+#include "haptex/garment/importers/dxf_pattern.h"
+#include "haptex/garment/importers/garment_code.h"
+#include "haptex/garment/pattern/pattern_file.h"
 
 namespace haptex::garment {
 namespace {

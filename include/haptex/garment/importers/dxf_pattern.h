@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "haptex/garment/pattern.h"
+#include "haptex/garment/pattern/pattern.h"
 
 namespace haptex::garment {
 

@@ -1,7 +1,7 @@
 // What importers find out about seams that files do not say.
 #pragma once
 
-#include "haptex/garment/pattern.h"
+#include "haptex/garment/pattern/pattern.h"
 
 namespace haptex::garment {
 

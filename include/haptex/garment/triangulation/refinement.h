@@ -1,7 +1,7 @@
 // Refinement of triangulations to nearly equal edges and angles that are not small.
 #pragma once
 
-#include "haptex/garment/delaunay.h"
+#include "haptex/garment/triangulation/delaunay.h"
 
 namespace haptex::garment {
 

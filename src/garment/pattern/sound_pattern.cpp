@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "haptex/base/require.h"
-#include "haptex/garment/outline_crossing.h"
-#include "haptex/garment/pattern.h"
+#include "haptex/garment/pattern/outline_crossing.h"
+#include "haptex/garment/pattern/pattern.h"
 
 namespace haptex::garment {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptex/garment/panel_mesh.h"
+#include "haptex/garment/triangulation/panel_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "haptex/base/require.h"
-#include "haptex/garment/delaunay.h"
-#include "haptex/garment/outline_crossing.h"
-#include "haptex/garment/refinement.h"
+#include "haptex/garment/pattern/outline_crossing.h"
+#include "haptex/garment/triangulation/delaunay.h"
+#include "haptex/garment/triangulation/refinement.h"
 
 namespace haptex::garment {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "haptex/garment/pattern.h"
+#include "haptex/garment/pattern/pattern.h"
 
 namespace haptex::garment {
 

@@ -1,9 +1,9 @@
-#include "haptex/garment/outline_crossing.h"
+#include "haptex/garment/pattern/outline_crossing.h"
 
 #include <algorithm>
 #include <numeric>
 
-#include "haptex/garment/plane_predicates.h"
+#include "haptex/garment/pattern/plane_predicates.h"
 
 namespace haptex::garment {
 namespace {

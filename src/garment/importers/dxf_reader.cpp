@@ -1,4 +1,4 @@
-#include "haptex/garment/dxf_reader.h"
+#include "haptex/garment/importers/dxf_reader.h"
 
 #include <charconv>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "haptex/garment/seam_reader.h"
+#include "haptex/garment/pattern/seam_reader.h"
 
 #include <algorithm>
 #include <string>

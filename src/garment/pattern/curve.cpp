@@ -1,4 +1,4 @@
-#include "haptex/garment/curve.h"
+#include "haptex/garment/pattern/curve.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

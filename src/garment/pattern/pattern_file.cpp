@@ -1,11 +1,11 @@
-#include "haptex/garment/pattern_file.h"
+#include "haptex/garment/pattern/pattern_file.h"
 
 #include <filesystem>
 #include <stdexcept>
 
 #include "haptex/base/require.h"
 #include "haptex/base/yaml_reader.h"
-#include "haptex/garment/seam_reader.h"
+#include "haptex/garment/pattern/seam_reader.h"
 
 namespace haptex::garment {
 namespace {

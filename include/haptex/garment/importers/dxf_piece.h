@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "haptex/garment/dxf_reader.h"
-#include "haptex/garment/pattern.h"
+#include "haptex/garment/importers/dxf_reader.h"
+#include "haptex/garment/pattern/pattern.h"
 
 namespace haptex::garment {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "haptex/garment/pattern_file.h"
+#include "haptex/garment/pattern/pattern_file.h"
 
 namespace haptex::garment {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptex/garment/dxf_pattern.h"
+#include "haptex/garment/importers/dxf_pattern.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,9 +7,9 @@
 
 #include "haptex/base/require.h"
 #include "haptex/base/yaml_reader.h"
-#include "haptex/garment/dxf_piece.h"
-#include "haptex/garment/dxf_reader.h"
-#include "haptex/garment/seam_reader.h"
+#include "haptex/garment/importers/dxf_piece.h"
+#include "haptex/garment/importers/dxf_reader.h"
+#include "haptex/garment/pattern/seam_reader.h"
 
 namespace haptex::garment {
 namespace {

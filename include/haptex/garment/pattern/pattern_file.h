@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "haptex/garment/pattern.h"
+#include "haptex/garment/pattern/pattern.h"
 
 namespace haptex::garment {
 

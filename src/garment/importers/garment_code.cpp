@@ -1,4 +1,4 @@
-#include "haptex/garment/garment_code.h"
+#include "haptex/garment/importers/garment_code.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "haptex/base/require.h"
-#include "haptex/garment/imported_seams.h"
+#include "haptex/garment/importers/imported_seams.h"
 
 namespace haptex::garment {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptex/garment/pattern.h"
+#include "haptex/garment/pattern/pattern.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "haptex/garment/refinement.h"
+#include "haptex/garment/triangulation/refinement.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "haptex/garment/plane_predicates.h"
+#include "haptex/garment/pattern/plane_predicates.h"
 
 namespace haptex::garment {
 namespace {

@@ -1,11 +1,11 @@
-#include "haptex/garment/delaunay.h"
+#include "haptex/garment/triangulation/delaunay.h"
 
 #include <algorithm>
 #include <deque>
 #include <utility>
 
 #include "haptex/base/require.h"
-#include "haptex/garment/plane_predicates.h"
+#include "haptex/garment/pattern/plane_predicates.h"
 
 namespace haptex::garment {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "haptex/base/yaml_reader.h"
-#include "haptex/garment/pattern.h"
+#include "haptex/garment/pattern/pattern.h"
 
 namespace haptex::garment {
 

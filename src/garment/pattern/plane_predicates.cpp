@@ -1,4 +1,4 @@
-#include "haptex/garment/plane_predicates.h"
+#include "haptex/garment/pattern/plane_predicates.h"
 
 #include <algorithm>
 #include <array>
