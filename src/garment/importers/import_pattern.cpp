@@ -55,6 +55,20 @@ std::string extensionOf(const std::string& file) {
   return extension;
 }
 
+std::string sidecarOf(const std::string& file) {
+  return fs::path(file).replace_extension(".seams.yaml").string();
+}
+
+// It must not take the place of what it is made of.
+void requireOutput(const Request& request) {
+  if (extensionOf(request.out) != ".yaml" ||
+      fs::path(request.out).lexically_normal() ==
+          fs::path(sidecarOf(request.file)).lexically_normal()) {
+    base::refuse(request.out, ": allowed is the name of a file with .yaml, but not ",
+                 sidecarOf(request.file));
+  }
+}
+
 ImportedPattern import(const Request& request) {
   const std::string extension = extensionOf(request.file);
   if (extension != ".json" && extension != ".dxf") {
@@ -65,7 +79,7 @@ ImportedPattern import(const Request& request) {
   if (extension == ".json") {
     imported.pattern = importGarmentCode(text, request.file, request.fabric);
   } else {
-    const std::string sidecar = fs::path(request.file).replace_extension(".seams.yaml").string();
+    const std::string sidecar = sidecarOf(request.file);
     const bool there = fs::exists(sidecar);
     imported = importDxf(text, request.file, there ? readPatternText(sidecar) : "", sidecar,
                          request.fabric);
@@ -110,6 +124,7 @@ int importPattern(const std::vector<std::string>& arguments, std::ostream& out, 
   Request request;
   try {
     request = parse(arguments);
+    requireOutput(request);
   } catch (const std::exception& error) {
     err << error.what() << '\n' << kUsage;
     return 2;
