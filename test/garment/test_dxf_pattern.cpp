@@ -127,6 +127,18 @@ TEST(DxfPattern, AnOutlineMayBeSeveralLinesThatFollowEachOther) {
             "allowed are 0.0001 m");
 }
 
+TEST(DxfPattern, PanelsShowTheirRightSideWhicheverWayTheyAreDrawn) {
+  const auto drawn = [](const DxfText::Points& points) {
+    return import(DxfText().block("A").polyline("1", points).point("4", {50, 0}).str())
+        .pattern.panels[0];
+  };
+  const Panel forwards = drawn({{0, 0}, {99, 0}, {99, 60}, {0, 60}});
+  const Panel backwards = drawn({{0, 0}, {0, 60}, {99, 60}, {99, 0}});
+  EXPECT_FALSE(isTurnedOver(backwards));
+  EXPECT_EQ(backwards.outlines[0].size(), 5u);
+  EXPECT_EQ(areaOf(backwards), areaOf(forwards));
+}
+
 TEST(DxfPattern, OnlyTheSampleSizeIsTaken) {
   DxfText text;
   for (const char* size : {"S", "M"}) {

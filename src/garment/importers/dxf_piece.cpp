@@ -54,6 +54,7 @@ class PieceReader {
     }
     for (Polygon& polygon : polygons) divide(polygon);
     unfold(polygons, panel.marks);
+    showRightSide(polygons.front());
     for (const Polygon& polygon : polygons) panel.outlines.push_back(outlineOf(polygon));
     return panel;
   }
@@ -295,6 +296,17 @@ class PieceReader {
     }
     polygon = std::move(whole);
     return true;
+  }
+
+  // In these files it means nothing which way round an outline is drawn.
+  static void showRightSide(Polygon& polygon) {
+    double area = 0.0;
+    for (std::size_t i = 0; i < polygon.points.size(); ++i) {
+      area += cross(polygon.points[i], polygon.points[polygon.next(i)]);
+    }
+    if (area >= 0.0) return;
+    std::reverse(polygon.points.begin(), polygon.points.end());
+    std::reverse(polygon.divides.begin(), polygon.divides.end());
   }
 
   // From one corner that divides it to the next; from the first point if there is none.
