@@ -112,6 +112,18 @@ TEST(Triangulation, OutlinesAreFollowedToTheTolerance) {
   }
 }
 
+TEST(Triangulation, CornersWithinAnEdgeAreKept) {
+  const Curve bent = Curve::line({{0.0, 0.0}, {0.0, -0.101}, {0.2, -0.101}, {0.2, 0.0}});
+  const Panel panel = panelOf({{{bent}, {Curve::line({{0.2, 0.0}, {0.0, 0.0}})}}});
+  const PanelMesh result = triangulate(panel, 0.02);
+  expectSound(result, kWell);
+  EXPECT_NEAR(qualityOf(result.mesh).area, 0.0202, 1e-15);
+  // As few as the straight parts need: 6, 10 and 6.
+  EXPECT_EQ(result.edges[0][0].particles.size(), 23u);
+  EXPECT_NEAR(result.edges[0][0].lengths[6], 0.101, 1e-15);
+  EXPECT_EQ(result.edges[0][0].lengths.back(), bent.length());
+}
+
 TEST(Triangulation, EdgesKnowTheirParticlesAndLengths) {
   const Pattern pattern = parsePattern(kSmallGarment, "small.yaml");
   for (const Panel& panel : pattern.panels) {

@@ -16,7 +16,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr int kFiner = 5;  // times that the tolerance is divided by four where outlines would cross
-constexpr int kMostDivisions = 100000;  // of an edge
+constexpr double kInnerCorner = M_PI / 9.0;  // of lines, from which on they are divided there
+constexpr int kMostDivisions = 100000;       // of an edge
 
 double distanceToLine(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
   const Vector2d ab = b - a;
@@ -48,8 +49,24 @@ bool within(const Curve& curve, const std::vector<double>& parameters, double to
   return true;
 }
 
-// As few parts as keep to both; lines with corners inside are looked at like curves.
-std::vector<double> divide(const Curve& curve, double edge_length, double tolerance) {
+// As few parts as keep to both: the lengths at which they meet, and the points there.
+struct Divisions {
+  std::vector<double> lengths;
+  std::vector<Vector2d> points;
+};
+
+// The end of the run before is the start of this one. Returns where it ends.
+double append(Divisions& all, const Divisions& run, double passed) {
+  if (!all.points.empty()) {
+    all.points.pop_back();
+    all.lengths.pop_back();
+  }
+  all.points.insert(all.points.end(), run.points.begin(), run.points.end());
+  for (const double length : run.lengths) all.lengths.push_back(passed + length);
+  return all.lengths.back();
+}
+
+Divisions divideEvenly(const Curve& curve, double edge_length, double tolerance) {
   const double fewest = std::ceil(curve.length() / edge_length * (1.0 - 1e-9));
   int count = static_cast<int>(std::clamp(fewest, 1.0, static_cast<double>(kMostDivisions)));
   std::vector<double> parameters = divided(curve, count);
@@ -58,7 +75,36 @@ std::vector<double> divide(const Curve& curve, double edge_length, double tolera
     count += 1 + count / 8;
     parameters = divided(curve, count);
   }
-  return parameters;
+  Divisions divisions;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    divisions.lengths.push_back(curve.length() * static_cast<double>(i) / count);
+    divisions.points.push_back(curve.at(parameters[i]));
+  }
+  return divisions;
+}
+
+// Lines are divided in their corners, too: even parts that come near enough to these would be
+// small.
+Divisions divide(const Curve& curve, double edge_length, double tolerance) {
+  if (curve.kind() != Curve::Kind::kLine) return divideEvenly(curve, edge_length, tolerance);
+  Divisions all;
+  std::vector<Vector2d> run;
+  double passed = 0.0;
+  const std::vector<Vector2d>& points = curve.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!run.empty() && points[i] == run.back()) continue;
+    if (run.size() >= 2) {
+      const Vector2d in = run.back() - run[run.size() - 2], out = points[i] - run.back();
+      if (in.dot(out) < std::cos(kInnerCorner) * in.norm() * out.norm()) {
+        passed = append(all, divideEvenly(Curve::line(run), edge_length, tolerance), passed);
+        run = {run.back()};
+      }
+    }
+    run.push_back(points[i]);
+  }
+  append(all, divideEvenly(Curve::line(run), edge_length, tolerance), passed);
+  all.lengths.back() = curve.length();
+  return all;
 }
 
 /// Between the plane of a panel and its rest coordinates, as seen from the right side.
@@ -100,13 +146,11 @@ DividedOutlines divide(const Panel& panel, double edge_length, double tolerance)
     for (std::size_t e = 0; e < outline.size(); ++e) {
       const Curve& curve = outline[e].curve;
       EdgeParticles& edge = edges.emplace_back();
-      const std::vector<double> parameters = divide(curve, edge_length, tolerance);
-      const double count = static_cast<double>(parameters.size() - 1);
-      for (std::size_t i = 0; i < parameters.size(); ++i) {
+      Divisions divisions = divide(curve, edge_length, tolerance);
+      edge.lengths = std::move(divisions.lengths);
+      for (std::size_t i = 0; i < divisions.points.size(); ++i) {
         edge.particles.push_back(begin + static_cast<int>(loop.size()));
-        edge.lengths.push_back(curve.length() * static_cast<double>(i) / count);
-        if (i + 1 == parameters.size()) break;
-        loop.push_back(threads.restOf(curve.at(parameters[i])));
+        if (i + 1 < divisions.points.size()) loop.push_back(threads.restOf(divisions.points[i]));
       }
     }
     edges.back().particles.back() = begin;

@@ -44,7 +44,7 @@ class Curve {
   /// a piece of, counter-clockwise. Exact to rounding.
   double sweptArea() const;
   /// Points along the curve, its start and end among them, between which straight lines are no
-  /// farther than so much (m, > 0) from it.
+  /// farther than so much (m, > 0) from it; no more than 10 001.
   std::vector<Eigen::Vector2d> flattened(double tolerance) const;
   /// Directions, of length 1, in which it leaves its start and arrives at its end.
   Eigen::Vector2d startDirection() const;

@@ -34,10 +34,10 @@ struct PanelMesh {
   std::vector<std::vector<EdgeParticles>> edges;  ///< per outline and edge
 };
 
-/// The outline is divided evenly into edges of at most that length
-/// that are no farther than the tolerance from its curves, or where they are near each other a part
-/// of it; refine() does the rest. Where it halves sides of the outline the new particles lie on
-/// them.
+/// The outline is divided evenly, lines with corners of more than 20 degrees there, into edges of
+/// at most that length that are no farther than the tolerance from its curves, or where they are
+/// near each other a part of it; refine() does the rest. Where it halves sides of the outline the
+/// new particles lie on them.
 /// @param panel sound @param edge_length m, from kShortestMeshEdge
 /// @param tolerance m, > 0
 /// @throws std::invalid_argument naming panel, value and what is allowed, also where the outline so
