@@ -74,6 +74,8 @@ struct CutPanel {
   std::vector<int> particles;  ///< of the mesh, for every one of the sheet, ascending
 };
 /// @param mesh sound @param panel of it
+/// @throws std::invalid_argument if a particle has two rest coordinates in the panel, as where a
+///   dart was merged
 CutPanel cutPanel(const ClothMesh& mesh, int panel);
 
 /// How makeRectangle() splits its cells into two triangles.
