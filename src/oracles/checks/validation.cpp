@@ -15,6 +15,7 @@ const std::vector<Validation>& validations() {
                                               {"table", validateTable},
                                               {"regions", validateRegions},
                                               {"body", validateBody},
+                                              {"garment", validateGarment},
                                               {"exoskeleton", validateExoskeleton},
                                               {"tactile", validateTactile},
                                               {"tactile_driver", validateTactileDriver}};
