@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "haptex/mesh/seam.h"
+#include "haptex/mesh/mesh.h"
 
 namespace haptex::mesh {
 

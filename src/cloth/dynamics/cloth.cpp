@@ -29,17 +29,6 @@ std::vector<material::Fabric> alone(material::Fabric fabric) {
   return fabrics;
 }
 
-[[noreturn]] void refuseToAttachTied(const mesh::ClothMesh& mesh, int particle) {
-  for (const mesh::Tie& tie : mesh.ties) {
-    if (tie.particle != particle) continue;
-    throw std::invalid_argument("particle " + std::to_string(particle) +
-                                " is sewn to the edge from particle " +
-                                std::to_string(tie.ends[0]) + " to " + std::to_string(tie.ends[1]) +
-                                " and goes with it: allowed is to attach those");
-  }
-  throw std::invalid_argument("particle " + std::to_string(particle) + " is sewn to others");
-}
-
 /// @param fabrics that the triangles name, at least
 std::vector<double> lumpedMasses(const mesh::ClothMesh& mesh,
                                  const std::vector<material::Fabric>& fabrics) {
@@ -281,9 +270,19 @@ void Cloth::closeSeams(const ClothState& state, double speed) {
   ties_->closeFrom(state.positions, state.time, speed);
 }
 
-void Cloth::attach(int particle, const AttachmentPath& path) {
+void Cloth::requireAttachable(int particle) const {
   requireParticle(particle);
-  if (ties_->isTied(particle)) refuseToAttachTied(mesh_, particle);
+  for (const mesh::Tie& tie : mesh_.ties) {
+    if (tie.particle != particle) continue;
+    throw std::invalid_argument("particle " + std::to_string(particle) +
+                                " is sewn to the edge from particle " +
+                                std::to_string(tie.ends[0]) + " to " + std::to_string(tie.ends[1]) +
+                                " and goes with it: allowed is to attach those");
+  }
+}
+
+void Cloth::attach(int particle, const AttachmentPath& path) {
+  requireAttachable(particle);
   const bool finite = path.start.allFinite() && path.displacement.allFinite() &&
                       std::isfinite(path.start_time) && std::isfinite(path.duration);
   if (!finite || path.duration < 0.0) {

@@ -122,7 +122,6 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
   if (untangling_) untangling_->begin(cloth, state, time_step);
   advance(cloth, state, time_step, report);
   settle(end_.velocities);
-  followTies(cloth);
   if (balance_) keepEnergy(cloth, state, time_step, report);
   followTies(cloth);
   report.accepted = std::isfinite(report.linear_residual) && std::isfinite(end_.time) &&
@@ -195,11 +194,7 @@ void Integrator::slowDown(const Cloth& cloth, double energy, StepReport& report)
   const double factor = std::sqrt(1.0 - report.energy_taken / kinetic);
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     if (cloth.attachments()[i]) continue;
-    if (bodies_ > 0) {
-      end_.velocities[i] = mean + factor * (end_.velocities[i] - mean);
-    } else {
-      end_.velocities[i] *= factor;
-    }
+    end_.velocities[i] = mean + factor * (end_.velocities[i] - mean);  // without bodies it is 0
   }
   settle(end_.velocities);
 }

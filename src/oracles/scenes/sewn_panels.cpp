@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptex/base/quantity.h"
 #include "haptex/base/repeatable_random.h"
 
 namespace haptex::oracles {
@@ -110,6 +111,24 @@ SewnPanels sewnPanels(SeamShape shape, const std::vector<double>& left,
   }
   made.mesh.initial_positions = mesh::flatPositions(made.mesh);
   return made;
+}
+
+double seamGap(const mesh::Seam& seam, const std::vector<Eigen::Vector3d>& positions) {
+  const bool of_first = seam.first.size() > seam.second.size();
+  const std::vector<int>& finer = of_first ? seam.first : seam.second;
+  const std::vector<int>& coarser = of_first ? seam.second : seam.first;
+  const std::vector<double>& places = of_first ? seam.first_places : seam.second_places;
+  const std::vector<double>& ends = of_first ? seam.second_places : seam.first_places;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < finer.size(); ++i) {
+    std::size_t piece = 0;
+    while (piece + 2 < ends.size() && ends[piece + 1] < places[i]) ++piece;
+    const double share = (places[i] - ends[piece]) / (ends[piece + 1] - ends[piece]);
+    const Eigen::Vector3d from = positions[coarser[piece]], to = positions[coarser[piece + 1]];
+    largest = base::largerOrNaN(largest,
+                                (positions[finer[i]] - (1.0 - share) * from - share * to).norm());
+  }
+  return largest;
 }
 
 std::vector<double> evenPlaces(int count) {

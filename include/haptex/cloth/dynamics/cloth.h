@@ -152,6 +152,8 @@ class Cloth {
   /// @throws std::invalid_argument if the particle does not exist or is tied, a number is not
   ///   finite, or the duration is negative
   void attach(int particle, const AttachmentPath& path);
+  /// @throws std::invalid_argument if attach() would refuse the particle
+  void requireAttachable(int particle) const;
   /// @throws std::invalid_argument if the particle does not exist or is not attached
   void release(int particle);
   void releaseAll();

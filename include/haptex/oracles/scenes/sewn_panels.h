@@ -33,6 +33,11 @@ struct SewnPanels {
 SewnPanels sewnPanels(SeamShape shape, const std::vector<double>& left,
                       const std::vector<double>& right, unsigned seed);
 
+/// The largest distance (m) of a particle of the edge that has more of them, or the second, from
+/// its place on the other edge.
+/// @param seam with places
+double seamGap(const mesh::Seam& seam, const std::vector<Eigen::Vector3d>& positions);
+
 /// Places at equal distances. @param count at least 2
 std::vector<double> evenPlaces(int count);
 /// The same with as many more in the middles between the first ones as asked for, less than count.

@@ -9,9 +9,9 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/kes/equilibrium.h"
 #include "haptex/material/linear_fabric.h"
-#include "haptex/mesh/seam.h"
 #include "haptex/oracles/checks/garment_oracles.h"
 #include "haptex/oracles/checks/random_checks.h"
+#include "haptex/oracles/scenes/sewn_panels.h"
 
 namespace haptex::oracles {
 namespace {
@@ -70,6 +70,8 @@ Cone coneOf(const CutDisc& disc) {
     before = particles;
   }
   cone.seam.second = before;
+  cone.seam.first_places = evenPlaces(disc.rings + 1);
+  cone.seam.second_places = evenPlaces(disc.other_rings + 1);
   // Half of the sector is closed already, as far as it goes without stretching.
   const double turned = (2.0 * M_PI - 0.5 * disc.sector) / (2.0 * M_PI - disc.sector);
   const double slope = std::sqrt(1.0 - 1.0 / (turned * turned));
@@ -83,7 +85,8 @@ Cone coneOf(const CutDisc& disc) {
   return cone;
 }
 
-/// rad, between the axis and the lines from the tip to the rim.
+/// rad, between the axis and the lines from the tip to the rim: the mean, because triangles make
+/// the cone a little oval.
 double halfAngle(const Cone& cone, const std::vector<Vector3d>& positions) {
   std::vector<Vector3d> directions;
   Vector3d axis = Vector3d::Zero();
@@ -103,7 +106,7 @@ double halfAngle(const Cone& cone, const std::vector<Vector3d>& positions) {
 void validateCone(const CutDisc& disc, const std::string& name, const Sink& sink) {
   const Cone cone = coneOf(disc);
   material::Fabric fabric = material::linearFabric(1000.0, 2.0);
-  fabric.bending = {1e-6, 1e-6};
+  fabric.bending = {1e-5, 1e-5};
   cloth::ModelledEffects effects;
   effects.gravity.setZero();
   effects.viscosity = effects.bending = true;
@@ -120,6 +123,8 @@ void validateCone(const CutDisc& disc, const std::string& name, const Sink& sink
   const double exact = std::asin(1.0 - disc.sector / (2.0 * M_PI));
   const double measured = halfAngle(cone, state.positions);
   sink(base::relativeTo(exact, name + "/half_angle_rad", exact, measured, kTolerance));
+  const double gap = seamGap(cone.seam, state.positions);
+  sink({name + "/gap_m", 0.0, gap, gap, 1e-9});
 }
 
 }  // namespace
