@@ -21,8 +21,8 @@ using namespace haptex;
 
 constexpr double kSize = 0.5;     // m
 constexpr double kStep = 0.0125;  // s
-constexpr int kSteps = 40;
-constexpr int kRounds = 9;
+constexpr int kSteps = 30;
+constexpr int kRounds = 5;
 
 mesh::ClothMesh inOnePiece(int cells) {
   mesh::ClothMesh sheet =
