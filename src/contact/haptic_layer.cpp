@@ -30,6 +30,11 @@ mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
     throw std::invalid_argument("fingertips touch one panel, and the mesh has " +
                                 std::to_string(mesh.panelCount()));
   }
+  if (!mesh.ties.empty()) {
+    throw std::invalid_argument("fingertips touch one panel without seams, and " +
+                                std::to_string(mesh.ties.size()) +
+                                " particles of the mesh are tied");
+  }
   return mesh;
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "haptex/cloth/forces/bending/bending_friction.h"
+#include "haptex/cloth/forces/bending/seam_bending.h"
 #include "haptex/cloth/forces/corotational.h"
 #include "haptex/cloth/forces/membrane.h"
 #include "haptex/cloth/forces/membrane_friction.h"
@@ -174,6 +175,8 @@ void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fa
   for (int p = 0; p < mesh.panelCount(); ++p) {
     addBending(mesh::cutPanel(mesh, p), fabrics, effects, forces);
   }
+  if (mesh.seam_hinges.empty()) return;
+  forces.add(std::make_unique<SeamBending>(mesh, rigiditiesOf(fabrics)));
 }
 
 }  // namespace haptex::cloth

@@ -31,6 +31,11 @@ void requireApart(const mesh::ClothMesh& mesh, const std::string& name,
                               "' at the start: it has to be outside");
 }
 
+/// Neither attached nor tied to others.
+bool goesByItself(const cloth::Cloth& cloth, int particle) {
+  return !cloth.attachments()[particle] && !cloth.ties().isTied(particle);
+}
+
 }  // namespace
 
 ObstacleCollision::ObstacleCollision(cloth::Cloth& cloth, std::vector<mesh::Obstacle> obstacles,
@@ -185,7 +190,9 @@ void ObstacleCollision::findContacts(const cloth::Cloth& cloth, const cloth::Clo
                                      double h) {
   contacts_.clear();
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (!cloth.attachments()[i]) findContact(state, static_cast<int>(i), h);
+    const int particle = static_cast<int>(i);
+    if (!goesByItself(cloth, particle)) continue;
+    findContact(state, particle, h);
   }
 }
 
@@ -258,7 +265,7 @@ void ObstacleCollision::moveBodies(const Vector3d& gravity,
 void ObstacleCollision::resolve(const cloth::Cloth& cloth, cloth::ClothState& state, double h) {
   constexpr int kRounds = 3;  // what leaves one obstacle may enter another
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (cloth.attachments()[i]) continue;
+    if (!goesByItself(cloth, static_cast<int>(i))) continue;
     bool moved = true;
     for (int round = 0; moved && round < kRounds; ++round) {
       moved = false;
@@ -269,6 +276,8 @@ void ObstacleCollision::resolve(const cloth::Cloth& cloth, cloth::ClothState& st
       }
     }
   }
+  cloth.ties().place(state.time, state.positions);
+  cloth.ties().carry(state.time, state.velocities);
 }
 
 /// @param from m, where the particle has been
@@ -326,7 +335,7 @@ void ObstacleCollision::pushOut(const cloth::Cloth& cloth, cloth::ClothState& st
   std::copy(state.velocities.begin(), state.velocities.end(), before_.begin());
   bodies_before_ = bodies_;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (cloth.attachments()[i]) continue;
+    if (!goesByItself(cloth, static_cast<int>(i))) continue;
     for (const PlacedObstacle& obstacle : placed_) {
       const Vector3d place = obstacle.begin.inverse(Eigen::Isometry) * state.positions[i];
       if (place.norm() > obstacle.reach) continue;
@@ -341,6 +350,7 @@ void ObstacleCollision::pushOut(const cloth::Cloth& cloth, cloth::ClothState& st
       bodies_[obstacle.body].push(-impulse * normal, obstacle.begin.linear() * place);
     }
   }
+  cloth.ties().carry(state.time, state.velocities);
 }
 
 /// What pushOut() did, as the step was not taken.
