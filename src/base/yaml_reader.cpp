@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::base {
 namespace {
 
@@ -21,20 +23,37 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+/// The kind of a syntax error. To some kinds yaml-cpp appends what stands in the file.
+std::string kindOf(const YAML::Exception& error) {
+  for (const char* const kind : {YAML::ErrorMsg::UNKNOWN_ANCHOR, YAML::ErrorMsg::INVALID_ESCAPE,
+                                 YAML::ErrorMsg::INVALID_UNICODE}) {
+    std::string begin = kind;
+    if (error.msg.compare(0, begin.size(), begin) != 0) continue;
+    begin.erase(begin.find_last_not_of(": ") + 1);
+    return begin;
+  }
+  return error.msg;
+}
+
+std::string below(const std::string& key_path, const std::string& key) {
+  return key_path.empty() ? shortened(key) : key_path + "." + shortened(key);
+}
+
 }  // namespace
 
 std::string readTextFile(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
-    throw std::runtime_error(path + ": there is no such file");
+    throw std::runtime_error(shortened(path) + ": there is no such file");
   }
   if (std::filesystem::is_directory(path, error)) {
-    throw std::runtime_error(path + ": is a directory, not a file");
+    throw std::runtime_error(shortened(path) + ": is a directory, not a file");
   }
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (!stream.is_open() || stream.bad()) throw std::runtime_error(path + ": cannot be read");
+  if (!stream.is_open() || stream.bad())
+    throw std::runtime_error(shortened(path) + ": cannot be read");
   return text.str();
 }
 
@@ -49,11 +68,11 @@ YamlValue YamlValue::parse(const std::string& text, const std::string& name) {
   try {
     documents = YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
-    throw std::runtime_error(name + ": line " + std::to_string(error.mark.line + 1) +
-                             ": is not YAML: " + error.msg);
+    throw std::runtime_error(shortened(name) + ": line " + std::to_string(error.mark.line + 1) +
+                             ": is not YAML: " + kindOf(error));
   }
   if (documents.size() != 1) {
-    throw std::runtime_error(name + ": has " + std::to_string(documents.size()) +
+    throw std::runtime_error(shortened(name) + ": has " + std::to_string(documents.size()) +
                              " YAML documents, must have one");
   }
   return YamlValue(std::make_shared<const std::string>(name), "", documents.front());
@@ -64,10 +83,11 @@ void YamlValue::requireKeys(const std::vector<std::string>& required,
   std::vector<std::string> allowed = required;
   allowed.insert(allowed.end(), optional.begin(), optional.end());
   if (!node_.IsMap()) refuse("must be a map with the keys " + join(allowed));
+  if (key_path_.empty()) requireKind(allowed);
   std::vector<std::string> seen;
   for (const auto& entry : node_) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "(not a text)";
-    const YamlValue value(file_, key_path_.empty() ? key : key_path_ + "." + key, entry.second);
+    const YamlValue value(file_, below(key_path_, key), entry.second);
     if (!contains(allowed, key)) value.refuseBecause("unknown key, allowed here: " + join(allowed));
     if (contains(seen, key)) value.refuseBecause("the key is given twice");
     seen.push_back(key);
@@ -79,10 +99,18 @@ void YamlValue::requireKeys(const std::vector<std::string>& required,
   }
 }
 
+void YamlValue::requireKind(const std::vector<std::string>& keys) const {
+  const bool has_known =
+      node_.size() == 0 || std::any_of(node_.begin(), node_.end(), [&](const auto& entry) {
+        return entry.first.IsScalar() && contains(keys, entry.first.Scalar());
+      });
+  if (!has_known) refuseBecause("has none of the keys " + join(keys));
+}
+
 bool YamlValue::has(const std::string& key) const { return node_[key].IsDefined(); }
 
 YamlValue YamlValue::at(const std::string& key) const {
-  return YamlValue(file_, key_path_.empty() ? key : key_path_ + "." + key, node_[key]);
+  return YamlValue(file_, below(key_path_, key), node_[key]);
 }
 
 std::vector<YamlValue> YamlValue::items() const {
@@ -134,7 +162,10 @@ std::string YamlValue::oneOf(const std::vector<const char*>& words) const {
 }
 
 std::string YamlValue::describeValue() const {
-  if (node_.IsScalar()) return "'" + node_.Scalar() + "'";
+  if (node_.IsScalar() && key_path_.empty()) {
+    return "a text of " + std::to_string(node_.Scalar().size()) + " characters";
+  }
+  if (node_.IsScalar()) return quoted(node_.Scalar());
   if (node_.IsMap()) return "a map";
   if (node_.IsSequence()) return "a list of " + std::to_string(node_.size());
   return "nothing";
@@ -145,7 +176,8 @@ void YamlValue::refuse(const std::string& reason) const {
 }
 
 void YamlValue::refuseBecause(const std::string& reason) const {
-  throw std::invalid_argument(*file_ + ": " + (key_path_.empty() ? "" : key_path_ + ": ") + reason);
+  throw std::invalid_argument(shortened(*file_) + ": " +
+                              (key_path_.empty() ? "" : key_path_ + ": ") + reason);
 }
 
 }  // namespace haptex::base

@@ -81,7 +81,8 @@ class ObjReader {
     }
     for (int i = 0; i < kSize; ++i) {
       if (!parseAll(words[i], numbers[i]) || !std::isfinite(numbers[i])) {
-        refuse("'" + words[i] + "' must be a finite number");
+        refuse("number " + std::to_string(i + 1) + " of '" + statement +
+               "' must be a finite number");
       }
     }
     return numbers;
@@ -116,7 +117,7 @@ class ObjReader {
     const std::size_t second =
         first == std::string::npos ? std::string::npos : corner.find('/', first + 1);
     if (first == std::string::npos || first + 1 == corner.size() || second == first + 1) {
-      refuse("corner '" + corner + "' has no texture coordinate, which is its rest coordinate");
+      refuse("a corner has no texture coordinate, which is its rest coordinate");
     }
     const int texture = readIndex(corner.substr(first + 1, second - first - 1),
                                   "texture coordinate", textures_.size());
@@ -133,8 +134,9 @@ class ObjReader {
   int readIndex(const std::string& word, const std::string& kind, std::size_t count) const {
     const int size = static_cast<int>(count);
     int index = 0;
-    if (!parseAll(word, index) || index == 0 || index > size || index < -size) {
-      refuse(kind + " '" + word + "' does not exist, " + std::to_string(size) +
+    if (!parseAll(word, index)) refuse(kind + " of a corner must be a whole number");
+    if (index == 0 || index > size || index < -size) {
+      refuse(kind + " " + std::to_string(index) + " does not exist, " + std::to_string(size) +
              " are defined before this line");
     }
     return index > 0 ? index - 1 : size + index;

@@ -5,6 +5,8 @@
 #include <set>
 #include <vector>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::scene {
 namespace {
 
@@ -48,7 +50,7 @@ std::string resolveFile(const YamlValue& value, const std::string& kind,
   if (!fs::is_regular_file(path, error)) {
     value.refuse("must be a name in " + kind_directory.string() + " (" +
                  namesIn(kind_directory, extension) + ") or a path with a '/'; there is no file " +
-                 path.string());
+                 base::shortened(path.string()));
   }
   return path.string();
 }

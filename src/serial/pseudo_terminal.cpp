@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::serial {
 namespace {
 
@@ -39,7 +41,8 @@ void makeLink(const std::string& link, const std::string& path) {
   struct stat status {};
   if (::lstat(link.c_str(), &status) == 0) {
     if (!S_ISLNK(status.st_mode)) {
-      throw std::runtime_error(link + ": exists and is not a symbolic link, so it stays");
+      throw std::runtime_error(base::shortened(link) +
+                               ": exists and is not a symbolic link, so it stays");
     }
     if (::unlink(link.c_str()) != 0) throwSystemError(link, "cannot be replaced");
   }

@@ -1,4 +1,5 @@
-// Strict reading of YAML files: every refusal names file, key, value and what is allowed.
+// Strict reading of YAML files: every refusal names file, key, value and what is allowed. Nothing
+// of a file that is of another kind is told: the path may be anybody's request.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -19,8 +20,8 @@ std::string readTextFile(const std::string& path);
 class YamlValue {
  public:
   /// The top-level value of a file with exactly one YAML document.
-  /// @throws std::runtime_error naming the path, and the line of a syntax error, if the file cannot
-  ///   be read or is not YAML
+  /// @throws std::runtime_error naming the path, and line and kind of a syntax error, if the file
+  ///   cannot be read or is not YAML
   static YamlValue load(const std::string& path);
   /// The same of a text.
   /// @param name of it in messages, instead of a path
@@ -33,7 +34,8 @@ class YamlValue {
   bool isList() const { return node_.IsSequence(); }
 
   /// Refuses anything but a map with all the required keys and no others than the optional ones,
-  /// each once. Call it before at() and has().
+  /// each once. Of a whole file that has none of them no key is named. Call it before at() and
+  /// has().
   void requireKeys(const std::vector<std::string>& required,
                    const std::vector<std::string>& optional = {}) const;
   bool has(const std::string& key) const;
@@ -60,6 +62,8 @@ class YamlValue {
  private:
   YamlValue(std::shared_ptr<const std::string> file, std::string key_path, const YAML::Node& node);
 
+  /// Refuses a map that has keys but none of these.
+  void requireKind(const std::vector<std::string>& keys) const;
   std::string describeValue() const;
 
   std::shared_ptr<const std::string> file_;

@@ -14,7 +14,8 @@ namespace haptex::mesh {
 /// which are the rest coordinates (u weft, v warp) in metres. Every particle needs exactly one
 /// texture coordinate; a position that faces give two of different value (a seam) is an error, as
 /// is a face that is not a triangle. Indices count from 1, or backwards if negative, over what
-/// stands before the face in the file. Other statements are ignored.
+/// stands before the face in the file. Other statements are ignored. Refusals repeat no words of
+/// the file.
 /// @throws std::runtime_error if the file cannot be read
 /// @throws std::invalid_argument naming file, line and what is wrong, or the mesh defects by index
 ClothMesh loadObj(const std::string& path);

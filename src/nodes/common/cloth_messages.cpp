@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
 
@@ -99,8 +100,8 @@ void fillJacobianResponse(const std::vector<cloth::JacobianBlock>& blocks,
 
 void requireFixedFrame(const std_msgs::Header& header) {
   if (header.frame_id != kFixedFrame) {
-    throw std::invalid_argument("header.frame_id = '" + header.frame_id + "': allowed is '" +
-                                kFixedFrame + "'");
+    throw std::invalid_argument("header.frame_id = " + base::quoted(header.frame_id) +
+                                ": allowed is '" + kFixedFrame + "'");
   }
 }
 

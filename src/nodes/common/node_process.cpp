@@ -7,6 +7,7 @@
 #include <csignal>
 #include <exception>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/socket_thread.h"
 #include "haptex/realtime/scheduling.h"
 #include "haptex/realtime/semaphore.h"
@@ -43,7 +44,7 @@ std::string reasonOf(XmlRpc::XmlRpcValue& parameters) {
 /// What the master calls for `rosnode kill` and when another node takes the name. Whatever is wrong
 /// with the request, the node ends: that is the safe answer.
 void handleShutdown(XmlRpc::XmlRpcValue& parameters, XmlRpc::XmlRpcValue& result) {
-  ROS_WARN("Asked to end: %s", reasonOf(parameters).c_str());
+  ROS_WARN("Asked to end: %s", base::shortened(reasonOf(parameters)).c_str());
   askToEnd();
   result = ros::xmlrpc::responseInt(1, "", 0);
 }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/exoskeleton/driver/driver_announcement.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
@@ -164,8 +165,8 @@ void DriverNode::subscriberGone(const ros::SingleSubscriberPublisher& subscriber
       fingers_[finger].filter.commanderDied(ros::Time::now(), realtime::steadyNow());
     }
     ++commander_deaths_;
-    ROS_WARN("%s, which commanded the %s, has gone: its force goes to zero", node.c_str(),
-             name(finger));
+    ROS_WARN("%s, which commanded the %s, has gone: its force goes to zero",
+             base::shortened(node).c_str(), name(finger));
   }
 }
 

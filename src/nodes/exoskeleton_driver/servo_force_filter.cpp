@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "haptex/base/quoted.h"
 #include "haptex/exoskeleton/control/command_check.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/ros_time.h"
@@ -94,8 +95,8 @@ std::string ServoForceFilter::explain(const haptex::ServoForce& message,
   const double age = base::milliseconds(between(message.header.stamp, now));
   switch (last_flaw_) {
     case ServoForceFlaw::kFrame:
-      text << "header.frame_id = '" << message.header.frame_id << "': allowed is '" << kHandFrame
-           << "'";
+      text << "header.frame_id = " << base::quoted(message.header.frame_id) << ": allowed is '"
+           << kHandFrame << "'";
       break;
     case ServoForceFlaw::kNotFinite:
     case ServoForceFlaw::kTooLarge:

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
@@ -14,8 +15,8 @@ using base::Time;
 
 void requireHandFrame(const std_msgs::Header& header) {
   if (header.frame_id == kHandFrame) return;
-  throw std::invalid_argument("header.frame_id = '" + header.frame_id + "': allowed is '" +
-                              kHandFrame + "'");
+  throw std::invalid_argument("header.frame_id = " + base::quoted(header.frame_id) +
+                              ": allowed is '" + kHandFrame + "'");
 }
 
 void requireNow(const std_msgs::Header& header, const ros::Time& now) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
@@ -53,8 +54,8 @@ base::PerFinger<bool> readFingers(const ros::NodeHandle& private_node) {
   base::PerFinger<bool> touches;
   for (const Finger finger : kFingers) touches[finger] = fingers == base::name(finger);
   if (touches[Finger::kIndex] || touches[Finger::kThumb]) return touches;
-  throw std::invalid_argument("parameter " + private_node.resolveName("fingers") + " = '" +
-                              fingers + "': " + allowed);
+  throw std::invalid_argument("parameter " + private_node.resolveName("fingers") + " = " +
+                              base::quoted(fingers) + ": " + allowed);
 }
 
 std::string topic(Finger finger, const char* of_finger) {

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
@@ -43,7 +44,7 @@ Isometry3d parseMounting(const std::string& text) {
   const bool six = (in >> x >> y >> z >> yaw >> pitch >> roll) && !(in >> rest);
   if (!six || !isNear({x, y, z}) || !Vector3d(yaw, pitch, roll).allFinite()) {
     std::ostringstream message;
-    message << "'" << text << "': allowed are six finite numbers, x y z (m, up to "
+    message << base::quoted(text) << ": allowed are six finite numbers, x y z (m, up to "
             << TrackerFilter::kFarthest << ") yaw pitch roll (rad)";
     throw std::invalid_argument(message.str());
   }

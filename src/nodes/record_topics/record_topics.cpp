@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/record_topics/bag_recorder.h"
 
 namespace {
@@ -16,7 +17,7 @@ std::regex expressionOf(const std::string& text) {
   try {
     return std::regex(text);
   } catch (const std::regex_error& error) {
-    throw std::invalid_argument("'" + text + "' is no regular expression: " + error.what());
+    throw std::invalid_argument(base::quoted(text) + " is no regular expression: " + error.what());
   }
 }
 

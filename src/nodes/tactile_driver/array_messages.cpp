@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::nodes {
 namespace {
 
@@ -21,8 +23,8 @@ double displacementIn(const char* field, int contactor, double micrometres) {
 tactile::ArrayAmplitudes amplitudesIn(base::Finger finger, const haptex::Tactile& message) {
   const std::string frame = std::string(base::name(finger)) + "_tactile";
   if (message.header.frame_id != frame) {
-    throw std::invalid_argument("frame_id = '" + message.header.frame_id + "': allowed is " +
-                                frame);
+    throw std::invalid_argument("frame_id = " + base::quoted(message.header.frame_id) +
+                                ": allowed is " + frame);
   }
   tactile::ArrayAmplitudes amplitudes;
   for (int i = 0; i < tactile::kContactors; ++i) {

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/config_files.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
@@ -86,8 +87,8 @@ void TactileDriverNode::subscriberGone(const ros::SingleSubscriberPublisher& sub
     if (!sources_.hasDied(finger, node)) continue;
     driver_.sourceDied(finger);
     ++source_deaths_;
-    ROS_WARN("%s, which drove the contactors of the %s, has gone: they rest", node.c_str(),
-             base::name(finger));
+    ROS_WARN("%s, which drove the contactors of the %s, has gone: they rest",
+             base::shortened(node).c_str(), base::name(finger));
   }
 }
 

@@ -9,6 +9,7 @@ from geometry_msgs.msg import Point, PointStamped, PoseStamped, Quaternion
 from scipy.spatial.transform import Rotation, Slerp
 
 from . import strict_yaml as strict
+from .quoted import quoted
 
 RATE = 100.0  # Hz
 FINGERS = ('index', 'thumb')
@@ -16,7 +17,7 @@ FINGERS = ('index', 'thumb')
 
 def _vector(value, where):
     if not isinstance(value, list) or len(value) != 3:
-        raise ValueError(f'{where}: {value!r} must be a list of 3 numbers')
+        raise ValueError(f'{where}: {quoted(value)} must be a list of 3 numbers')
     return [strict.number(item, f'{where}[{i}]') for i, item in enumerate(value)]
 
 
@@ -25,11 +26,11 @@ class HandPath:
 
     def __init__(self, path):
         """@throws ValueError naming file, key and value"""
-        value = strict.load(path)
+        value = strict.load(path, ['key_frames'])
         strict.require_keys(value, str(path), ['key_frames'], ['repeat'])
         frames = value['key_frames']
         if not isinstance(frames, list) or not frames:
-            raise ValueError(f'{path}: key_frames: {frames!r} must be a list of at least 1')
+            raise ValueError(f'{path}: key_frames: {quoted(frames)} must be a list of at least 1')
         times, places, turns = [], [], []
         for i, frame in enumerate(frames):
             where = f'{path}: key_frames[{i}]'

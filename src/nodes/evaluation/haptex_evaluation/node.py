@@ -16,6 +16,7 @@ from .hand import EmulatedHand
 from .picture import Picture
 from .plan import STANDARD, TRIAL
 from .protocol import VIRTUAL, read_protocol
+from .quoted import quoted
 from .recording import LONGEST_END, TrialRecorder
 from .session import Session
 from .strict_yaml import path_of
@@ -46,7 +47,7 @@ def _parameter(name, kind, default):
     """@throws ValueError naming the parameter, its value and what it must be"""
     value = rospy.get_param('~' + name, default)
     if isinstance(value, bool) or not isinstance(value, kind):
-        raise ValueError(f'{rospy.resolve_name("~" + name)}: {value!r} must be of type {kind.__name__}')
+        raise ValueError(f'{rospy.resolve_name("~" + name)}: {quoted(value)} must be of type {kind.__name__}')
     return value
 
 
@@ -57,7 +58,7 @@ def _make_session(config):
     protocol = read_protocol(path, config)
     directory = _parameter('session', str, '')
     if not os.path.isabs(directory):
-        raise ValueError(f'{rospy.resolve_name("~session")}: {directory!r} must be an absolute path')
+        raise ValueError(f'{rospy.resolve_name("~session")}: {quoted(directory)} must be an absolute path')
     return Session(directory, protocol, path.read_text('utf-8'), _parameter('who', str, ''),
                    _parameter('subject', int, 1), rospy.logwarn)
 
