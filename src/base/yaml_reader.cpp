@@ -8,7 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/file_size.h"
 #include "haptex/base/quoted.h"
+#include "yaml_size.h"
 
 namespace haptex::base {
 namespace {
@@ -41,7 +43,7 @@ std::string below(const std::string& key_path, const std::string& key) {
 
 }  // namespace
 
-std::string readTextFile(const std::string& path) {
+std::string readTextFile(const std::string& path, std::size_t largest) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw std::runtime_error(shortened(path) + ": there is no such file");
@@ -49,12 +51,18 @@ std::string readTextFile(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) {
     throw std::runtime_error(shortened(path) + ": is a directory, not a file");
   }
+  requireFileSize(path, largest);
   std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (!stream.is_open() || stream.bad())
+  std::string text, part(std::size_t{1} << 16, '\0');
+  while (stream && text.size() <= largest) {  // of a pipe the size is not known
+    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
+    text.append(part, 0, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.is_open() || stream.bad()) {
     throw std::runtime_error(shortened(path) + ": cannot be read");
-  return text.str();
+  }
+  requireSize(path, text.size(), largest);
+  return text;
 }
 
 YamlValue::YamlValue(std::shared_ptr<const std::string> file, std::string key_path,
@@ -64,12 +72,16 @@ YamlValue::YamlValue(std::shared_ptr<const std::string> file, std::string key_pa
 YamlValue YamlValue::load(const std::string& path) { return parse(readTextFile(path), path); }
 
 YamlValue YamlValue::parse(const std::string& text, const std::string& name) {
+  requireSize(name, text.size(), kLargestYaml);
   std::vector<YAML::Node> documents;
   try {
+    requireSmallYaml(text);
     documents = YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
     throw std::runtime_error(shortened(name) + ": line " + std::to_string(error.mark.line + 1) +
                              ": is not YAML: " + kindOf(error));
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(shortened(name) + ": " + error.what());
   }
   if (documents.size() != 1) {
     throw std::runtime_error(shortened(name) + ": has " + std::to_string(documents.size()) +

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/file_size.h"
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/material/kes_conditions.h"
@@ -169,6 +170,7 @@ class Reader {
   TesterFile read() {
     std::ifstream stream(file_.path);
     if (!stream) throw std::runtime_error(file_.path + ": cannot be read");
+    base::requireFileSize(file_.path, kLargestTesterFile);
     bool header = false;
     for (std::string text; std::getline(stream, text);) {
       ++line_;

@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "haptex/base/file_size.h"
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/proximity/cursor.h"
@@ -76,6 +77,7 @@ class StateReader {
       throw std::runtime_error(base::shortened(path) +
                                ": cannot be read, must be a file of a state of a cloth");
     }
+    base::requireFileSize(path, kLargestStateFile);  // before a line is held
   }
 
   cloth::ClothState read() {
@@ -84,6 +86,10 @@ class StateReader {
     cloth::ClothState state;
     state.time = readValue("time");
     while (readLine()) {
+      if (static_cast<double>(state.positions.size()) >= particles) {
+        refuseLine("one particle more than the " + base::shortNumber(particles) +
+                   " that the file says");
+      }
       if (words_.size() != 6) {
         refuseLine("has " + std::to_string(words_.size()) +
                    " words, must be 6 numbers: position (m) and velocity (m/s) of a particle");

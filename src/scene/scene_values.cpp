@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "haptex/base/quoted.h"
+#include "haptex/mesh/obj_file.h"
 
 namespace haptex::scene {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using base::YamlValue;
 namespace fs = std::filesystem;
 
-constexpr long long kMaxTriangles = 200000;
+constexpr auto kMaxTriangles = static_cast<long long>(mesh::kMostTriangles);
 
 // Names of the files of one kind, for a message that says what there is.
 std::string namesIn(const fs::path& directory, const std::string& extension) {

@@ -4,7 +4,7 @@
 
 #include "haptex/base/quoted.h"
 
-namespace haptex::base {
+namespace haptex::base::test_quoted {
 namespace {
 
 TEST(Quoted, TextUpToTheLimitStandsWhole) {
@@ -40,4 +40,4 @@ TEST(Quoted, BytesThatAreNoUtf8AreBoundedToo) {
 }
 
 }  // namespace
-}  // namespace haptex::base
+}  // namespace haptex::base::test_quoted

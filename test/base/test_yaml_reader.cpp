@@ -8,7 +8,7 @@
 #include "haptex/base/quoted.h"
 #include "haptex/base/yaml_reader.h"
 
-namespace haptex::base {
+namespace haptex::base::test_yaml_reader {
 namespace {
 
 const std::vector<std::string> kKeys = {"name", "size"};
@@ -66,4 +66,4 @@ TEST(YamlReader, TheNameOfTheFileIsCut) {
 }
 
 }  // namespace
-}  // namespace haptex::base
+}  // namespace haptex::base::test_yaml_reader

@@ -72,6 +72,49 @@ TEST(ObjFile, AcceptsTextureCoordinatesRepeatedWithEqualValues) {
   expectSquare(loadObj(TemporaryObj(kPoints + repeated).path()));
 }
 
+/// The refusal without the path.
+std::string refusalOf(const TemporaryObj& file) {
+  try {
+    loadObj(file.path());
+  } catch (const std::exception& error) {
+    return std::string(error.what()).substr(file.path().size());
+  }
+  return "accepted";
+}
+
+TEST(ObjFile, OfAMillionTrianglesIsRefusedAtTheFirstTooMany) {
+  std::string text = kPoints;
+  for (std::size_t i = 0; i < 1'000'000; ++i) text += "f 1/1 2/2 3/3\n";
+  // Twelve lines come before the first.
+  EXPECT_EQ(refusalOf(TemporaryObj(text)), ": line 200014: more than 200000 triangles");
+}
+
+TEST(ObjFile, OfTooManyPositionsOrTextureCoordinatesIsRefusedAtTheFirstTooMany) {
+  std::string positions, textures;
+  for (std::size_t i = 0; i <= 3 * kMostTriangles; ++i) {
+    positions += "v 0 0 0\n";
+    textures += "vt 0 0\n";
+  }
+  EXPECT_EQ(refusalOf(TemporaryObj(positions)), ": line 600001: more than 600000 positions");
+  EXPECT_EQ(refusalOf(TemporaryObj(textures)),
+            ": line 600001: more than 600000 texture coordinates");
+}
+
+TEST(ObjFile, TooLargeIsRefusedUnread) {
+  const TemporaryObj file("");
+  ASSERT_EQ(truncate(file.path().c_str(), 1'000'000'000), 0);  // takes no room on the disk
+  EXPECT_EQ(refusalOf(file), ": has 1000000000 bytes: allowed are up to 67108864");
+}
+
+TEST(ObjFile, RefusalsRepeatNothingOfTheFile) {
+  for (const std::string text : {"v secret 0 0\n", "vt 0 secret\n", "f secret/1 2/2 3/3\n",
+                                 "f 1/secret 2/2 3/3\n", "f secret\n"}) {
+    const std::string refusal = refusalOf(TemporaryObj(kPoints + text));
+    EXPECT_NE(refusal, "accepted");
+    EXPECT_EQ(refusal.find("secret"), std::string::npos) << refusal;
+  }
+}
+
 struct Refusal {
   std::string name;
   std::string after_points;  // lines from 14 on

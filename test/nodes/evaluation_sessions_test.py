@@ -58,6 +58,20 @@ class StrictYaml(Folder):
             self.assertNotIn('root', refusal)
 
 
+    def test_refuses_what_is_too_large_before_it_is_held(self):
+        laughs = 'title: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n' + ''.join(
+            f'a{i}: &a{i} [{", ".join(10 * [f"*a{i - 1}"])}]\n' for i in range(1, 9))
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # kB
+        for content, says in [
+                (b'title: [' + 2_000_000 * b'1,' + b']', 'file: more than 262144 bytes'),
+                (b'title: [' + 20_000 * b'1,' + b']', 'file: line 1: more than 20000 values'),
+                (b'title: ' + 100_000 * b'[', 'file: line 1: nested deeper than 32 levels'),
+                (laughs.encode(), 'file: line 5: more than 20000 values'),
+                (b'title: &a [*a]', 'file: line 1: more than 20000 values')]:
+            self.assertTrue(self.refusal(content).startswith(says), says)
+        self.assertLess(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before, 32_000)
+
+
 class LatinSquares(unittest.TestCase):
     def test_everything_stands_once_in_every_row_and_equally_often_in_every_column(self):
         for count in range(1, 10):
@@ -363,7 +377,7 @@ class Sessions(Folder):
                 self.open()
 
 
-Tests = suite_of(LatinSquares, Protocols, HandPaths, Plans, Sessions)
+Tests = suite_of(Quoted, StrictYaml, LatinSquares, Protocols, HandPaths, Plans, Sessions)
 
 
 if __name__ == '__main__':

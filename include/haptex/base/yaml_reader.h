@@ -4,6 +4,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <cstddef>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -11,8 +12,15 @@
 
 namespace haptex::base {
 
-/// @throws std::runtime_error naming the path if it cannot be read
-std::string readTextFile(const std::string& path);
+/// What a YAML file may have at most: bytes, values (an alias counted as what it stands for) and
+/// levels of nesting. The largest that ships has 67 kB, about 6000 values and 6 levels.
+constexpr std::size_t kLargestYaml = std::size_t{256} << 10;
+constexpr std::size_t kMostYamlValues = 100'000;
+constexpr std::size_t kDeepestYaml = 32;
+
+/// @param largest bytes that are read at most
+/// @throws std::runtime_error naming the path if it cannot be read or is larger
+std::string readTextFile(const std::string& path, std::size_t largest = kLargestYaml);
 
 /// A value in a YAML file together with the path of keys that leads to it, for example
 /// "warp.elastic.points[3]". All member functions throw std::invalid_argument with a message of the
@@ -21,7 +29,7 @@ class YamlValue {
  public:
   /// The top-level value of a file with exactly one YAML document.
   /// @throws std::runtime_error naming the path, and line and kind of a syntax error, if the file
-  ///   cannot be read or is not YAML
+  ///   cannot be read, is not YAML or is larger than the limits above; then it is not held
   static YamlValue load(const std::string& path);
   /// The same of a text.
   /// @param name of it in messages, instead of a path

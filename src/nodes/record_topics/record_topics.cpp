@@ -17,7 +17,8 @@ std::regex expressionOf(const std::string& text) {
   try {
     return std::regex(text);
   } catch (const std::regex_error& error) {
-    throw std::invalid_argument(base::quoted(text) + " is no regular expression: " + error.what());
+    throw std::invalid_argument(haptex::base::quoted(text) +
+                                " is no regular expression: " + error.what());
   }
 }
 

@@ -11,6 +11,11 @@ import yaml
 from .quoted import LONGEST_QUOTE, quoted
 
 
+LARGEST = 1 << 18  # bytes of a file, as of those that the nodes in C++ read
+MOST_VALUES = 20_000  # an alias counted as what it stands for; of these PyYAML holds some 1 kB each
+DEEPEST = 32  # levels of nesting
+
+
 class UniqueKeys(yaml.SafeLoader):
     """Refuses keys that are there twice, of which the safe loader would keep the last."""
 
@@ -24,6 +29,36 @@ class UniqueKeys(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
+def require_small(text):
+    """Reads a text event by event and holds none. @throws ValueError with the line that is too much"""
+    values, sizes, opened = 0, {}, []
+    for event in yaml.parse(text, yaml.SafeLoader):
+        line = f'line {event.start_mark.line + 1}'
+        if isinstance(event, yaml.AliasEvent):
+            values += sizes.get(event.anchor, 0)
+        elif isinstance(event, (yaml.ScalarEvent, yaml.CollectionStartEvent)):
+            values += 1
+            opened.append((event.anchor, values - 1))
+            sizes[event.anchor] = MOST_VALUES  # within itself
+        if values > MOST_VALUES:
+            raise ValueError(f'{line}: more than {MOST_VALUES} values, an alias counted as what it stands '
+                             'for')
+        if len(opened) > DEEPEST:
+            raise ValueError(f'{line}: nested deeper than {DEEPEST} levels')
+        if isinstance(event, (yaml.ScalarEvent, yaml.CollectionEndEvent)):
+            anchor, before = opened.pop()
+            sizes[anchor] = values - before
+
+
+def text_of(path):
+    """@throws ValueError if the file is larger than LARGEST; then it is not held"""
+    with open(path, 'rb') as file:
+        content = file.read(LARGEST + 1)
+    if len(content) > LARGEST:
+        raise ValueError(f'more than {LARGEST} bytes')
+    return content.decode('utf-8')
+
+
 def kind_of(error):
     """Line and kind of a syntax error: PyYAML's words without what they repeat of the file."""
     if not isinstance(error, yaml.MarkedYAMLError):
@@ -34,9 +69,11 @@ def kind_of(error):
 
 def load(path, keys):
     """@returns the mapping that a file says, which has at least one of the keys
-    @throws ValueError naming the file and what is no YAML in it"""
+    @throws ValueError naming the file and what is no YAML in it, or how it is too large"""
     try:
-        value = yaml.load(pathlib.Path(path).read_text(encoding='utf-8'), UniqueKeys)
+        text = text_of(path)
+        require_small(text)
+        value = yaml.load(text, UniqueKeys)
     except yaml.YAMLError as error:
         raise ValueError(f'{path}: {kind_of(error)}') from error
     except UnicodeDecodeError as error:
