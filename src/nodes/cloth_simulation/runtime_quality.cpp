@@ -13,6 +13,7 @@
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/config_files.h"
 #include "haptex/nodes/common/node_parameters.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/scene/quality_file.h"
 #include "haptex/scene/scene_fabric.h"
 #include "haptex/simulation/quality_calibration.h"
@@ -233,7 +234,7 @@ haptex::ClothQuality RuntimeQuality::message(const simulation::SimulatedCloth& s
   const simulation::CycleTimes times = controller.times();
   haptex::ClothQuality message;
   message.header.stamp = stamp;
-  message.header.frame_id = kFixedFrame;
+  message.header.frame_id = fixedFrame();
   const simulation::Candidate& running = rungs_[simulation.plan()];
   message.quality = pointMessage(running, simulation.cloth().fabric());
   message.quality.cells_as_measured = scene_.any_cells && !running.quality.measured.empty() &&

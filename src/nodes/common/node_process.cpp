@@ -2,13 +2,18 @@
 
 #include <ros/ros.h>
 #include <ros/xmlrpc_manager.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <csignal>
 #include <exception>
+#include <stdexcept>
+#include <string>
 
 #include "haptex/base/quoted.h"
+#include "haptex/base/workload.h"
 #include "haptex/nodes/common/socket_thread.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/realtime/scheduling.h"
 #include "haptex/realtime/semaphore.h"
 
@@ -56,6 +61,29 @@ void takeOverEnding() {
   ros::XMLRPCManager::instance()->bind("shutdown", handleShutdown);
 }
 
+/// What no message of this package needs, and what an array that claims to be long must not take:
+/// with it roscpp's own services and tf refuse such a message instead of taking all memory. A limit
+/// of the user's that is lower stays.
+void limitMemory() {
+  constexpr rlim_t kMost = rlim_t{4} << 30;  // bytes of data, without code and shared memory
+  rlimit limit{};
+  if (base::kSanitized || getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur <= kMost) return;
+  limit.rlim_cur = kMost;
+  setrlimit(RLIMIT_DATA, &limit);
+}
+
+/// The parameter tf_prefix of the node or of the nearest namespace, as robot_state_publisher reads
+/// it.
+void takeFramePrefix() {
+  const ros::NodeHandle private_node("~");
+  std::string parameter, prefix;
+  if (!private_node.searchParam("tf_prefix", parameter)) return;
+  if (!private_node.getParam(parameter, prefix)) {
+    throw std::invalid_argument("parameter " + parameter + " is not a string");
+  }
+  setFramePrefix(prefix);
+}
+
 }  // namespace
 
 bool isEnding() { return ending || !ros::ok(); }
@@ -65,10 +93,12 @@ int runNode(int argc, char** argv, const ProcessTraits& traits,
   ros::init(argc, argv, traits.name, ros::init_options::NoSigintHandler);
   const ros::NodeHandle started;  // without a node ROS_FATAL prints nothing
   takeOverEnding();
+  limitMemory();
   preferMessages(traits.on_force_path);
   if (traits.on_force_path) realtime::lockMemory();
   int status = 0;
   try {
+    takeFramePrefix();
     RunningNode running = make();
     ros::AsyncSpinner spinner(traits.spinners);
     spinner.start();

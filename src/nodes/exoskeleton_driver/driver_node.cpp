@@ -66,7 +66,7 @@ void announce(const exoskeleton::DriverSnapshot& snapshot) {
 
 DriverNodeParameters DriverNodeParameters::read(const ros::NodeHandle& private_node) {
   const std::string port =
-      readText(private_node, "port", "the path of a serial port, for example /dev/ttyUSB0");
+      readPort(private_node, "port", "the path of a serial port, for example /dev/ttyUSB0");
   const RobotDescription description = readRobotDescription(private_node);
   return {port, description.urdf, kinematicsOf(description),
           readSwitch(private_node, "auto_recover")};

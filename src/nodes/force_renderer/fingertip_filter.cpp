@@ -7,6 +7,7 @@
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -14,9 +15,9 @@ namespace {
 using base::Time;
 
 void requireHandFrame(const std_msgs::Header& header) {
-  if (header.frame_id == kHandFrame) return;
+  if (header.frame_id == handFrame()) return;
   throw std::invalid_argument("header.frame_id = " + base::quoted(header.frame_id) +
-                              ": allowed is '" + kHandFrame + "'");
+                              ": allowed is '" + handFrame() + "'");
 }
 
 void requireNow(const std_msgs::Header& header, const ros::Time& now) {

@@ -9,6 +9,7 @@
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -56,12 +57,12 @@ Isometry3d TrackerFilter::receive(const geometry_msgs::PoseStamped& message,
                                   const tf2_ros::Buffer& transforms, const ros::Time& now) {
   const Isometry3d body = fromMessage(message.pose);
   requireNow(message.header.stamp, now);
-  const Taken next{transformFrom(message.header, kFixedFrame, transforms) * body * mounting_,
+  const Taken next{transformFrom(message.header, fixedFrame(), transforms) * body * mounting_,
                    message.header.stamp};
   if (!isNear(next.hand.translation())) {
     std::ostringstream text;
     text << "the hand would be at (" << next.hand.translation().transpose() << ") in "
-         << kFixedFrame << ": allowed are coordinates up to " << kFarthest << " m";
+         << fixedFrame() << ": allowed are coordinates up to " << kFarthest << " m";
     throw std::invalid_argument(text.str());
   }
   requireReachable(next);

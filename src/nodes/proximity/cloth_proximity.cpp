@@ -12,6 +12,7 @@
 #include "haptex/base/quoted.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -225,7 +226,7 @@ haptex::QueryProximity::Response ClothProximity::compute(const Request& request,
     response.header.stamp = view.state.header.stamp;
     response.step = view.state.step;
   }
-  response.header.frame_id = kFixedFrame;
+  response.header.frame_id = fixedFrame();
   fillResponse(found, request.distance, response);
   return response;
 }

@@ -21,10 +21,20 @@ bool matchesAny(const std::string& topic, const std::vector<std::regex>& express
   });
 }
 
+/// What follows the namespace, or nothing if the topic is in another.
+std::string within(const std::string& space, const std::string& topic) {
+  const std::string begin = space == "/" ? space : space + "/";
+  return topic.compare(0, begin.size(), begin) == 0 ? topic.substr(begin.size()) : "";
+}
+
 }  // namespace
 
 bool RecordedTopics::match(const std::string& topic) const {
-  return matchesAny(topic, wanted) && !matchesAny(topic, excluded);
+  const std::string inner = within(space, topic);
+  const auto matches = [&](const std::vector<std::regex>& expressions) {
+    return matchesAny(topic, expressions) || (!inner.empty() && matchesAny(inner, expressions));
+  };
+  return matches(wanted) && !matches(excluded);
 }
 
 BagRecorder::BagRecorder(std::string path, RecordedTopics topics)

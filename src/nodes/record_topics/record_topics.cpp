@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   try {
     if (argc < 2) throw std::invalid_argument("no bag is named");
     haptex::nodes::RecordedTopics topics = topicsOf({argv + 2, argv + argc});
+    topics.space = ros::this_node::getNamespace();
     haptex::nodes::BagRecorder(argv[1], std::move(topics)).run();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "record_topics: %s\n", error.what());

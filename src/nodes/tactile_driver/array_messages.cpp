@@ -5,6 +5,7 @@
 #include <string>
 
 #include "haptex/base/quoted.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -21,7 +22,7 @@ double displacementIn(const char* field, int contactor, double micrometres) {
 }  // namespace
 
 tactile::ArrayAmplitudes amplitudesIn(base::Finger finger, const haptex::Tactile& message) {
-  const std::string frame = std::string(base::name(finger)) + "_tactile";
+  const std::string frame = arrayFrame(finger);
   if (message.header.frame_id != frame) {
     throw std::invalid_argument("frame_id = " + base::quoted(message.header.frame_id) +
                                 ": allowed is " + frame);

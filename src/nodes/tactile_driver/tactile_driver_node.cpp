@@ -7,6 +7,7 @@
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/tactile_driver/array_messages.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/serial/port_keeper.h"
 
@@ -31,7 +32,7 @@ tactile::Calibration readCalibration(const ros::NodeHandle& private_node) {
 }
 
 TactileDriverParameters TactileDriverParameters::read(const ros::NodeHandle& private_node) {
-  return {readText(private_node, "port", "the path of a serial port, for example /dev/ttyUSB1"),
+  return {readPort(private_node, "port", "the path of a serial port, for example /dev/ttyUSB1"),
           readCalibration(private_node)};
 }
 
@@ -114,7 +115,7 @@ void TactileDriverNode::publishState() {
   state_due_ = now + kStatePeriod;
   haptex::ArrayState state;
   state.header.stamp = ros::Time::now();
-  state.header.frame_id = kHandFrame;
+  state.header.frame_id = handFrame();
   state.connected = static_cast<std::uint8_t>(connected);
   state.message = message;
   state_publisher_.publish(state);

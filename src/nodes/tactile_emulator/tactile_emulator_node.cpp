@@ -63,7 +63,7 @@ std::optional<tactile::PlayedContactor> readPlayed(const ros::NodeHandle& privat
 }  // namespace
 
 TactileEmulatorParameters TactileEmulatorParameters::read(const ros::NodeHandle& private_node) {
-  return {readText(private_node, "link", "the path of the symbolic link to the emulator's port"),
+  return {readPort(private_node, "link", "the path of the symbolic link to the emulator's port"),
           readCalibration(private_node), readPlayed(private_node)};
 }
 

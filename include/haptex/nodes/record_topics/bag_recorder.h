@@ -18,10 +18,12 @@
 
 namespace haptex::nodes {
 
-/// Which topics are recorded: regular expressions (ECMAScript) that whole names have to match.
+/// Which topics are recorded: regular expressions (ECMAScript) that have to match whole names, or
+/// what of a name follows the node's namespace and its slash.
 struct RecordedTopics {
   std::vector<std::regex> wanted;
   std::vector<std::regex> excluded;
+  std::string space = "/";  ///< of the node
 
   bool match(const std::string& topic) const;
 };

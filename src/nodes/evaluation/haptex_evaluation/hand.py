@@ -9,6 +9,7 @@ from geometry_msgs.msg import Point, PointStamped, PoseStamped, Quaternion
 from scipy.spatial.transform import Rotation, Slerp
 
 from . import strict_yaml as strict
+from .frames import frame_name
 from .quoted import quoted
 
 RATE = 100.0  # Hz
@@ -73,6 +74,7 @@ class EmulatedHand:
         self._fingers = [rospy.Publisher(f'{finger}/target', PointStamped, queue_size=1)
                          for finger in FINGERS]
         self._base = rospy.Publisher('hand_base/target', PoseStamped, queue_size=1)
+        self._fixed_frame, self._hand_frame = frame_name('world'), frame_name('hand_base')
         self._thread, self._ends = None, threading.Event()
 
     def follow(self, name):
@@ -98,9 +100,9 @@ class EmulatedHand:
         now = rospy.Time.now()
         for publisher, position in zip(self._fingers, positions):
             target = PointStamped(point=Point(*position))
-            target.header.stamp, target.header.frame_id = now, 'hand_base'
+            target.header.stamp, target.header.frame_id = now, self._hand_frame
             publisher.publish(target)
         pose = PoseStamped()
-        pose.header.stamp, pose.header.frame_id = now, 'world'
+        pose.header.stamp, pose.header.frame_id = now, self._fixed_frame
         pose.pose.position, pose.pose.orientation = Point(*positions[2]), Quaternion(*turn)
         self._base.publish(pose)

@@ -12,6 +12,7 @@ from haptex.srv import AnswerTrial, AnswerTrialResponse
 from std_srvs.srv import Trigger, TriggerResponse
 
 from .cloth import Cloth
+from .frames import frame_name
 from .hand import EmulatedHand
 from .picture import Picture
 from .plan import STANDARD, TRIAL
@@ -185,7 +186,7 @@ class EvaluationNode:
         message = EvaluationTrial(state=END, trials=len(session.trials), least_rating=least,
                                   largest_rating=most, with_picture=session.protocol.picture)
         message.header.stamp = rospy.Time.now()
-        message.header.frame_id = 'world'
+        message.header.frame_id = frame_name('world')
         if stage is not None:
             message.state = stage.kind if session.has_begun() else CHANGE
             message.property = stage.property.name
