@@ -1,6 +1,7 @@
 // record_topics BAG [--exclude REGEX]... REGEX...: see haptex/nodes/record_topics/bag_recorder.h.
 #include <ros/ros.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <regex>
@@ -39,6 +40,7 @@ haptex::nodes::RecordedTopics topicsOf(const std::vector<std::string>& words) {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "record_topics");
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow any more is told like a full disk
   try {
     if (argc < 2) throw std::invalid_argument("no bag is named");
     haptex::nodes::RecordedTopics topics = topicsOf({argv + 2, argv + argc});

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <regex>
 #include <string>
 #include <thread>
@@ -63,7 +64,7 @@ class BagRecorder {
   const RecordedTopics topics_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_;
   std::map<std::string, ros::Subscriber> subscribers_;  // of the searching thread
   std::atomic<bool> has_space_{true};
   std::thread searching_;
