@@ -78,7 +78,7 @@ haptex_compile() {
 # (PACKAGE/build). It finds the scripts without them, and in a catkin workspace the programs.
 haptex_link_programs() {
   local program
-  rm -rf "$haptex_root/bin"
+  rm -rf "${haptex_root:?}/bin"
   mkdir "$haptex_root/bin"
   for program in "$haptex_root"/build/devel/lib/haptex/*; do
     # The others are catkin's relays of the scripts.
