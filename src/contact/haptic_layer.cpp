@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 
 namespace haptex::contact {
@@ -18,8 +19,8 @@ using Eigen::Vector3d;
 const material::Fabric& requireBending(const material::Fabric& fabric,
                                        const HapticSettings& settings) {
   if (settings.layer == HapticSettings::Layer::kPatch && !fabric.bending) {
-    throw std::invalid_argument("fabric '" + fabric.name +
-                                "' has no bending; a patch needs it: add the key bending");
+    throw std::invalid_argument("fabric " + base::quoted(fabric.name) +
+                                " has no bending; a patch needs it: add the key bending");
   }
   return fabric;
 }

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::cloth {
 namespace {
 
@@ -17,8 +19,8 @@ std::uint64_t nextRevision() {
 void requireDensity(const material::Fabric& fabric) {
   if (!std::isfinite(fabric.areal_density) || fabric.areal_density <= 0.0) {
     std::ostringstream message;
-    message << "areal density of fabric '" << fabric.name << "' is " << fabric.areal_density
-            << " kg/m2; it must be finite and greater than 0";
+    message << "areal density of fabric " << base::quoted(fabric.name) << " is "
+            << fabric.areal_density << " kg/m2; it must be finite and greater than 0";
     throw std::invalid_argument(message.str());
   }
 }

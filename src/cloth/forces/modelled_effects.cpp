@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/cloth/forces/bending/bending_friction.h"
 #include "haptex/cloth/forces/bending/seam_bending.h"
 #include "haptex/cloth/forces/corotational.h"
@@ -21,8 +22,8 @@ void requireMembraneHysteresis(const material::Fabric& fabric, const ModelledEff
   }
   const auto require = [&](bool stated, const char* key) {
     if (stated) return;
-    throw std::invalid_argument("hysteresis of stretch and shear is modelled and fabric '" +
-                                fabric.name + "' lacks it: add the key " + key);
+    throw std::invalid_argument("hysteresis of stretch and shear is modelled and fabric " +
+                                base::quoted(fabric.name) + " lacks it: add the key " + key);
   };
   require(fabric.resilience.has_value(), "resilience");
   require(fabric.shear_hysteresis.has_value(), "hysteresis to shear");
@@ -37,8 +38,9 @@ void requireHysteresis(const material::Fabric& fabric, const ModelledEffects& ef
         "hysteresis of bending is modelled, which bend springs do not know");
   }
   if (!fabric.bending_hysteresis) {
-    throw std::invalid_argument("hysteresis of bending is modelled and fabric '" + fabric.name +
-                                "' has none: add the key hysteresis to bending");
+    throw std::invalid_argument("hysteresis of bending is modelled and fabric " +
+                                base::quoted(fabric.name) +
+                                " has none: add the key hysteresis to bending");
   }
 }
 
@@ -50,12 +52,12 @@ void requireModelled(const material::Fabric& fabric, const ModelledEffects& effe
   if (effects.membrane_hysteresis) requireMembraneHysteresis(fabric, effects);
   if (effects.bending_hysteresis) requireHysteresis(fabric, effects);
   if (effects.bending && !fabric.bending) {
-    throw std::invalid_argument("bending is modelled and fabric '" + fabric.name +
-                                "' has no bending rigidity: add the key bending");
+    throw std::invalid_argument("bending is modelled and fabric " + base::quoted(fabric.name) +
+                                " has no bending rigidity: add the key bending");
   }
   if (effects.contraction && !fabric.contraction) {
-    throw std::invalid_argument("contraction is modelled and fabric '" + fabric.name +
-                                "' has none: add the key contraction");
+    throw std::invalid_argument("contraction is modelled and fabric " + base::quoted(fabric.name) +
+                                " has none: add the key contraction");
   }
 }
 

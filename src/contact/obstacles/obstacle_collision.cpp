@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/cloth/forces/element_assembly.h"
 #include "haptex/contact/bodies/obstacle_path.h"
@@ -27,8 +28,8 @@ void requireApart(const mesh::ClothMesh& mesh, const std::string& name,
   const int triangle = firstTouching(mesh.triangles, mesh.initial_positions, shape);
   if (triangle < 0) return;
   throw std::invalid_argument("self_collision is modelled and triangle " +
-                              std::to_string(triangle) + " of the cloth touches obstacle '" + name +
-                              "' at the start: it has to be outside");
+                              std::to_string(triangle) + " of the cloth touches obstacle " +
+                              base::quoted(name) + " at the start: it has to be outside");
 }
 
 /// Neither attached nor tied to others.
