@@ -102,7 +102,7 @@ TEST(DxfPattern, SeamsAreThoseOfTheSidecar) {
                     "[3]}]}]"),
             "skirt.seams.yaml: seams[0].sides[0].edges[0]: '9' is no edge: allowed are names of "
             "edges and 0 to 5");
-  EXPECT_EQ(refusal(smallDxf(), "units: mm"),
+  EXPECT_EQ(refusal(smallDxf(), "unit: mm\nunits: mm"),
             "skirt.seams.yaml: units: unknown key, allowed here: unit, size, seams, darts");
   EXPECT_THROW(import(smallDxf(), "seams: ["), std::runtime_error);
 }
