@@ -8,6 +8,7 @@
 // "stroke", a fabric with a surface and the intensity (m) that the contactors give it at 20 mm/s
 // under 0.5 N; "done", a fabric.
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -22,6 +23,8 @@
 #include "haptex/scene/quality_file.h"
 #include "haptex/simulation/studied_fabrics.h"
 #include "haptex/studies/evaluation/manipulations.h"
+#include "haptex/studies/evaluation/trial.h"
+#include "haptex/tactile/surface.h"
 
 namespace {
 
@@ -66,6 +69,19 @@ studies::ManipulationSettings settingsOf(const std::string& config, const std::s
   return settings;
 }
 
+/// m: perceived intensity of strokes by a hand that trembles.
+double strokedBy(std::uint64_t seed, const material::Fabric& fabric) {
+  const studies::Tremor tremor(seed);
+  const auto sway = [&tremor](double time) {
+    contact::Fingertips fingertips;
+    contact::Fingertip& index = fingertips[base::Finger::kIndex].emplace();
+    tremor.move(time, fingertips);
+    return oracles::Sway{index.position.tail<2>(), index.velocity.tail<2>()};
+  };
+  return oracles::renderStrokes(tactile::buildSurface(fabric), oracles::kStandardSpeed, sway)
+      .perceived_intensity;
+}
+
 void run(int argc, char** argv) {
   if (argc < 6) {
     throw std::invalid_argument(
@@ -79,14 +95,14 @@ void run(int argc, char** argv) {
   say("pressed", studies::kPressed);
   say("biased", studies::kBiased);
   say("overhang", studies::kOverhang);
-  for (const oracles::RenderedFabric& fabric : oracles::renderFabrics(argv[1])) {
-    std::printf("stroke\t%s\t%.9g\n", fabric.name.c_str(), fabric.stroke.perceived_intensity);
-  }
   for (int i = 5; i < argc; ++i) {
     const std::string name = argv[i];
     const material::Fabric fabric = material::loadFabric(config + "/fabrics/" + name + ".yaml");
     studies::ManipulationSettings settings = settingsOf(config, quality, fabric);
     settings.tremor = std::strtoull(argv[3], nullptr, 10);
+    if (fabric.surface) {
+      std::printf("stroke\t%s\t%.9g\n", name.c_str(), strokedBy(settings.tremor, fabric));
+    }
     for (const studies::Manipulation& manipulation : studies::manipulations()) {
       write(std::string(argv[2]) + "/" + name + "_" + manipulation.name + "_" + argv[3] + ".f32",
             manipulation.run(fabric, settings));

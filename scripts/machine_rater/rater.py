@@ -9,9 +9,9 @@ from scipy.optimize import least_squares
 GRAVITY = 9.80665  # m/s^2
 AREA = 0.04  # m^2, of the sample
 BLOCKS = 8  # that means are taken over, for their deviation
-KES_PRESSURE = 50 * 98.0665  # Pa, under which Tm is measured
+KES_PRESSURES = 0.5 * 98.0665, 50 * 98.0665  # Pa, under which T0 and Tm are measured
 FIRST_FORCE = 3e-5  # N, of a pinch
-EXPONENT = 0.2  # of a compression curve, for a linearity LC = 2 EXPONENT / (1 + EXPONENT) of 1/3
+LINEARITY = 0.3  # of compression curves, LC: between T0 and Tm, 1 for a straight line
 
 
 class Judgement(NamedTuple):
@@ -54,21 +54,32 @@ def friction(record, begin=0.006):
     return of_blocks(pairs, lambda part: abs(part[:, 0].mean()) / part[:, 1].mean())
 
 
+def compressed_share(pressure):
+    """(T0 - t) / (T0 - Tm) of the thickness t of a fibre assembly around a core under a pressure (Pa) of at
+    least the first of KES_PRESSURES: van Wyk's law p = a / (t - core)^3 + b of the linearity LINEARITY,
+    which fixes how far the core is below Tm."""
+    low, high = KES_PRESSURES
+    work = (0.5 * LINEARITY * high - low) / (high - low)
+    core = 4.0 * work / (1.0 - 6.0 * work + np.sqrt(1.0 + 12.0 * work - 12.0 * work ** 2))
+    a = (high - low) / (core ** -3 - (1.0 + core) ** -3)
+    b = low - a / (1.0 + core) ** 3
+    return 1.0 + core - np.cbrt(a / (pressure - b))
+
+
 def pinch_force(gap, thickness, compressed, fingertips):
     """N, of two spheres whose surfaces are the gap (m) apart with fabric in between whose thickness falls
-    by `compressed` (p / 50 gf/cm^2)^EXPONENT under the pressure p, with the pulps in series. Each ring of
-    the contact has the pressure of its gap: F = 2 pi R integral of p over the gap."""
-    pressures = KES_PRESSURE * np.linspace(0.0, 1.0, 400) ** 2 * 4.0
-    shares = pressures / KES_PRESSURE
-    gaps = thickness - compressed * shares ** EXPONENT - 2.0 * pressures / fingertips.pulp_stiffness
-    integral = (compressed * EXPONENT / (EXPONENT + 1.0) * KES_PRESSURE * shares ** (EXPONENT + 1.0)
-                + pressures ** 2 / fingertips.pulp_stiffness)
-    forces = 2.0 * np.pi * fingertips.radius * integral
+    by `compressed` from T0 to Tm, with the pulps in series. Each ring of the contact has the pressure of
+    its gap: F = 2 pi R times the integral of p over the gap."""
+    pressures = np.geomspace(KES_PRESSURES[0], 200.0 * KES_PRESSURES[1], 400)
+    gaps = (thickness - compressed * compressed_share(pressures)
+            - 2.0 * pressures / fingertips.pulp_stiffness)
+    rings = 0.5 * (pressures[1:] + pressures[:-1]) * -np.diff(gaps)
+    forces = 2.0 * np.pi * fingertips.radius * np.concatenate([[0.0], np.cumsum(rings)])
     return np.interp(gap, gaps[::-1], forces[::-1], right=0.0)
 
 
 def compression(record, fingertips, pinch_seconds):
-    """Thickness without pressure, thickness under 50 gf/cm^2 (m) and compressibility (T0 - Tm) / T0: means
+    """T0, thickness under 50 gf/cm^2 (m) and compressibility (T0 - Tm) / T0: means
     over pinches of pinch_seconds each. The first force that both fingers feel is felt at T0; then the fabric
     is the one whose pinch_force() is that of the record."""
     apart = record.positions[:, 0] - record.positions[:, 1]

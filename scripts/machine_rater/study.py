@@ -29,7 +29,7 @@ PROPERTIES = {'tensile_stiffness': ('N/m', True), 'shear_stiffness': ('N/m', Tru
               'bending_stiffness': ('N.m', True), 'roughness': ('um', False),
               'friction': ('1', True), 'compressibility': ('1', True),
               'thickness_under_load': ('m', True), 'weight': ('kg/m2', True), 'drape': ('m', True)}
-# By strokes that do not tremble and meet no limit of the device: to repeat them says nothing.
+# By strokes without cloth, which meet no limit of the device.
 BY_STROKES = ('roughness',)
 
 
@@ -53,7 +53,7 @@ def fabric_names():
 
 def run_hand(directory, fabrics, runs):
     """At most PROCESSES at once. @param runs pairs of the tremor's seed and of how the cloth is computed
-    @returns what the program says: the hand, and strokes by fabric"""
+    @returns what the program says: the hand, and strokes by fabric for each run"""
     def run(pair):
         seed, quality = pair
         folder = pathlib.Path(directory) / quality
@@ -70,15 +70,16 @@ def run_hand(directory, fabrics, runs):
             raise SystemExit(f'evaluate: {PROGRAM} failed')
         return said
     with concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool:
-        said = list(pool.map(run, runs))[0]
-    numbers = {tuple(fields[:2]) if fields[0] == 'strip' else fields[0]: fields for fields in said}
+        said = list(pool.map(run, runs))
+    numbers = {tuple(fields[:2]) if fields[0] == 'strip' else fields[0]: fields for fields in said[0]}
     fingertips = rater.Fingertips(*map(float, numbers['fingertips'][1:]))
     pressed, biased, over = (pressed_strips.Strip(*map(float, numbers['strip', name][2:]))
                              for name in ('pressed', 'biased', 'overhang'))
     def contact(strip):
         return pressed_strips.Contact(strip, fingertips.index_radius, fingertips.pulp_stiffness)
     hand = Hand(fingertips, float(numbers['pinch'][1]), contact(pressed), contact(biased), over)
-    return hand, {fields[1]: float(fields[2]) for fields in said if fields[0] == 'stroke'}
+    return hand, [{fields[1]: float(fields[2]) for fields in of_run if fields[0] == 'stroke'}
+                  for of_run in said]
 
 
 def mean(judgements):
@@ -186,10 +187,10 @@ def print_ranks(fabrics, judged, again, coarse, files):
         low, high = statistics.bootstrap_interval(statistics.spearman, column(judged), file)
         print(f'evaluate/{name}/spearman\t{statistics.spearman(column(judged), file):.4f}\t'
               f'{low:.4f}\t{high:.4f}')
+        if all(name in again[fabric] for fabric in known):
+            print(f'evaluate/{name}/repeat\t'
+                  f'{statistics.spearman(column(judged), column(again)):.4f}')
         if name not in BY_STROKES:
-            if all(name in again[fabric] for fabric in known):
-                print(f'evaluate/{name}/repeat\t'
-                      f'{statistics.spearman(column(judged), column(again)):.4f}')
             rank = spearman_of(name, fabrics, coarse, files)
             print(f'evaluate/{name}/spearman_coarse\t{rank:.4f}')
         if same:
@@ -273,13 +274,13 @@ def main():
     with tempfile.TemporaryDirectory() as directory, \
             concurrent.futures.ProcessPoolExecutor(PROCESSES) as pool:
         hand, strokes = run_hand(directory, fabrics, runs)
-        def judge_all(seed, quality, limits=None):
-            return {fabric: pool.submit(judge_record, directory, hand, fabric, strokes.get(fabric),
-                                        seed, quality, limits) for fabric in fabrics}
+        def judge_all(run, stroked, limits=None):
+            return {fabric: pool.submit(judge_record, directory, hand, fabric, stroked.get(fabric),
+                                        *run, limits) for fabric in fabrics}
         def results(futures):
             return {fabric: future.result() for fabric, future in futures.items()}
-        waiting = [judge_all(*run) for run in runs]
-        coarse = results(judge_all(SEEDS[0], FINEST, LIMITS))
+        waiting = [judge_all(*each) for each in zip(runs, strokes)]
+        coarse = results(judge_all(runs[0], strokes[0], LIMITS))
         judged, again, *presets = (results(futures) for futures in waiting)
     if arguments.picture:
         draw_picture(arguments.picture, fabrics, judged, files)

@@ -65,6 +65,15 @@ class Rating(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, 'presses with up to 0 N'):
             rater.compression(record(vectors(), vectors()), FINGERTIPS, 10.0)
 
+    def test_compression_goes_from_T0_to_Tm_with_its_linearity(self):
+        low, high = rater.KES_PRESSURES
+        pressures = np.geomspace(low, high, 2000)
+        shares = rater.compressed_share(pressures)
+        self.assertAlmostEqual(shares[0], 0.0, 12)
+        self.assertAlmostEqual(shares[-1], 1.0, 12)
+        work = np.sum(0.5 * (pressures[1:] + pressures[:-1]) * np.diff(shares))
+        self.assertAlmostEqual(work / (0.5 * high), rater.LINEARITY, delta=1e-4)
+
     def test_two_spheres_press_a_linear_layer_with_the_force_of_hertz_s_foundation(self):
         # Pulps alone: p = k d / 2, so F = pi R k d^2 / 2.
         depth = 1e-3

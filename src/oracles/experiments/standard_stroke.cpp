@@ -40,25 +40,32 @@ std::vector<double> ranks(const std::vector<double>& values) {
 
 }  // namespace
 
-RenderedStroke renderStrokes(const tactile::Surface& surface, double speed) {
+RenderedStroke renderStrokes(const tactile::Surface& surface, double speed,
+                             const std::function<Sway(double)>& sway) {
   constexpr int kSteps = static_cast<int>(tactile::kTactileRate);
   const double angles[] = {0.0, 45.0, 90.0, 135.0};
   const double share = 1.0 / (std::size(angles) * kSteps * tactile::kContactors);
   tactile::ArrayLimits limits;
   limits.largest_displacement = std::numeric_limits<double>::max();
   RenderedStroke result;
+  double time = 0.0;
   for (const double angle : angles) {
+    const Eigen::Vector2d velocity = speed * direction(angle);
+    Eigen::Vector2d even_way = Eigen::Vector2d::Zero();
     tactile::TouchedFabric touched;
-    touched.stroke = {speed * direction(angle), kStandardForce};
     touched.forces.fill(kStandardForce / tactile::kContactors);
     for (int step = 0; step < kSteps; ++step) {
+      const Sway strays = sway ? sway(time) : Sway();
+      touched.stroke = {velocity + strays.velocity, kStandardForce};
+      touched.placement.origin = even_way + strays.displacement;
       for (const auto& [a40, a320] : tactile::arrayAmplitudes(surface, touched, limits)) {
         result.amplitudes[tactile::k40] += share * a40;
         result.amplitudes[tactile::k320] += share * a320;
         result.intensity += share * std::hypot(a40, a320);
         result.perceived_intensity += share * (std::max(a40, a320) + 0.5 * std::min(a40, a320));
       }
-      touched.placement.origin += tactile::kTactileStep * touched.stroke.velocity;
+      even_way += tactile::kTactileStep * velocity;
+      time += tactile::kTactileStep;
     }
   }
   return result;

@@ -1,6 +1,8 @@
 // How strong and of which colour a fabric feels in a standard stroke.
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,8 +27,17 @@ struct RenderedStroke {
   double ratio() const { return amplitudes[tactile::k320] / amplitudes[tactile::k40]; }
 };
 
-/// With an array that gives every displacement. @param speed m/s
-RenderedStroke renderStrokes(const tactile::Surface& surface, double speed = kStandardSpeed);
+/// How a finger strays from its even way along the fabric.
+struct Sway {
+  Eigen::Vector2d displacement = Eigen::Vector2d::Zero();  ///< m
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();      ///< m/s
+};
+
+/// With an array that gives every displacement.
+/// @param speed m/s
+/// @param sway at a time (s); the strokes follow each other. None: not at all
+RenderedStroke renderStrokes(const tactile::Surface& surface, double speed = kStandardSpeed,
+                             const std::function<Sway(double)>& sway = nullptr);
 
 constexpr double kYarnSpeed = 0.16;  ///< m/s
 
