@@ -2,9 +2,11 @@
 """What the launch files and views promise, read without a master."""
 import pathlib
 import re
+import textwrap
 import unittest
 
 import roslaunch.config
+import roslaunch.xmlloader
 import rostest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -16,6 +18,13 @@ def loaded(name, *arguments):
                                                   assign_machines=False)
     return ({name: parameter.value for name, parameter in config.params.items()},
             {node.namespace + node.name: node for node in config.nodes})
+
+
+def loaded_text(text):
+    """@returns the nodes of a launch file that is given by its text, by full name"""
+    config = roslaunch.config.ROSLaunchConfig()
+    roslaunch.xmlloader.XmlLoader().load_string(text, config, verbose=False)
+    return {node.namespace + node.name: node for node in config.nodes}
 
 
 class LaunchFiles(unittest.TestCase):
@@ -44,6 +53,24 @@ class LaunchFiles(unittest.TestCase):
             for arguments, program in (([], 'rviz'), (['tf_prefix:=left'], 'rviz_with_prefix')):
                 node = loaded(launch, 'rviz:=true', *arguments)[1]['/haptex/rviz']
                 self.assertEqual(node.type, program)
+
+    def test_documented_launch_files_start_what_they_say_where_they_say(self):
+        text = (ROOT / 'docs/nodes.md').read_text('utf-8')
+        hands, computers = map(textwrap.dedent, re.findall(r'^    <launch>\n.*?^    </launch>\n', text,
+                                                           re.MULTILINE | re.DOTALL))
+        nodes = loaded_text(hands)
+        for hand in ('left', 'right'):
+            self.assertIn(f'/{hand}/haptex/force_renderer', nodes)
+        nodes = loaded_text(computers)
+        for name, machine in (('cloth_simulation', 'cloth'), ('proximity', 'cloth'), ('force_renderer', 'hand'),
+                              ('exoskeleton_driver', 'hand')):
+            self.assertEqual(nodes[f'/haptex/{name}'].machine_name, machine, name)
+
+    def test_the_hand_alone_has_no_cloth(self):
+        nodes = loaded('haptex.launch', 'cloth:=false')[1]
+        self.assertIn('/haptex/force_renderer', nodes)
+        self.assertNotIn('/haptex/cloth_simulation', nodes)
+        self.assertNotIn('/haptex/proximity', nodes)
 
 
 if __name__ == '__main__':
