@@ -51,13 +51,14 @@ class Prepositioner {
 
   Preposition run(const Body& body) {
     for (int widening = 0;; ++widening) {
-      for (int fit = 0; fit < kFits; ++fit) {
-        fitSurfaces();
+      for (int fit = 0; fit < (widening == 0 ? kFits : 1); ++fit) {
+        fitSurfaces(widening == 0 && fit == 0);
         for (PanelToPlace& panel : panels_) panel.placed = widening > 0;
         placeBySeams(pattern_, gaps_, panels_);
         shiftRings();
       }
       layAll();
+      overlaps_ = findOverlaps(meshes_, body);
       if (widening == kMostWidenings || !widen(body)) break;
     }
     Preposition result;
@@ -66,7 +67,7 @@ class Prepositioner {
     }
     std::sort(result.panels.begin(), result.panels.end(),
               [](const LaidPanel& a, const LaidPanel& b) { return a.panel < b.panel; });
-    for (const auto& [pair, count] : findOverlaps(meshes_, &body)) {
+    for (const auto& [pair, count] : overlaps_) {
       result.overlaps.push_back({nameOf(pair[0]), nameOf(pair[1]), count});
     }
     return result;
@@ -126,7 +127,8 @@ class Prepositioner {
     }
   }
 
-  void fitSurfaces() {
+  /// @param heights_unknown no cones then, whose radius is of no use at other heights
+  void fitSurfaces(bool heights_unknown) {
     std::map<int, HeightRange> ranges;  // by segment
     for (Ring& ring : rings_) {
       ring.range = rangeOf(ring);
@@ -139,7 +141,8 @@ class Prepositioner {
     for (auto& [segment, axis] : axes) {
       if (ranges.count(segment) > 0) axis.centre(ranges.at(segment));
     }
-    for (std::size_t i = 0; i < rings_.size(); ++i) fitSurface(i, axes.at(rings_[i].segment));
+    for (std::size_t i = 0; i < rings_.size(); ++i)
+      fitSurface(i, axes.at(rings_[i].segment), heights_unknown);
   }
 
   HeightRange rangeOf(const Ring& ring) const {
@@ -153,7 +156,7 @@ class Prepositioner {
     return range;
   }
 
-  void fitSurface(std::size_t index, const SegmentAxis& axis) {
+  void fitSurface(std::size_t index, const SegmentAxis& axis, bool heights_unknown) {
     Ring& ring = rings_[index];
     std::vector<NeededRadius> needed = axis.bodyRadii(ring.range);
     for (NeededRadius& radius : needed) radius.radius += kBodyMargin;
@@ -168,8 +171,12 @@ class Prepositioner {
       }
     }
     ring.surface = axis.axis();
-    fitRadius(pattern_.carriers[ring.carrier].shape, needed, ring.surface);
-    for (const int panel : ring.panels) panels_[panel].surface = ring.surface;
+    const Carrier::Shape shape = pattern_.carriers[ring.carrier].shape;
+    fitRadius(heights_unknown ? Carrier::Shape::kCylinder : shape, needed, ring.surface);
+    for (const int panel : ring.panels) {
+      panels_[panel].surface = ring.surface;
+      panels_[panel].radius = ring.surface.radiusAt(0.5 * (ring.range.low + ring.range.high));
+    }
   }
 
   /// What the panels need side by side, with a gap beside each of them.
@@ -226,8 +233,8 @@ class Prepositioner {
   bool widen(const Body& body) {
     bool any = false;
     std::set<int> shifted;
-    for (const auto& [pair, count] : findOverlaps(meshes_, &body)) {
-      const auto [a, b] = pair;
+    for (const auto& overlap : overlaps_) {
+      const auto [a, b] = overlap.first;
       const int first = ring_of_[a];
       if (b == static_cast<int>(meshes_.size())) {
         if (first >= 0 && depthOf(body, first) > 0) shifted.insert(first);
@@ -299,10 +306,11 @@ class Prepositioner {
   std::vector<int> segments_;        // per carrier
   std::map<int, SegmentAxis> axes_;  // by segment, as the skeleton has them
   std::vector<PanelToPlace> panels_;
-  std::vector<Ring> rings_;   // from the body outwards
-  std::vector<int> ring_of_;  // per panel; -1: it has a position
-  std::vector<double> gaps_;  // m, per seam
-  std::map<int, std::vector<Vector3d>> flat_;
+  std::vector<Ring> rings_;                    // from the body outwards
+  std::vector<int> ring_of_;                   // per panel; -1: it has a position
+  std::vector<double> gaps_;                   // m, per seam
+  std::map<int, std::vector<Vector3d>> flat_;  // positions in the panels' planes, m
+  std::map<std::array<int, 2>, int> overlaps_;
 };
 
 }  // namespace

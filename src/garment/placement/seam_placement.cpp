@@ -1,6 +1,7 @@
 #include "haptex/garment/placement/seam_placement.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -16,9 +17,10 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int kPoints = 4;    // of a seam
-constexpr int kAngles = 24;   // of the grid
-constexpr int kHeights = 17;  // of the grid
+constexpr int kPoints = 4;             // of a seam
+constexpr int kAngles = 24;            // of the grid
+constexpr int kHeights = 17;           // of the grid
+constexpr double kLeastRadius = 1e-3;  // m
 constexpr int kMostSteps = 60;
 constexpr double kConverged = 1e-6;  // m
 constexpr double kSideways = 0.7;  // sine of a direction: at the side of a panel rather than above
@@ -92,19 +94,16 @@ class Placement {
   /// straight way would be the shorter for panels that overlap.
   Vector3d apart(const Pairing& pairing, int point) const {
     const auto [a, b] = pairing.panels;
-    const Vector3d first = pointOf(a, pairing.points[0][point]);
-    const Vector3d second = pointOf(b, pairing.points[1][point]);
-    if (!pairing.together) return first - second;
-    const CarrierSurface& surface = panels_[a].surface;
-    const Vector3d from = second - surface.origin, to = first - surface.origin;
-    const double climb = surface.up.dot(to - from);
-    double turn = std::atan2(surface.up.dot(from.cross(to)),
-                             from.dot(to) - surface.up.dot(from) * surface.up.dot(to));
+    const Vector2d &first = pairing.points[0][point], &second = pairing.points[1][point];
+    if (!pairing.together) return pointOf(a, first) - pointOf(b, second);
+    const PlaceOnSurface &from = panels_[b].place, &to = panels_[a].place;
+    const double radius = panels_[a].radius;
+    double turn = std::remainder(to.angle - from.angle + (first - second).x() / radius, 2.0 * M_PI);
     // Edges at the sides are apart outwards, if need be by more than half a turn.
     const double side = pairing.sides[point];
     if (side > kSideways && turn > kOverlap) turn -= 2.0 * M_PI;
     if (side < -kSideways && turn < -kOverlap) turn += 2.0 * M_PI;
-    return {0.5 * (from.cross(surface.up).norm() + to.cross(surface.up).norm()) * turn, climb, 0.0};
+    return {radius * turn, to.height - from.height + (first - second).y(), 0.0};
   }
 
   /// The panel without a place that has the longest seams with those that have one.
@@ -134,7 +133,7 @@ class Placement {
 
   void placeOnGrid(int index) {
     PanelToPlace& panel = panels_[index];
-    PlaceOnSurface best;
+    PlaceOnSurface best = panel.place;
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < (panel.height ? 1 : kHeights); ++i) {
       const double share = i / (kHeights - 1.0);
@@ -143,6 +142,7 @@ class Placement {
       panel.place.height = panel.height.value_or(height);
       for (int j = 0; j < (panel.angle ? 1 : kAngles); ++j) {
         panel.place.angle = panel.angle.value_or(2.0 * M_PI * j / kAngles);
+        if (panel.surface.radiusAt(panel.place.height) < kLeastRadius) continue;
         const double cost = costOf(index);
         if (cost >= least) continue;
         least = cost;
@@ -212,7 +212,7 @@ class Placement {
       const VectorXd change = -damped.ldlt().solve(gradient);
       move(change);
       VectorXd moved = residuals();
-      if (moved.squaredNorm() <= error.squaredNorm()) {
+      if (isAllowed() && moved.squaredNorm() <= error.squaredNorm()) {
         error = std::move(moved);
         damping = std::max(1e-9, 0.2 * damping);
         if (change.cwiseAbs().maxCoeff() <= kConverged) return;
@@ -222,6 +222,13 @@ class Placement {
         if (damping > 1e6) return;
       }
     }
+  }
+
+  /// No panel beyond the tip of its cone.
+  bool isAllowed() const {
+    return std::all_of(panels_.begin(), panels_.end(), [](const PanelToPlace& panel) {
+      return panel.pose || panel.surface.radiusAt(panel.place.height) >= kLeastRadius;
+    });
   }
 
   void move(const VectorXd& metres) {

@@ -13,8 +13,7 @@ namespace haptex::garment {
 /// Numbers of pairs of triangles that intersect, by the panels that they are of, the smaller index
 /// first; the body counts as the panel after the last. Exact. What the body does to itself is not
 /// looked at.
-/// @param body nullptr: panels only
 std::map<std::array<int, 2>, int> findOverlaps(const std::vector<PanelMesh>& meshes,
-                                               const Body* body);
+                                               const Body& body);
 
 }  // namespace haptex::garment

@@ -17,7 +17,11 @@ struct PanelToPlace {
   PanelView view;
   std::optional<Eigen::Isometry3d> pose = {};  ///< lies there, in the world, and stays
   CarrierSurface surface = {};                 ///< if it has no pose
-  double least_height = 0.0;                   ///< m, where its middle is looked for at first
+  /// m, of the surface in the middle of its panels. Between panels of one carrier distances are
+  /// those on a cylinder of this radius: on a cone panels with gaps between them would slide to
+  /// where it is narrow.
+  double radius = 0.0;
+  double least_height = 0.0;  ///< m, where its middle is looked for at first
   double largest_height = 0.0;
   std::optional<double> angle = {};   ///< given
   std::optional<double> height = {};  ///< given
