@@ -189,7 +189,14 @@ ClothMesh loadObj(const std::string& path, MeshGroups& groups) {
 }
 
 ObstacleMesh loadObjSurface(const std::string& path) {
-  ClothMesh mesh = ObjReader(path, RestCoordinates::kIgnored).read();
+  MeshGroups unused;
+  return loadObjSurface(path, unused);
+}
+
+ObstacleMesh loadObjSurface(const std::string& path, MeshGroups& groups) {
+  ObjReader reader(path, RestCoordinates::kIgnored);
+  ClothMesh mesh = reader.read();
+  groups = reader.groups();
   if (mesh.triangles.empty()) throw std::invalid_argument(path + ": the mesh has no triangle");
   return {std::move(mesh.initial_positions), std::move(mesh.triangles)};
 }

@@ -64,9 +64,9 @@ TEST(GarmentRefusals, NamePanelEdgeAndWhatIsAllowed) {
        "panel 'back': carrier 'torso' is unknown: there is none"},
       {"segment: spine}", "segment: spine}\n  - {name: torso, shape: cone, segment: neck}",
        "carrier 'torso' is there twice: names must differ"},
-      {"along: 0.5", "along: 1.5",
-       "panel 'back': lies at angle 3.14 rad, 1.5 along its carrier: allowed are finite angles and "
-       "0 to 1"},
+      {"along: 0.5", "along: 3.5",
+       "panel 'back': lies at angle 3.14 rad, 3.5 along its carrier, turned by 0 rad: allowed are "
+       "finite angles and -2 to 3"},
       {"position: [0.2, 0, 1]", "position: [0.2, 0, 30]",
        "panel 'front': its position has a coordinate of 30 m: allowed are finite ones up to 20 m"},
   };

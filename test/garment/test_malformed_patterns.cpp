@@ -1,63 +1,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <exception>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "dxf_text.h"
 #include "garment_fixtures.h"
-#include "haptex/base/repeatable_random.h"
 #include "haptex/garment/importers/dxf_pattern.h"
 #include "haptex/garment/importers/garment_code.h"
 #include "haptex/garment/triangulation/panel_mesh.h"
+#include "malformed_text.h"
 
 namespace haptex::garment::test_malformed_patterns {
 namespace {
-
-using base::RepeatableRandom;
-
-std::size_t below(RepeatableRandom& random, std::size_t count) {
-  return static_cast<std::size_t>(random.below(static_cast<int>(count)));
-}
-
-// One of the numbers in a text becomes another one.
-void replaceNumber(std::string& text, RepeatableRandom& random) {
-  const std::array<const char*, 12> others = {"nan", "1e308", "-1e308", "-1",   "0",  "1e-320",
-                                              "",    "1e999", "0.3",    "1e-9", "99", "2147483648"};
-  const std::size_t begin = text.find_first_of("0123456789", below(random, text.size()));
-  if (begin == std::string::npos) return;
-  const std::size_t end = text.find_first_not_of("0123456789.-", begin);
-  text.replace(begin, std::min(end, text.size()) - begin, others[below(random, others.size())]);
-}
-
-void mutate(std::string& text, RepeatableRandom& random) {
-  if (text.empty()) return;
-  const std::size_t at = below(random, text.size());
-  const std::size_t length = 1 + below(random, std::min<std::size_t>(40, text.size() - at));
-  switch (below(random, 7)) {
-    case 0:
-      text.erase(at, length);
-      break;
-    case 1:
-      text.insert(at, text.substr(below(random, text.size()), length));
-      break;
-    case 2:
-      text[at] = static_cast<char>(below(random, 256));
-      break;
-    case 3:
-      text.resize(at);
-      break;
-    case 4:
-      text.insert(at, std::string(length, "[{(:,-\"0"[below(random, 8)]));
-      break;
-    default:
-      replaceNumber(text, random);
-      break;
-  }
-}
 
 struct Outcome {
   int accepted = 0, refused = 0;
@@ -68,10 +24,7 @@ Outcome readMalformed(const std::string& text,
                       const std::function<Pattern(const std::string&)>& read) {
   Outcome outcome;
   for (int seed = 0; seed < 200; ++seed) {
-    RepeatableRandom random(1000 + seed);
-    std::string malformed = text;
-    const std::size_t mutations = 1 + below(random, 3);
-    for (std::size_t i = 0; i < mutations; ++i) mutate(malformed, random);
+    const std::string malformed = malformedText(text, 1000 + seed);
     try {
       const Pattern pattern = read(malformed);
       requireSound(pattern, "again");

@@ -42,4 +42,7 @@ ClothMesh loadObj(const std::string& path, MeshGroups& groups);
 /// @throws std::invalid_argument naming file, line and what is wrong, or that there is no triangle
 ObstacleMesh loadObjSurface(const std::string& path);
 
+/// The same, and its groups.
+ObstacleMesh loadObjSurface(const std::string& path, MeshGroups& groups);
+
 }  // namespace haptex::mesh

@@ -80,9 +80,12 @@ class PatternReader {
 
   static std::variant<Eigen::Isometry3d, OnCarrier> readPlacement(const YamlValue& value) {
     if (value.isMap() && value.has("carrier")) {
-      value.requireKeys({"carrier", "angle", "along"});
-      return OnCarrier{value.at("carrier").text(), value.at("angle").number(),
-                       value.at("along").number()};
+      value.requireKeys({"carrier"}, {"angle", "along", "turn"});
+      OnCarrier on{value.at("carrier").text()};
+      if (value.has("angle")) on.angle = value.at("angle").number();
+      if (value.has("along")) on.along = value.at("along").number();
+      if (value.has("turn")) on.turn = value.at("turn").number();
+      return on;
     }
     value.requireKeys({"position", "rpy"});
     const Eigen::Vector3d rpy = readVector(value.at("rpy"));

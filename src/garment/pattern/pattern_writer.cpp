@@ -74,8 +74,11 @@ void writeOutline(const Outline& outline, const std::string& first, const std::s
 
 void writePlacement(const Panel& panel, std::ostream& out) {
   if (const auto* on = std::get_if<OnCarrier>(&panel.placement)) {
-    out << "    placement: {carrier: " << quoted(on->carrier) << ", angle: " << number(on->angle)
-        << ", along: " << number(on->along) << "}\n";
+    out << "    placement: {carrier: " << quoted(on->carrier);
+    if (on->angle) out << ", angle: " << number(*on->angle);
+    if (on->along) out << ", along: " << number(*on->along);
+    if (on->turn != 0.0) out << ", turn: " << number(on->turn);
+    out << "}\n";
     return;
   }
   const auto& pose = std::get<Eigen::Isometry3d>(panel.placement);

@@ -154,16 +154,18 @@ class SoundPattern {
       }
       return;
     }
-    const auto& [carrier, angle, along] = std::get<OnCarrier>(panel.placement);
-    if (carriers.count(carrier) == 0) {
+    const auto& on = std::get<OnCarrier>(panel.placement);
+    if (carriers.count(on.carrier) == 0) {
       std::string known;
       for (const std::string& name : carriers) known += (known.empty() ? "" : ", ") + name;
-      refuse(at(panel), ": carrier '", carrier,
+      refuse(at(panel), ": carrier '", on.carrier,
              "' is unknown: ", known.empty() ? "there is none" : "there are " + known);
     }
-    if (!std::isfinite(angle) || !(along >= 0.0 && along <= 1.0)) {
+    const double angle = on.angle.value_or(0.0), along = on.along.value_or(0.0);
+    if (!std::isfinite(angle) || !std::isfinite(on.turn) || !(along >= -2.0 && along <= 3.0)) {
       refuse(at(panel), ": lies at angle ", angle, " rad, ", along,
-             " along its carrier: allowed are finite angles and 0 to 1");
+             " along its carrier, turned by ", on.turn,
+             " rad: allowed are finite angles and -2 to 3");
     }
   }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -47,11 +48,15 @@ struct Carrier {
   std::string segment;  ///< of the body, by its name
 };
 
-/// Where the middle of a panel lies on a carrier.
+/// Where the middle of a panel lies on a carrier; what is not said follows from its seams.
 struct OnCarrier {
   std::string carrier;
-  double angle = 0.0;  ///< rad, around the segment from its front, counter-clockwise from its end
-  double along = 0.5;  ///< of the segment's length, from its beginning
+  /// rad, around the segment from its front, counter-clockwise from its end
+  std::optional<double> angle = {};
+  std::optional<double> along = {};  ///< of the segment's length, from its beginning
+  /// rad, counter-clockwise as seen from the right side; at 0 the panel's y axis runs along the
+  /// segment towards its higher end.
+  double turn = 0.0;
 };
 
 /// A panel lies in a plane (x, y), in metres. Seen from the right side of its fabric, its outline
