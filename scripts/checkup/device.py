@@ -163,6 +163,9 @@ def check_device(machine, name, folder):
         return
     result = machine.run(program, os.path.abspath(path))
     if result.status != 0:
-        yield error(result.output or f'{path} could not be asked', 'unplug it and plug it in again')
+        # Processes of other users cannot be looked into.
+        is_held = 'another program has it open' in result.output
+        yield error(result.output or f'{path} could not be asked',
+                    f'sudo fuser -v {path} tells which' if is_held else 'unplug it and plug it in again')
         return
     yield from check_answer(machine, path, yaml.safe_load(result.output), folder)

@@ -60,9 +60,9 @@ class Machine:
 
     def program(self, name):
         """@returns the path of one of the package, as rosrun finds it, or None"""
-        places = [self.root, self.root.parent / 'bin']
-        places += [pathlib.Path(prefix) / 'lib' / 'haptex'
-                   for prefix in self.environment.get('CMAKE_PREFIX_PATH', '').split(':') if prefix]
+        places = [pathlib.Path(prefix) / 'lib' / 'haptex'
+                  for prefix in self.environment.get('CMAKE_PREFIX_PATH', '').split(':') if prefix]
+        places += [self.root, self.root.parent / 'bin']
         return next((str(place / name) for place in places if os.access(place / name, os.X_OK)), None)
 
     def groups(self, configured):

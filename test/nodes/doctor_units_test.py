@@ -232,6 +232,9 @@ class Device(DoctorTest):
     def test_a_port_that_cannot_be_opened(self):
         found = list(self.found(commands={'ask_device': Answer(1, 'ask_device: input/output error')}))
         self.assert_found(found, ERROR, 'input/output error', 'unplug')
+        held = f'ask_device: {PORT}: another program has it open'
+        self.assert_found(self.found(commands={'ask_device': Answer(1, held)}), ERROR, held,
+                          f'sudo fuser -v {PORT}')
 
     def test_silence_and_garbage(self):
         silence = 'device: none\ngood_frames: 0\ncorrupt_frames: 0\ngarbage_bytes: 0\nlost_states: 0\n'

@@ -44,6 +44,21 @@ class Documentation(unittest.TestCase):
             for link in re.findall(r'\]\(([^)#:]+)(?:#[^)]*)?\)', page.read_text('utf-8')):
                 self.assertTrue((page.parent / link).exists(), f'{page.name}: {link}')
 
+    def test_what_users_met_has_the_tests_that_the_page_names(self):
+        rows = [line.split(' | ') for line in (ROOT / 'docs/complaints.md').read_text('utf-8').splitlines()
+                if line.startswith('| ')][2:]
+        self.assertGreater(len(rows), 10)
+        for met, _, shown in rows:
+            file, names = None, 0
+            for word in re.findall('`([^`]+)`', shown):
+                if '/' in word:
+                    file = (ROOT / word).read_text('utf-8')
+                    continue
+                names += 1
+                self.assertRegex(file, rf'(?m)^(    def {word}\(|TEST(_F)?\(\w+, {word}\)|{word}\(\) {{)',
+                                 f'{met}: {word}')
+            self.assertGreater(names, 0, met)
+
     @unittest.skipUnless(shutil.which('doxygen'), 'doxygen is not installed')
     def test_doxygen_has_nothing_to_say_of_the_headers(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -36,8 +36,9 @@ class LaunchFiles(unittest.TestCase):
                 self.assertEqual(loaded(launch, *arguments)[0][name], markers, (launch, arguments))
 
     def test_no_name_is_of_one_namespace_only(self):
-        for folder in ('launch', 'rviz'):
-            for path in (ROOT / folder).iterdir():
+        installed = [ROOT / 'scripts' / name for name in ('demo_report', 'bag_report')]
+        for folder in (ROOT / 'launch', ROOT / 'rviz', *installed):
+            for path in filter(pathlib.Path.is_file, folder.iterdir()):
                 self.assertEqual(re.findall('[^)]/haptex/.*', path.read_text('utf-8')), [], path)
 
     def test_frames_of_a_fixed_hand_have_the_prefix(self):

@@ -2,8 +2,12 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <chrono>
+#include <string>
 #include <thread>
 
+#include "haptex/nodes/common/loop_diagnostics.h"
+#include "haptex/realtime/periodic_thread.h"
 #include "haptex/realtime/scheduling.h"
 
 namespace haptex::nodes::test_scheduling {
@@ -62,6 +66,20 @@ TEST(OrdinaryScope, GivesThePriorityBackAtItsEnd) {
     EXPECT_EQ(policy, SCHED_FIFO);
     EXPECT_EQ(parameters.sched_priority, realtime::kMessagePriority);
   });
+}
+
+TEST(LoopDiagnostics, ALoopThatMissedPeriodsSaysHowManyUntilItIsInTimeAgain) {
+  using namespace std::chrono_literals;
+  realtime::PeriodicThread loop(1ms, [](base::Time) { std::this_thread::sleep_for(5500us); });
+  while (loop.periods() < 2) std::this_thread::yield();
+  loop.stop();
+  LoopDiagnostics diagnostics;
+  diagnostic_updater::DiagnosticStatusWrapper status;
+  diagnostics.diagnose(loop, status);
+  EXPECT_EQ(status.level, diagnostic_msgs::DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "missed " + std::to_string(loop.missed()) + " periods lately");
+  diagnostics.diagnose(loop, status);  // nothing since
+  EXPECT_EQ(status.message.rfind("in time", 0), 0u) << status.message;
 }
 
 }  // namespace
