@@ -113,7 +113,7 @@ double Tape::girth(const Body& body) const {
       const Vector3d a = body.vertices[triangle[i]] - point;
       const Vector3d b = body.vertices[triangle[(i + 1) % 3]] - point;
       const double above = normal.dot(a), below = normal.dot(b);
-      if (!(above >= 0.0 && below < 0.0)) continue;  // each edge of the surface once
+      if ((above < 0.0) == (below < 0.0)) continue;
       const Vector3d cut = a + (b - a) * (above / (above - below));
       section.emplace_back(first.dot(cut), second.dot(cut));
     }

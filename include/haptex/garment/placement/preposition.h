@@ -40,8 +40,8 @@ struct Preposition {
   std::vector<Overlap> overlaps;  ///< what could not be avoided
 };
 
-/// Lays panels on their carriers around a body, right side outwards, after Fuhrmann, Gross and
-/// Luckas (2003), and sets the initial positions of their meshes: rest coordinates stay as they
+/// Lays panels on their carriers around a body, right side outwards, after Fuhrmann et al.
+/// (2003), and sets the initial positions of their meshes: rest coordinates stay as they
 /// are. Panels that have a position stay there.
 ///
 /// A cylinder or cone has the axis of its segment, shifted to the middle of the body, and encloses

@@ -1,6 +1,8 @@
 // Parts of validateGarment(), by what they look at.
 #pragma once
 
+#include <string>
+
 #include "haptex/oracles/checks/validation.h"
 
 namespace haptex::oracles {
@@ -15,5 +17,12 @@ void validateCones(const Sink& sink);
 /// Strips with a seam against those in one piece: length under their weight, period, and energy of
 /// bending.
 void validateSewnStrips(const Sink& sink);
+
+/// Figures with measurements: girths, by another formula than that by which they are fitted, and
+/// lengths; whether they are closed.
+void validateBodies(const std::string& config_directory, const Sink& sink);
+
+/// Panels on a cone; the shipped garments with carriers on the shipped bodies.
+void validatePreposition(const std::string& config_directory, const Sink& sink);
 
 }  // namespace haptex::oracles

@@ -2,10 +2,12 @@
 
 namespace haptex::oracles {
 
-void validateGarment(const std::string&, const Sink& sink) {
+void validateGarment(const std::string& config_directory, const Sink& sink) {
   validateSeams(sink);
   validateCones(sink);
   validateSewnStrips(sink);
+  validateBodies(config_directory, sink);
+  validatePreposition(config_directory, sink);
 }
 
 }  // namespace haptex::oracles

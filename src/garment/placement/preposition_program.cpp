@@ -1,0 +1,148 @@
+#include "haptex/garment/placement/preposition_program.h"
+
+#include <charconv>
+#include <exception>
+#include <fstream>
+#include <ostream>
+#include <stdexcept>
+
+#include "haptex/base/require.h"
+#include "haptex/garment/body/body_file.h"
+#include "haptex/garment/pattern/pattern_file.h"
+#include "haptex/garment/placement/preposition.h"
+
+namespace haptex::garment {
+namespace {
+
+const char* const kUsage =
+    "usage: preposition GARMENT.yaml BODY.yaml OUT.obj [--edge METRES] [--body BODY.obj]\n"
+    "Lays the panels of a garment around a body, in triangles with edges of METRES (0.01), and\n"
+    "writes them and the body as OBJ files: docs/bodies.md.\n";
+
+struct Request {
+  std::vector<std::string> files;
+  std::string body_obj;
+  double edge = 0.01;  // m
+};
+
+double readEdge(const std::string& text) {
+  double edge = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, edge);
+  if (result.ec != std::errc() || result.ptr != end || !(edge >= 1e-3 && edge <= 1.0)) {
+    base::refuse("--edge is '", text, "': allowed are 0.001 to 1 m");
+  }
+  return edge;
+}
+
+Request parse(const std::vector<std::string>& arguments) {
+  Request request;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& argument = arguments[i];
+    if (argument == "--edge" || argument == "--body") {
+      if (++i == arguments.size()) base::refuse(argument, " needs a value");
+      if (argument == "--edge") {
+        request.edge = readEdge(arguments[i]);
+      } else {
+        request.body_obj = arguments[i];
+      }
+    } else if (argument.rfind("--", 0) == 0) {
+      base::refuse(argument, " is unknown; allowed are --edge and --body");
+    } else {
+      request.files.push_back(argument);
+    }
+  }
+  if (request.files.size() != 3) {
+    base::refuse(request.files.size(),
+                 " files: needed are three, the garment, the body and the one to write");
+  }
+  return request;
+}
+
+std::ofstream openToWrite(const std::string& path) {
+  std::ofstream file(path);
+  if (!file) throw std::runtime_error(path + ": cannot be written");
+  file.precision(9);
+  return file;
+}
+
+void requireWritten(std::ofstream& file, const std::string& path) {
+  if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
+}
+
+void writePanels(const Pattern& pattern, const std::vector<PanelMesh>& meshes,
+                 const std::string& path) {
+  std::ofstream file = openToWrite(path);
+  std::size_t first = 1;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const mesh::ClothMesh& mesh = meshes[i].mesh;
+    file << "g " << pattern.panels[i].name << '\n';
+    for (const auto& position : mesh.initial_positions)
+      file << "v " << position.transpose() << '\n';
+    for (const auto& rest : mesh.rest_coordinates) file << "vt " << rest.transpose() << '\n';
+    for (const auto& triangle : mesh.triangles) {
+      file << 'f';
+      for (const int corner : triangle) file << ' ' << first + corner << '/' << first + corner;
+      file << '\n';
+    }
+    first += mesh.initial_positions.size();
+  }
+  requireWritten(file, path);
+}
+
+void writeBody(const Body& body, const std::string& path) {
+  std::ofstream file = openToWrite(path);
+  file << "g body\n";
+  for (const auto& vertex : body.vertices) file << "v " << vertex.transpose() << '\n';
+  for (const auto& [a, b, c] : body.triangles) {
+    file << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
+  }
+  requireWritten(file, path);
+}
+
+void print(const Pattern& pattern, const Preposition& laid, std::ostream& out) {
+  out << "# panel\tname\tradius_m\tslope\tangle_rad\talong\tchange_along_surface\t"
+         "change_of_straight_edges\tsagitta_m\n";
+  for (const LaidPanel& panel : laid.panels) {
+    out << "panel\t" << pattern.panels[panel.panel].name;
+    for (const double value : {panel.surface.radius, panel.surface.slope, panel.angle, panel.along,
+                               panel.surface_change, panel.straight_change, panel.sagitta}) {
+      out << '\t' << base::shortNumber(value);
+    }
+    out << '\n';
+  }
+  out << "# intersect\tfirst\tsecond\tpairs\n";
+  for (const Overlap& overlap : laid.overlaps) {
+    out << "intersect\t" << overlap.first << '\t' << overlap.second << '\t' << overlap.pairs
+        << '\n';
+  }
+}
+
+}  // namespace
+
+int prepositionProgram(const std::vector<std::string>& arguments, std::ostream& out,
+                       std::ostream& err) {
+  Request request;
+  try {
+    request = parse(arguments);
+  } catch (const std::exception& error) {
+    err << error.what() << '\n' << kUsage;
+    return 2;
+  }
+  try {
+    const Pattern pattern = loadPattern(request.files[0]);
+    const Body body = loadBody(request.files[1]);
+    std::vector<PanelMesh> meshes;
+    for (const Panel& panel : pattern.panels) meshes.push_back(triangulate(panel, request.edge));
+    const Preposition laid = preposition(pattern, body, meshes);
+    writePanels(pattern, meshes, request.files[2]);
+    if (!request.body_obj.empty()) writeBody(body, request.body_obj);
+    print(pattern, laid, out);
+    return laid.overlaps.empty() ? 0 : 3;
+  } catch (const std::exception& error) {
+    err << error.what() << '\n';
+    return 1;
+  }
+}
+
+}  // namespace haptex::garment
