@@ -64,7 +64,6 @@ SelfProximity::SelfProximity(const KdopHierarchy& hierarchy, const std::vector<V
   // Rounding of distances must not tell apart what is a neighbour and what is flat.
   reach_ = std::max(distance_ / FlatRegions::kLeastStretch, kTouching * at_reference.extent());
   reach_ *= 1.0 + 1e-6;
-  longest_edge_ = 0.0;
   for (const Edge& edge : elements_.edges) {
     longest_edge_ = std::max(longest_edge_, (reference[edge[0]] - reference[edge[1]]).norm());
   }
@@ -72,6 +71,13 @@ SelfProximity::SelfProximity(const KdopHierarchy& hierarchy, const std::vector<V
   findNeighbours(at_reference, reference_touches);
   flat_is_known_ = !reference_touches;
 }
+
+SelfProximity::SelfProximity(const KdopHierarchy& hierarchy, double distance)
+    : hierarchy_(hierarchy),
+      elements_(hierarchy.triangles()),
+      leaf_elements_(hierarchy, elements_),
+      flat_(hierarchy, hierarchy.positions()),
+      distance_(requireDistance(distance)) {}
 
 void SelfProximity::findNeighbours(const KdopHierarchy& hierarchy, bool& reference_touches) {
   hierarchy.computePairLimits(reach_, limits_);
@@ -94,7 +100,7 @@ void SelfProximity::findNeighbours(const KdopHierarchy& hierarchy, bool& referen
 void SelfProximity::find(std::vector<NearPair>& found, std::vector<double>* bounds,
                          SelfProximityCost* cost) {
   found.clear();
-  if (bounds != nullptr) bounds->assign(reference_.size(), 0.5 * distance_);
+  if (bounds != nullptr) bounds->assign(hierarchy_.positions().size(), 0.5 * distance_);
   hierarchy_.computePairLimits(distance_, limits_);
   leaf_elements_.begin(hierarchy_, distance_);
   cost_ = {};

@@ -53,6 +53,10 @@ class SelfProximity {
   SelfProximity(const KdopHierarchy& hierarchy, const std::vector<Eigen::Vector3d>& reference,
                 double distance);
 
+  /// Of a mesh that has no flat state: no pair counts as one of neighbours, and no part is left
+  /// out.
+  SelfProximity(const KdopHierarchy& hierarchy, double distance);
+
   /// Looks for pairs where the hierarchy was last fitted to. Does not allocate once all buffers
   /// have had the size that they need.
   /// @param found replaced; ordered by where the elements are in the hierarchy, the same for the
@@ -88,8 +92,8 @@ class SelfProximity {
   FlatRegions flat_;
   std::vector<Eigen::Vector3d> reference_;  // m
   double distance_;                         // m
-  double reach_;                            // m, of neighbours in the reference state
-  double longest_edge_;                     // m, in the reference state
+  double reach_ = 0.0;                      // m, of neighbours in the reference state
+  double longest_edge_ = 0.0;               // m, in the reference state
   std::vector<ElementPair> neighbours_;
   std::vector<bool> is_excluded_;  // of neighbours_
   bool flat_is_known_ = false;

@@ -83,14 +83,6 @@ void requirePanels(const mesh::ClothMesh& mesh, const std::vector<material::Fabr
   }
 }
 
-void addSelfContact(const mesh::ClothMesh& mesh, const material::Fabric& fabric, ForceSum& forces) {
-  if (mesh.panelCount() > 1) {
-    throw std::invalid_argument("self_collision knows one panel, and the mesh has " +
-                                std::to_string(mesh.panelCount()));
-  }
-  forces.add(std::make_unique<SelfContact>(mesh.triangles, mesh::flatPositions(mesh), fabric));
-}
-
 void addMembrane(std::vector<MembraneElement> elements, const material::Fabric& fabric,
                  const ModelledEffects& effects, ForceSum& forces) {
   const bool hysteresis = effects.membrane_hysteresis && !MembraneFriction::isZero(fabric);
@@ -171,7 +163,9 @@ void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fa
   requirePanels(mesh, fabrics, effects);
   for (const material::Fabric& fabric : fabrics) requireModelled(fabric, effects);
   addElasticity(mesh, fabrics, effects, forces);
-  if (effects.self_collision) addSelfContact(mesh, fabrics.front(), forces);
+  if (effects.self_collision) {
+    forces.add(std::make_unique<SelfContact>(RestSurface(mesh), fabrics.front()));
+  }
   if (effects.air) forces.add(std::make_unique<Aerodynamics>(restElements(mesh), *effects.air));
   if (!effects.bending || effects.elasticity == Elasticity::kMassSpring) return;
   for (int p = 0; p < mesh.panelCount(); ++p) {

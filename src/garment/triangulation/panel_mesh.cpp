@@ -26,20 +26,18 @@ double distanceToLine(const Vector2d& point, const Vector2d& a, const Vector2d& 
   return (point - a - t * ab).norm();
 }
 
-// Parameters that divide the length of a curve evenly.
-std::vector<double> divided(const Curve& curve, int count) {
-  std::vector<double> parameters;
-  for (int i = 0; i <= count; ++i) {
-    parameters.push_back(curve.parameterAt(curve.length() * i / count));
-  }
-  parameters.back() = 1.0;
-  return parameters;
+// Lengths that divide a piece of a curve evenly, its ends among them.
+std::vector<double> divided(double from, double to, int count) {
+  std::vector<double> lengths;
+  for (int i = 0; i < count; ++i) lengths.push_back(from + (to - from) * i / count);
+  lengths.push_back(to);
+  return lengths;
 }
 
-bool within(const Curve& curve, const std::vector<double>& parameters, double tolerance) {
+bool within(const Curve& curve, const std::vector<double>& lengths, double tolerance) {
   constexpr int kLooks = 8;
-  for (std::size_t i = 1; i < parameters.size(); ++i) {
-    const double from = parameters[i - 1], to = parameters[i];
+  for (std::size_t i = 1; i < lengths.size(); ++i) {
+    const double from = curve.parameterAt(lengths[i - 1]), to = curve.parameterAt(lengths[i]);
     const Vector2d a = curve.at(from), b = curve.at(to);
     for (int k = 1; k < kLooks; ++k) {
       const Vector2d point = curve.at(from + (to - from) * k / kLooks);
@@ -49,61 +47,16 @@ bool within(const Curve& curve, const std::vector<double>& parameters, double to
   return true;
 }
 
-// As few parts as keep to both: the lengths at which they meet, and the points there.
-struct Divisions {
-  std::vector<double> lengths;
-  std::vector<Vector2d> points;
-};
-
-// The end of the run before is the start of this one. Returns where it ends.
-double append(Divisions& all, const Divisions& run, double passed) {
-  if (!all.points.empty()) {
-    all.points.pop_back();
-    all.lengths.pop_back();
-  }
-  all.points.insert(all.points.end(), run.points.begin(), run.points.end());
-  for (const double length : run.lengths) all.lengths.push_back(passed + length);
-  return all.lengths.back();
-}
-
-Divisions divideEvenly(const Curve& curve, double edge_length, double tolerance) {
-  const double fewest = std::ceil(curve.length() / edge_length * (1.0 - 1e-9));
-  int count = static_cast<int>(std::clamp(fewest, 1.0, static_cast<double>(kMostDivisions)));
-  std::vector<double> parameters = divided(curve, count);
-  const bool straight = curve.kind() == Curve::Kind::kLine && curve.points().size() == 2;
-  while (!straight && count < kMostDivisions && !within(curve, parameters, tolerance)) {
-    count += 1 + count / 8;
-    parameters = divided(curve, count);
-  }
-  Divisions divisions;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    divisions.lengths.push_back(curve.length() * static_cast<double>(i) / count);
-    divisions.points.push_back(curve.at(parameters[i]));
-  }
-  return divisions;
-}
-
 // Lines are divided in their corners, too: even parts that come near enough to these would be
 // small.
-Divisions divide(const Curve& curve, double edge_length, double tolerance) {
-  if (curve.kind() != Curve::Kind::kLine) return divideEvenly(curve, edge_length, tolerance);
-  Divisions all;
-  std::vector<Vector2d> run;
-  double passed = 0.0;
-  const std::vector<Vector2d>& points = curve.points();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!run.empty() && points[i] == run.back()) continue;
-    if (run.size() >= 2) {
-      const Vector2d in = run.back() - run[run.size() - 2], out = points[i] - run.back();
-      if (in.dot(out) < std::cos(kInnerCorner) * in.norm() * out.norm()) {
-        passed = append(all, divideEvenly(Curve::line(run), edge_length, tolerance), passed);
-        run = {run.back()};
-      }
-    }
-    run.push_back(points[i]);
+std::vector<double> divide(const Curve& curve, double edge_length, double tolerance) {
+  const std::vector<double> corners = cornerLengths(curve);
+  std::vector<double> all = {0.0};
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const int parts = fewestParts(curve, corners[i - 1], corners[i], edge_length, tolerance);
+    const std::vector<double> piece = divided(corners[i - 1], corners[i], parts);
+    all.insert(all.end(), piece.begin() + 1, piece.end());
   }
-  append(all, divideEvenly(Curve::line(run), edge_length, tolerance), passed);
-  all.lengths.back() = curve.length();
   return all;
 }
 
@@ -135,7 +88,8 @@ struct DividedOutlines {
 };
 
 // In rest coordinates.
-DividedOutlines divide(const Panel& panel, double edge_length, double tolerance) {
+DividedOutlines divide(const Panel& panel, double edge_length, double tolerance,
+                       const EdgeDivisions& given) {
   const Threads threads(panel);
   DividedOutlines all;
   int begin = 0;
@@ -146,11 +100,12 @@ DividedOutlines divide(const Panel& panel, double edge_length, double tolerance)
     for (std::size_t e = 0; e < outline.size(); ++e) {
       const Curve& curve = outline[e].curve;
       EdgeParticles& edge = edges.emplace_back();
-      Divisions divisions = divide(curve, edge_length, tolerance);
-      edge.lengths = std::move(divisions.lengths);
-      for (std::size_t i = 0; i < divisions.points.size(); ++i) {
+      const bool is_given = !given.empty() && !given[k][e].empty();
+      edge.lengths = is_given ? given[k][e] : divide(curve, edge_length, tolerance);
+      for (std::size_t i = 0; i < edge.lengths.size(); ++i) {
         edge.particles.push_back(begin + static_cast<int>(loop.size()));
-        if (i + 1 < divisions.points.size()) loop.push_back(threads.restOf(divisions.points[i]));
+        if (i + 1 == edge.lengths.size()) break;
+        loop.push_back(threads.restOf(curve.at(curve.parameterAt(edge.lengths[i]))));
       }
     }
     edges.back().particles.back() = begin;
@@ -166,9 +121,10 @@ DividedOutlines divide(const Panel& panel, double edge_length, double tolerance)
   return all;
 }
 
-DividedOutlines divideWithoutCrossing(const Panel& panel, double edge_length, double tolerance) {
+DividedOutlines divideWithoutCrossing(const Panel& panel, double edge_length, double tolerance,
+                                      const EdgeDivisions& given) {
   for (int finer = 0;; ++finer) {
-    DividedOutlines all = divide(panel, edge_length, tolerance);
+    DividedOutlines all = divide(panel, edge_length, tolerance, given);
     const bool polygons = std::all_of(all.loops.begin(), all.loops.end(),
                                       [](const auto& loop) { return loop.size() >= 3; });
     const auto crossing = polygons ? findCrossing(all.lines) : std::nullopt;
@@ -251,7 +207,41 @@ mesh::ClothMesh makeMesh(const Panel& panel, const Delaunay& triangulation) {
 
 }  // namespace
 
+std::vector<double> cornerLengths(const Curve& curve) {
+  std::vector<double> lengths = {0.0};
+  const std::vector<Vector2d>& points = curve.points();
+  Vector2d in = Vector2d::Zero();
+  double passed = 0.0;
+  for (std::size_t i = 1; i < points.size() && curve.kind() == Curve::Kind::kLine; ++i) {
+    const Vector2d out = points[i] - points[i - 1];
+    if (out.isZero(0.0)) continue;
+    if (!in.isZero(0.0) && in.dot(out) < std::cos(kInnerCorner) * in.norm() * out.norm()) {
+      lengths.push_back(passed);
+    }
+    passed += out.norm();
+    in = out;
+  }
+  lengths.push_back(curve.length());
+  return lengths;
+}
+
+int fewestParts(const Curve& curve, double from, double to, double edge_length, double tolerance) {
+  const double fewest = std::ceil((to - from) / edge_length * (1.0 - 1e-9));
+  int count = static_cast<int>(std::clamp(fewest, 1.0, static_cast<double>(kMostDivisions)));
+  const bool straight = curve.kind() == Curve::Kind::kLine && curve.points().size() == 2;
+  while (!straight && count < kMostDivisions &&
+         !within(curve, divided(from, to, count), tolerance)) {
+    count += 1 + count / 8;
+  }
+  return count;
+}
+
 PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance, Interior interior) {
+  return triangulate(panel, edge_length, tolerance, interior, {});
+}
+
+PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance, Interior interior,
+                      const EdgeDivisions& divisions) {
   base::require(edge_length >= kShortestMeshEdge && edge_length <= kLargestCoordinate,
                 "triangulate", "edge_length", edge_length, ">= 0.0005 m and <= 20 m");
   base::require(std::isfinite(tolerance) && tolerance > 0.0, "triangulate", "tolerance", tolerance,
@@ -261,7 +251,7 @@ PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance, 
     base::refuse("panel '", panel.name, "': edges of ", edge_length, " m would make about ",
                  triangles, " triangles: allowed are ", kMostTriangles);
   }
-  DividedOutlines outlines = divideWithoutCrossing(panel, edge_length, tolerance);
+  DividedOutlines outlines = divideWithoutCrossing(panel, edge_length, tolerance, divisions);
   const bool grid = interior == Interior::kGrid;
   Delaunay triangulation(outlines.loops,
                          grid ? gridPoints(outlines.lines, edge_length) : std::vector<Vector2d>());

@@ -6,6 +6,7 @@
 #include "derivatives.h"
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
+#include "self_contact_fixtures.h"
 
 namespace haptex::cloth::test_panels {
 namespace {
@@ -15,8 +16,9 @@ using Eigen::Vector3d;
 
 /// The square cut along its middle line: the right half lies elsewhere on its fabric, turned, which
 /// its grain takes back.
-mesh::ClothMesh sewnSquare(int cells, int right_fabric = 0, double turn = 0.7) {
-  mesh::ClothMesh mesh = square(cells);
+mesh::ClothMesh sewnSquare(int cells, int right_fabric = 0, double turn = 0.7,
+                           double size = 0.1) {
+  mesh::ClothMesh mesh = square(cells, size);
   mesh.panels = {{0, 0.0}, {right_fabric, turn}};
   const double middle = 0.5 * mesh.rest_coordinates.back().x();
   const Eigen::Rotation2Dd turned(turn);
@@ -160,6 +162,49 @@ TEST(Panels, ThatCannotBeModelledAreRefused) {
   EXPECT_THROW(Cloth(sewnSquare(2, 1), linearFabric(), effects), std::invalid_argument);
   effects.elasticity = Elasticity::kMassSpring;
   EXPECT_THROW(Cloth(sewnSquare(2), linearFabric(), effects), std::invalid_argument);
+}
+
+/// Rolled up about an axis along warp, layers half a thickness apart.
+ClothState rolledUp(const Cloth& cloth) {
+  ClothState state = cloth.initialState();
+  const double pitch = 0.5 * cloth.selfContact()->law().thickness() / (2.0 * M_PI);
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    const Vector2d& rest = cloth.mesh().rest_coordinates[i];
+    const double radius = 0.002, angle = rest.x() / radius;
+    const double at = radius + pitch * angle;
+    state.positions[i] = {at * std::cos(angle), at * std::sin(angle), rest.y()};
+    state.velocities[i] = {0.1 * rest.x(), -0.2 * rest.y(), 0.3 * rest.x()};
+  }
+  return state;
+}
+
+TEST(Panels, TouchEachOtherAsTheSheetInOnePieceTouchesItself) {
+  const Cloth sheet(square(30), fabricNamed("wool"), selfCollision());
+  const Cloth sewn(sewnSquare(30), fabricNamed("wool"), selfCollision());
+  const ClothState state = rolledUp(sheet);
+  const double energy = sheet.selfContact()->energy(state.ofForces());
+  ASSERT_GT(energy, 0.0);
+  EXPECT_NEAR(sewn.selfContact()->energy(state.ofForces()), energy, 1e-12 * energy);
+  const std::vector<Vector3d> whole = contactForces(sheet, state);
+  const std::vector<Vector3d> parts = contactForces(sewn, state);
+  double scale = 0.0;
+  for (const Vector3d& force : whole) scale = std::max(scale, force.norm());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_LT((whole[i] - parts[i]).norm(), 1e-11 * scale);
+  }
+}
+
+TEST(Panels, ThatCollideHaveTrianglesLargerThanTheirThickness) {
+  EXPECT_NO_THROW(Cloth(square(4, 0.001), fabricNamed("wool"), selfCollision()));
+  try {
+    Cloth(sewnSquare(4, 0, 0.7, 0.001), fabricNamed("wool"), selfCollision());
+    FAIL() << "not refused";
+  } catch (const std::invalid_argument& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("the shortest altitude of a triangle is"),
+              std::string::npos)
+        << refusal.what();
+    EXPECT_NE(std::string(refusal.what()).find("allowed are longer edges"), std::string::npos);
+  }
 }
 
 }  // namespace

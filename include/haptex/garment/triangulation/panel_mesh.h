@@ -34,6 +34,17 @@ struct PanelMesh {
   std::vector<std::vector<EdgeParticles>> edges;  ///< per outline and edge
 };
 
+/// Lengths (m) at which edges of a panel are to be divided, ascending from 0 to their own: per
+/// outline and edge. Empty: as triangulate() finds best.
+using EdgeDivisions = std::vector<std::vector<std::vector<double>>>;
+
+/// Where a curve has to be divided at least: its ends, and the corners of lines of more than 20
+/// degrees. @returns m, ascending
+std::vector<double> cornerLengths(const Curve& curve);
+/// How many even parts of a piece of a curve are at most so long and keep so near to it.
+/// @param from, to m, lengths along the curve @param edge_length, tolerance m, > 0
+int fewestParts(const Curve& curve, double from, double to, double edge_length, double tolerance);
+
 /// The outline is divided evenly, lines with corners of more than 20 degrees there, into edges of
 /// at most that length that are no farther than the tolerance from its curves, or where they are
 /// near each other a part of it; refine() does the rest. Where it halves sides of the outline the
@@ -44,6 +55,10 @@ struct PanelMesh {
 ///   divided would cross itself or there would be more than about kMostTriangles
 PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance,
                       Interior interior = Interior::kEven);
+/// The same where some edges are divided already. Empty divisions divide nothing.
+/// @param divisions empty, or of all outlines and edges
+PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance, Interior interior,
+                      const EdgeDivisions& divisions);
 /// The same with a tolerance of a twentieth of the edge length.
 PanelMesh triangulate(const Panel& panel, double edge_length);
 

@@ -19,21 +19,30 @@ constexpr double kLongest = 0.25;
 // Of what sticks where it crosses, in masses of a particle per step.
 constexpr double kDamping = 5.0;
 
-double meanLength(const std::vector<proximity::Edge>& edges, const Positions& places) {
+/// m, at rest.
+double meanLength(const proximity::MeshElements& elements, const RestSurface& rest) {
+  std::vector<double> lengths(elements.edges.size());
+  for (std::size_t t = 0; t < rest.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const int next = (i + 1) % 3;
+      const auto edge = proximity::edgeBetween(rest.triangles[t][i], rest.triangles[t][next]);
+      lengths[elements.indexOf(edge)] = (rest.corners[t][next] - rest.corners[t][i]).norm();
+    }
+  }
   double sum = 0.0;
-  for (const auto& [a, b] : edges) sum += (places[b] - places[a]).norm();
-  return sum / static_cast<double>(edges.size());
+  for (const double length : lengths) sum += length;
+  return sum / static_cast<double>(lengths.size());
 }
 
 }  // namespace
 
 Untangling::Untangling(const Cloth& cloth)
     : topology_(cloth.mesh().triangles, cloth.particleCount()),
-      intersections_(cloth.mesh().triangles, mesh::flatPositions(cloth.mesh())),
+      intersections_(cloth.mesh().triangles, RestSurface(cloth.mesh()).places()),
       contours_(topology_),
       regions_(topology_, cloth.particleCount()),
       motion_(cloth.particleCount(), cloth.selfContact()->law().margin()),
-      edge_length_(meanLength(topology_.elements.edges, mesh::flatPositions(cloth.mesh()))),
+      edge_length_(meanLength(topology_.elements, RestSurface(cloth.mesh()))),
       ways_(cloth.particleCount()),
       weights_(cloth.particleCount()) {
   last_.reserve(cloth.particleCount());

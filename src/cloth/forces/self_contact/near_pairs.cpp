@@ -5,22 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "haptex/base/require.h"
+
 namespace haptex::cloth {
 namespace {
 
 using Eigen::Vector3d;
-
-/// Shortest altitude of the triangles (m).
-double shortestAltitude(const std::vector<std::array<int, 3>>& triangles,
-                        const std::vector<Vector3d>& positions) {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const auto& [a, b, c] : triangles) {
-    const Vector3d ab = positions[b] - positions[a], ac = positions[c] - positions[a];
-    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-    shortest = std::min(shortest, ab.cross(ac).norm() / longest);
-  }
-  return shortest;
-}
 
 /// As far as it costs little: below half of the altitudes a mesh has no neighbours to look at one
 /// by one (proximity::SelfProximity), and in layers pairs grow with the square of the distance.
@@ -31,15 +21,26 @@ double distanceToSearch(double altitude, double distance) {
 
 }  // namespace
 
-NearPairs::NearPairs(const std::vector<std::array<int, 3>>& triangles,
-                     const std::vector<Vector3d>& reference, double distance)
-    : hierarchy_(triangles, reference),
-      self_(hierarchy_, reference,
-            distanceToSearch(shortestAltitude(triangles, reference), distance)) {
+NearPairs::NearPairs(const RestSurface& rest, double distance)
+    : hierarchy_(rest.triangles, rest.places()), self_(makeProximity(hierarchy_, rest, distance)) {
   for (const proximity::ElementPair& pair : self_.neighbours()) {
     all_neighbours_.push_back(named(pair));
   }
   neighbours_ = all_neighbours_;
+}
+
+proximity::SelfProximity NearPairs::makeProximity(const proximity::KdopHierarchy& hierarchy,
+                                                  const RestSurface& rest, double distance) {
+  const double altitude = rest.shortestAltitude();
+  const double searched = distanceToSearch(altitude, distance);
+  if (rest.isFlat()) return {hierarchy, rest.places(), searched};
+  if (!(altitude > distance)) {
+    base::refuse("the shortest altitude of a triangle is ", base::shortNumber(altitude),
+                 " m; where panels that are sewn together collide with each other it must be above "
+                 "the thickness of the fabric, ",
+                 base::shortNumber(distance), " m: allowed are longer edges");
+  }
+  return {hierarchy, searched};
 }
 
 bool NearPairs::leaveOut(const TangleSides& sides) {

@@ -57,26 +57,28 @@ void fadeWhereParallel(const Vector3d& a, const Vector3d& b, double whole, doubl
 
 }  // namespace
 
-PairEnergies::PairEnergies(const std::vector<std::array<int, 3>>& triangles,
-                           const std::vector<Vector3d>& reference, const LayerLaw& law)
+PairEnergies::PairEnergies(const RestSurface& rest, const LayerLaw& law)
     : law_(law),
-      particles_(static_cast<int>(reference.size())),
-      triangles_(triangles),
-      cloth_(triangles, reference.size()),
-      vertex_areas_(reference.size(), 0.0) {
-  const proximity::MeshElements elements(triangles);
+      particles_(static_cast<int>(rest.places().size())),
+      triangles_(rest.triangles),
+      cloth_(rest.triangles, rest.places().size()),
+      vertex_areas_(rest.places().size(), 0.0) {
+  const proximity::MeshElements elements(triangles_);
   edge_areas_.assign(elements.edges.size(), 0.0);
-  edge_squares_ = edgeSquares(elements.edges, reference);
-  for (const auto& triangle : triangles) {
-    const auto& [a, b, c] = triangle;
-    const Vector3d ab = reference[b] - reference[a], ac = reference[c] - reference[a];
-    const double area = 0.5 * ab.cross(ac).norm();
+  edge_squares_.assign(elements.edges.size(), 0.0);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const double area = rest.area(t);
     const double part = area / 6.0;
     triangle_areas_.push_back(area);
     for (int i = 0; i < 3; ++i) {
-      const int from = triangle[i], to = triangle[(i + 1) % 3];
+      const int next = (i + 1) % 3;
+      const int from = triangles_[t][i], to = triangles_[t][next];
+      const int edge = elements.indexOf(proximity::edgeBetween(from, to));
       vertex_areas_[from] += part;
-      edge_areas_[elements.indexOf(proximity::edgeBetween(from, to))] += part;
+      edge_areas_[edge] += part;
+      // Of a seam, the longer of its two edges.
+      edge_squares_[edge] =
+          std::max(edge_squares_[edge], (rest.corners[t][next] - rest.corners[t][i]).squaredNorm());
     }
   }
 }

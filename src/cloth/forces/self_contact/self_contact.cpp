@@ -60,11 +60,10 @@ void addBlocks(const Pair& pair, const Matrix3d& block, linear::SymmetricBlockMa
 
 }  // namespace
 
-SelfContact::SelfContact(const std::vector<std::array<int, 3>>& triangles,
-                         const std::vector<Vector3d>& reference, const material::Fabric& fabric)
+SelfContact::SelfContact(const RestSurface& rest, const material::Fabric& fabric)
     : friction_(requireFriction(fabric)),
-      near_(triangles, reference, LayerLaw(fabric).thickness()),
-      energies_(triangles, reference, LayerLaw(fabric)) {}
+      near_(rest, LayerLaw(fabric).thickness()),
+      energies_(rest, LayerLaw(fabric)) {}
 
 void SelfContact::setObstacles(std::shared_ptr<ObstacleSurfaces> surfaces) {
   obstacle_friction_.clear();

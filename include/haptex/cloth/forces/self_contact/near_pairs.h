@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "haptex/cloth/forces/self_contact/rest_surface.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "haptex/proximity/self_proximity.h"
 
@@ -41,10 +42,11 @@ class NearPairs {
     }
   };
 
-  /// @param reference positions (m) of the particles in the flat fabric
-  /// @param distance  m, up to which pairs can be asked for, > 0. Looks for those up to searched().
-  NearPairs(const std::vector<std::array<int, 3>>& triangles,
-            const std::vector<Eigen::Vector3d>& reference, double distance);
+  /// @param distance m, up to which pairs can be asked for, > 0. Looks for those up to searched().
+  /// @throws std::invalid_argument if the cloth has several panels, and an altitude of a triangle
+  /// is
+  ///   not above the distance: neighbours are known in one panel only
+  NearPairs(const RestSurface& rest, double distance);
   NearPairs(const NearPairs&) = delete;
   NearPairs& operator=(const NearPairs&) = delete;
 
@@ -73,8 +75,8 @@ class NearPairs {
   bool isBeyond(const Pair& pair, double distance) const { return leastDistance(pair) > distance; }
   /// By kind, first and second.
   const std::vector<Pair>& pairs() const { return pairs_; }
-  /// Pairs that were at most 2 searched() apart in the reference: those that find() leaves out are
-  /// among them. None in a mesh whose altitudes are more.
+  /// Pairs that were at most 2 searched() apart in the flat fabric: those that find() leaves out
+  /// are among them. None in a mesh whose altitudes are more, or of several panels.
   const std::vector<Pair>& neighbours() const { return neighbours_; }
 
   double searched() const { return self_.distance(); }  ///< m
@@ -86,6 +88,9 @@ class NearPairs {
 
   Pair named(const proximity::ElementPair& pair) const;
   bool isInTangle(const Pair& pair) const;
+
+  static proximity::SelfProximity makeProximity(const proximity::KdopHierarchy& hierarchy,
+                                                const RestSurface& rest, double distance);
 
   proximity::KdopHierarchy hierarchy_;
   proximity::SelfProximity self_;

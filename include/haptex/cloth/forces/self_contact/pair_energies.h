@@ -9,6 +9,7 @@
 #include "haptex/cloth/forces/self_contact/layer_law.h"
 #include "haptex/cloth/forces/self_contact/near_obstacles.h"
 #include "haptex/cloth/forces/self_contact/near_pairs.h"
+#include "haptex/cloth/forces/self_contact/rest_surface.h"
 #include "haptex/cloth/forces/self_contact/surface_features.h"
 
 namespace haptex::cloth {
@@ -53,9 +54,7 @@ struct PairEnergy {
 /// obstacle's vertices and edges do between them is the guard's affair.
 class PairEnergies {
  public:
-  /// @param reference positions (m) of the particles in the flat fabric, without defects
-  PairEnergies(const std::vector<std::array<int, 3>>& triangles,
-               const std::vector<Eigen::Vector3d>& reference, const LayerLaw& law);
+  PairEnergies(const RestSurface& rest, const LayerLaw& law);
 
   /// Makes room for the obstacles.
   void setObstacles(const ObstacleSurfaces& surfaces);

@@ -43,11 +43,9 @@ class SelfContact final : public Force {
  public:
   static constexpr double kSlipSpeed = 1e-3;  ///< m/s
 
-  /// @param triangles without defects
-  /// @param reference positions (m) of the particles in the flat fabric
-  /// @throws std::invalid_argument if the fabric has no compression or no friction
-  SelfContact(const std::vector<std::array<int, 3>>& triangles,
-              const std::vector<Eigen::Vector3d>& reference, const material::Fabric& fabric);
+  /// @throws std::invalid_argument if the fabric has no compression or no friction, or what
+  ///   NearPairs says
+  SelfContact(const RestSurface& rest, const material::Fabric& fabric);
 
   void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;
   double energy(const ForceState& state) const override;

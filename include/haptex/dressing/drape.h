@@ -1,0 +1,81 @@
+// From flat panels to a garment at rest on a body.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "haptex/garment/garment_mesh.h"
+#include "haptex/material/fabric.h"
+#include "haptex/mesh/mesh.h"
+#include "haptex/mesh/obstacle.h"
+
+namespace haptex::dressing {
+
+/// How a garment is sewn and comes to rest. The motion is overdamped: every particle moves at
+/// F / (m damping), so the garment goes from equilibrium to equilibrium and does not swing.
+struct DrapeSettings {
+  double time_step = 0.02;  ///< s
+  double damping = 10.0;    ///< 1/s: free fall is at 9.81 / damping m/s
+  // While seams close:
+  double closing_speed = 0.5;  ///< m/s, at most, of the sides of a seam towards each other
+  double tension = 20.0;       ///< N/m, at most, by which they are pulled together
+  double lift = 1.0;           ///< m/s^2 upwards, as hands hold a garment up; may be 0
+  /// m: fabric is at least so thick then, but half of the shortest altitude of its triangles at
+  /// most. It keeps a distance from the body and from itself that sewing can do without.
+  double thickness = 4e-3;
+  /// m: nearer to the middle of its seam than that a particle is sewn.
+  double sewn_gap = 8e-3;
+  // Rest:
+  double rest_speed = 2e-3;  ///< m/s: the fastest particle has been slower than that for
+  double rest_time = 0.2;    ///< s
+  double most_time = 20.0;   ///< s, for closing and for coming to rest
+  int threads = 1;           ///< that share the work of a step
+};
+
+/// What came out, and what it took.
+struct DrapeOutcome {
+  /// Sewn into one mesh (mesh::merge()), with the panels of the garment. Initial positions are
+  /// those at the end.
+  mesh::ClothMesh mesh;
+  double closed_gap = 0.0;     ///< m, the largest that sewing closed at once
+  double closing_time = 0.0;   ///< s
+  double settling_time = 0.0;  ///< s
+  double fastest = 0.0;        ///< m/s, at the end
+  int steps = 0;
+  double computing_seconds = 0.0;  ///< wall clock
+  int intersecting_states = 0;     ///< that intersected themselves, of all after a step
+  std::size_t with_itself = 0;     ///< pairs of triangles that intersect at the end
+  std::size_t with_body = 0;       ///< likewise, of the garment and of the body
+  bool at_rest = false;            ///< or most_time was spent
+
+  bool isSound() const { return at_rest && with_itself == 0 && with_body == 0; }
+};
+
+/// Sews a garment on a body that stands still, and lets it come to rest under gravity.
+///
+/// 1. The sides of seams are pulled together, held up a little instead of their weight, and without
+/// friction. Panels touch the body
+///    and each other and pass through neither.
+/// 2. As soon as all are near, and what is sewn together there intersects neither itself nor the
+///    body, they become one mesh.
+/// 3. That comes to rest with weight, thickness and friction as they are.
+/// @param fabrics those that the garment names, in its order; contact knows one
+/// @param body closed surface, m, world frame
+/// @throws std::invalid_argument if a number of the settings is not finite and > 0, there are not
+/// as
+///   many fabrics as the garment names, one lacks bending, compression or friction, a panel touches
+///   the body at the start, or what cloth::Cloth and mesh::merge() say
+/// @throws std::runtime_error if a seam does not close within most_time, naming its panels and what
+///   is in the way, or a step is not finite
+DrapeOutcome drape(const garment::GarmentMesh& garment,
+                   const std::vector<material::Fabric>& fabrics, const mesh::ObstacleMesh& body,
+                   const DrapeSettings& settings);
+
+/// Pairs of a triangle of a cloth and one of a body that intersect.
+/// @param positions m
+std::size_t countBodyIntersections(const std::vector<Eigen::Vector3d>& positions,
+                                   const std::vector<std::array<int, 3>>& triangles,
+                                   const mesh::ObstacleMesh& body);
+
+}  // namespace haptex::dressing

@@ -1,0 +1,20 @@
+// Cloth as a Wavefront OBJ file.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "haptex/mesh/mesh.h"
+
+namespace haptex::mesh {
+
+/// Writes initial positions ("v", m), the rest coordinates of each triangle's corners along weft
+/// and warp as texture coordinates ("vt", m), and the triangles of each panel as a group ("g"), in
+/// their order. Numbers have as many digits as give them back.
+/// @param names of the panels, as many, without blanks
+/// @throws std::invalid_argument if there are not as many names as panels, or one is empty or has a
+///   blank or a control character
+void writeObj(const ClothMesh& mesh, const std::vector<std::string>& names, std::ostream& out);
+
+}  // namespace haptex::mesh

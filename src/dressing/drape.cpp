@@ -1,0 +1,200 @@
+#include "haptex/dressing/drape.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "haptex/base/constants.h"
+#include "haptex/base/require.h"
+#include "haptex/cloth/forces/self_contact/rest_surface.h"
+#include "haptex/dressing/overdamped_cloth.h"
+#include "haptex/dressing/seam_pull.h"
+#include "haptex/proximity/intersections.h"
+
+namespace haptex::dressing {
+namespace {
+
+using Eigen::Vector3d;
+
+void requireSound(const DrapeSettings& settings) {
+  const auto require = [](const char* name, double value) {
+    base::require(std::isfinite(value) && value > 0.0, "drape", name, value, "finite and > 0");
+  };
+  require("time_step", settings.time_step);
+  require("damping", settings.damping);
+  require("closing_speed", settings.closing_speed);
+  require("tension", settings.tension);
+  base::require(std::isfinite(settings.lift) && settings.lift >= 0.0, "drape", "lift",
+                settings.lift, "finite and >= 0");
+  require("thickness", settings.thickness);
+  require("sewn_gap", settings.sewn_gap);
+  require("rest_speed", settings.rest_speed);
+  require("rest_time", settings.rest_time);
+  require("most_time", settings.most_time);
+}
+
+class Dressing {
+ public:
+  Dressing(const garment::GarmentMesh& garment, const std::vector<material::Fabric>& fabrics,
+           const mesh::ObstacleMesh& body, const DrapeSettings& settings)
+      : garment_(garment), fabrics_(fabrics), body_(body), settings_(settings) {}
+
+  DrapeOutcome run() {
+    const auto begin = std::chrono::steady_clock::now();
+    closeSeams();
+    settle();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    outcome_.computing_seconds = took.count();
+    countIntersections();
+    return std::move(outcome_);
+  }
+
+ private:
+  OverdampedCloth makeCloth(const mesh::ClothMesh& mesh,
+                            const std::vector<material::Fabric>& fabrics,
+                            const cloth::ModelledEffects& effects,
+                            std::optional<double> friction) const {
+    mesh::Obstacle body{"body", body_, Eigen::Isometry3d::Identity()};
+    body.friction = friction;
+    return {mesh,
+            fabrics,
+            effects,
+            {std::move(body)},
+            {settings_.time_step, settings_.damping, settings_.threads}};
+  }
+
+  void step(OverdampedCloth& cloth, double& time) {
+    outcome_.fastest = cloth.step();
+    ++outcome_.steps;
+    outcome_.intersecting_states += cloth.report().tangle.pairs > 0 ? 1 : 0;
+    time += settings_.time_step;
+  }
+
+  /// Without friction, and thicker.
+  std::vector<material::Fabric> smoothFabrics() const {
+    const double altitude = cloth::RestSurface(garment_.mesh).shortestAltitude();
+    std::vector<material::Fabric> smooth = fabrics_;
+    for (material::Fabric& fabric : smooth) {
+      fabric.friction = 0.0;
+      if (!fabric.compression) continue;  // which is refused
+      double& thickness = fabric.compression->thickness;
+      thickness = std::max(thickness, std::min(settings_.thickness, 0.5 * altitude));
+    }
+    return smooth;
+  }
+
+  void closeSeams() {
+    cloth::ModelledEffects effects;
+    effects.gravity = {0.0, 0.0, settings_.lift};
+    effects.bending = effects.contacts = effects.self_collision = effects.point_loads = true;
+    OverdampedCloth cloth = makeCloth(garment_.mesh, smoothFabrics(), effects, 0.0);
+    SeamPull pull(garment_, settings_.tension);
+    while (!sew(cloth.state().positions, pull.gap(cloth.state().positions))) {
+      if (outcome_.closing_time > settings_.most_time) refuseGap(pull, cloth.state().positions);
+      const double farthest = 0.5 * settings_.closing_speed * settings_.time_step;
+      cloth.cloth().setPointLoads(pull.loads(cloth.state().positions, farthest));
+      step(cloth, outcome_.closing_time);
+    }
+  }
+
+  /// Where that leads to no intersection. @return whether it does not
+  bool sew(const std::vector<Vector3d>& positions, double gap) {
+    if (gap >= settings_.sewn_gap) return false;
+    mesh::ClothMesh mesh = garment_.mesh;
+    mesh.initial_positions = positions;
+    outcome_.mesh = mesh::merge(mesh, garment_.seams).mesh;
+    outcome_.closed_gap = gap;
+    countIntersections();
+    return outcome_.with_itself == 0 && outcome_.with_body == 0;
+  }
+
+  void countIntersections() {
+    const auto& [positions, triangles] =
+        std::tie(outcome_.mesh.initial_positions, outcome_.mesh.triangles);
+    outcome_.with_itself = proximity::countIntersections(positions, triangles);
+    outcome_.with_body = countBodyIntersections(positions, triangles, body_);
+  }
+
+  [[noreturn]] void refuseGap(const SeamPull& pull, const std::vector<Vector3d>& positions) const {
+    std::ostringstream message;
+    const double gap = pull.gap(positions);
+    message << "after " << settings_.most_time << " s ";
+    if (gap < settings_.sewn_gap) {
+      message << "the seams are closed to " << gap
+              << " m, and sewn they would intersect: " << outcome_.with_itself
+              << " pairs of triangles with themselves, " << outcome_.with_body << " with the body";
+    } else {
+      const mesh::Seam& seam = garment_.seams[pull.widestSeam(positions)];
+      message << "the seam of the panels '" << panelOf(seam.first) << "' and '"
+              << panelOf(seam.second) << "' is open by " << gap << " m, allowed are "
+              << settings_.sewn_gap << " m";
+    }
+    message << ". Panels have to lie beside the body so that their seams can close around it";
+    throw std::runtime_error(message.str());
+  }
+
+  const std::string& panelOf(const std::vector<int>& particles) const {
+    const mesh::ClothMesh& mesh = garment_.mesh;
+    std::size_t t = 0;
+    while (std::count(mesh.triangles[t].begin(), mesh.triangles[t].end(), particles[1]) == 0) ++t;
+    return garment_.panel_names[mesh.panelOf(t)];
+  }
+
+  void settle() {
+    cloth::ModelledEffects effects;
+    effects.gravity = {0.0, 0.0, -base::kStandardGravity};
+    effects.bending = effects.contacts = effects.self_collision = true;
+    OverdampedCloth cloth = makeCloth(outcome_.mesh, fabrics_, effects, std::nullopt);
+    double fast_at = 0.0;
+    while (!outcome_.at_rest && outcome_.settling_time < settings_.most_time) {
+      step(cloth, outcome_.settling_time);
+      const bool tangled = cloth.report().tangle.pairs > 0;
+      if (tangled || outcome_.fastest > settings_.rest_speed) fast_at = outcome_.settling_time;
+      outcome_.at_rest = outcome_.settling_time - fast_at >= settings_.rest_time;
+    }
+    outcome_.mesh.initial_positions = cloth.state().positions;
+  }
+
+  const garment::GarmentMesh& garment_;
+  const std::vector<material::Fabric>& fabrics_;
+  const mesh::ObstacleMesh& body_;
+  DrapeSettings settings_;
+  DrapeOutcome outcome_;
+};
+
+}  // namespace
+
+std::size_t countBodyIntersections(const std::vector<Vector3d>& positions,
+                                   const std::vector<std::array<int, 3>>& triangles,
+                                   const mesh::ObstacleMesh& body) {
+  std::vector<Vector3d> all = positions;
+  all.insert(all.end(), body.vertices.begin(), body.vertices.end());
+  std::vector<std::array<int, 3>> both = triangles;
+  const int first = static_cast<int>(positions.size());
+  for (const auto& [a, b, c] : body.triangles) both.push_back({first + a, first + b, first + c});
+  const auto pairs = proximity::intersectingTriangles(all, both);
+  const int count = static_cast<int>(triangles.size());
+  const auto of_both = [&](const proximity::TrianglePair& pair) {
+    return pair[0] < count && pair[1] >= count;
+  };
+  return static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), of_both));
+}
+
+DrapeOutcome drape(const garment::GarmentMesh& garment,
+                   const std::vector<material::Fabric>& fabrics, const mesh::ObstacleMesh& body,
+                   const DrapeSettings& settings) {
+  requireSound(settings);
+  if (fabrics.size() != garment.fabrics.size()) {
+    base::refuse("drape: there are ", fabrics.size(), " fabrics: allowed are ",
+                 garment.fabrics.size(), ", those that the garment names");
+  }
+  return Dressing(garment, fabrics, body, settings).run();
+}
+
+}  // namespace haptex::dressing

@@ -1,0 +1,129 @@
+#include "haptex/dressing/drape_garment.h"
+
+#include <charconv>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <stdexcept>
+
+#include "haptex/base/quoted.h"
+#include "haptex/base/require.h"
+#include "haptex/dressing/drape.h"
+#include "haptex/garment/pattern/pattern_file.h"
+#include "haptex/material/fabric_file.h"
+#include "haptex/mesh/obj_file.h"
+#include "haptex/mesh/obj_writer.h"
+
+namespace haptex::dressing {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kUsage =
+    "usage: drape_garment GARMENT.yaml OUT.obj --body BODY.obj [--edge METRES]\n"
+    "Sews a garment on a body and lets it come to rest, with edges of about METRES (0.02):\n"
+    "docs/garments.md. OUT.obj has rest coordinates as texture coordinates, and panels as "
+    "groups.\n";
+
+struct Request {
+  std::string garment, out, body;
+  double edge_length = 0.02;  // m
+};
+
+double readLength(const std::string& text) {
+  double length = 0.0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, length);
+  if (read.ec != std::errc() || read.ptr != end) {
+    base::refuse("--edge ", base::quoted(text), ": allowed is a number of metres");
+  }
+  return length;
+}
+
+Request parse(const std::vector<std::string>& arguments) {
+  Request request;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& argument = arguments[i];
+    if (argument == "--body" || argument == "--edge") {
+      if (++i == arguments.size()) base::refuse(argument, " needs a value");
+      if (argument == "--body") request.body = arguments[i];
+      if (argument == "--edge") request.edge_length = readLength(arguments[i]);
+    } else if (argument.rfind("--", 0) == 0) {
+      base::refuse(argument, " is unknown; allowed are --body and --edge");
+    } else if (request.garment.empty()) {
+      request.garment = argument;
+    } else if (request.out.empty()) {
+      request.out = argument;
+    } else {
+      base::refuse(argument, ": two files are allowed, ", request.garment, " and ", request.out);
+    }
+  }
+  if (request.out.empty()) base::refuse("two files are needed, the garment and the one to write");
+  if (request.body.empty()) base::refuse("a body is needed: --body BODY.obj");
+  return request;
+}
+
+std::vector<material::Fabric> loadFabrics(const std::vector<std::string>& names,
+                                          const std::string& garment,
+                                          const std::string& fabric_directory) {
+  std::vector<material::Fabric> fabrics;
+  for (const std::string& name : names) {
+    fs::path path = fs::path(garment).parent_path() / ".." / "fabrics" / (name + ".yaml");
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) path = fs::path(fabric_directory) / (name + ".yaml");
+    fabrics.push_back(material::loadFabric(path.lexically_normal().string()));
+  }
+  return fabrics;
+}
+
+void print(const DrapeOutcome& outcome, std::ostream& out) {
+  const auto line = [&](const char* name, double value, const char* unit) {
+    out << name << '\t' << base::shortNumber(value) << '\t' << unit << '\n';
+  };
+  const double time = outcome.closing_time + outcome.settling_time;
+  line("triangles", static_cast<double>(outcome.mesh.triangles.size()), "");
+  line("to_rest", outcome.computing_seconds, "s");
+  line("steps", outcome.steps, "");
+  line("simulated", time, "s");
+  line("s_per_s", outcome.computing_seconds / time, "s/s");
+  line("gap_before_sewing", outcome.closed_gap, "m");
+  line("fastest", outcome.fastest, "m/s");
+  line("intersecting_states", outcome.intersecting_states, "");
+  line("intersections_with_itself", static_cast<double>(outcome.with_itself), "");
+  line("intersections_with_body", static_cast<double>(outcome.with_body), "");
+  out << "at_rest\t" << (outcome.at_rest ? "yes" : "no") << "\t\n";
+}
+
+}  // namespace
+
+int drapeGarment(const std::vector<std::string>& arguments, const std::string& fabric_directory,
+                 std::ostream& out, std::ostream& err) {
+  Request request;
+  try {
+    request = parse(arguments);
+  } catch (const std::exception& error) {
+    err << error.what() << '\n' << kUsage;
+    return 2;
+  }
+  try {
+    const garment::GarmentMesh garment =
+        garment::makeGarmentMesh(garment::loadPattern(request.garment), request.edge_length);
+    const std::vector<material::Fabric> fabrics =
+        loadFabrics(garment.fabrics, request.garment, fabric_directory);
+    const mesh::ObstacleMesh body = mesh::loadObjSurface(request.body);
+    const DrapeOutcome outcome = drape(garment, fabrics, body, DrapeSettings());
+    std::ofstream file(request.out);
+    mesh::writeObj(outcome.mesh, garment.panel_names, file);
+    if (!file.flush()) throw std::runtime_error(request.out + ": cannot be written");
+    print(outcome, out);
+    if (outcome.isSound()) return 0;
+    err << "the garment is not at rest after " << outcome.settling_time
+        << " s, or it intersects itself or the body: see above\n";
+  } catch (const std::exception& error) {
+    err << error.what() << '\n';
+  }
+  return 1;
+}
+
+}  // namespace haptex::dressing

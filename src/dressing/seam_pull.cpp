@@ -1,0 +1,141 @@
+#include "haptex/dressing/seam_pull.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "haptex/mesh/seam_edges.h"
+
+namespace haptex::dressing {
+namespace {
+
+using Eigen::Vector3d;
+
+// Where a particle that is farther away than that part of the farthest way in a step comes nearer
+// by less than that part, it is pulled harder from step to step, up to kMost times.
+constexpr double kStuck = 0.1, kGrowth = 1.05, kMost = 20.0;
+
+/// Half of the pieces of an edge beside each of its particles (m, at rest).
+std::vector<double> lengthsAt(const mesh::ClothMesh& mesh, const std::vector<int>& particles) {
+  std::vector<double> lengths(particles.size(), 0.0);
+  for (std::size_t i = 1; i < particles.size(); ++i) {
+    const double half =
+        0.5 *
+        (mesh.rest_coordinates[particles[i]] - mesh.rest_coordinates[particles[i - 1]]).norm();
+    lengths[i - 1] += half;
+    lengths[i] += half;
+  }
+  return lengths;
+}
+
+/// Pairs of particles of both sides that are in the same places.
+std::vector<std::array<int, 2>> partners(const mesh::Seam& seam) {
+  std::vector<std::array<int, 2>> pairs;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < seam.first.size(); ++i) {
+    const double place = seam.first_places[i];
+    while (j < seam.second.size() && seam.second_places[j] < place - mesh::kSamePlace) ++j;
+    if (j == seam.second.size()) break;
+    if (seam.second_places[j] > place + mesh::kSamePlace) continue;
+    pairs.push_back({seam.first[i], seam.second[j]});
+  }
+  return pairs;
+}
+
+}  // namespace
+
+SeamPull::SeamPull(const garment::GarmentMesh& garment, double tension) {
+  const mesh::ClothMesh& mesh = garment.mesh;
+  std::vector<int> parents(mesh.rest_coordinates.size());
+  std::iota(parents.begin(), parents.end(), 0);
+  const auto root = [&](int particle) {
+    while (parents[particle] != particle) particle = parents[particle];
+    return particle;
+  };
+  std::map<int, Member> members;
+  for (std::size_t s = 0; s < garment.seams.size(); ++s) {
+    const mesh::Seam& seam = garment.seams[s];
+    for (const auto& [a, b] : partners(seam)) parents[root(b)] = root(a);
+    for (const std::vector<int>* side : {&seam.first, &seam.second}) {
+      const std::vector<double> lengths = lengthsAt(mesh, *side);
+      for (std::size_t i = 0; i < side->size(); ++i) {
+        const int particle = (*side)[i];
+        const Member fresh = {particle, -1, -1, 0, static_cast<int>(s)};
+        members.emplace(particle, fresh).first->second.force += tension * lengths[i];
+      }
+    }
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const auto member = members.find(mesh.triangles[t][i]);
+      if (member == members.end()) continue;
+      member->second.triangle = static_cast<int>(t);
+      member->second.corner = i;
+    }
+  }
+  std::map<int, int> groups;
+  for (auto& [particle, member] : members) {
+    member.group = groups.emplace(root(particle), static_cast<int>(groups.size())).first->second;
+    member.most = kMost * member.force;
+    members_.push_back(member);
+  }
+  sizes_.assign(groups.size(), 0);
+  for (const Member& member : members_) ++sizes_[member.group];
+}
+
+std::vector<Vector3d> SeamPull::middles(const std::vector<Vector3d>& positions) const {
+  std::vector<Vector3d> middles(sizes_.size(), Vector3d::Zero());
+  for (const Member& member : members_) {
+    middles[member.group] += positions[member.particle] / sizes_[member.group];
+  }
+  return middles;
+}
+
+const std::vector<cloth::PointLoad>& SeamPull::loads(const std::vector<Vector3d>& positions,
+                                                     double farthest) {
+  std::vector<Vector3d> targets = middles(positions);
+  std::vector<Vector3d> before = targets;
+  before.swap(middles_before_);
+  // What goes on together as in the last step is not held back.
+  for (std::size_t i = 0; i < before.size(); ++i) targets[i] += targets[i] - before[i];
+  loads_.clear();
+  for (Member& member : members_) {
+    if (sizes_[member.group] == 1) continue;
+    const Vector3d& place = positions[member.particle];
+    Vector3d way = targets[member.group] - place;
+    const double length = way.norm();
+    const bool stuck = length > farthest * kStuck && length > member.length - kStuck * farthest;
+    if (stuck) member.force = std::min(kGrowth * member.force, member.most);
+    member.length = length;
+    if (length > farthest) way *= farthest / length;
+    // Where it is as far away as it may be pulled, the force is the most; nearer it falls with it.
+    const double stiffness = member.force / farthest;
+    loads_.push_back({member.triangle, Vector3d::Unit(member.corner), place + way, Vector3d::Zero(),
+                      stiffness * Eigen::Matrix3d::Identity()});
+  }
+  return loads_;
+}
+
+double SeamPull::gap(const std::vector<Vector3d>& positions) const {
+  const std::vector<Vector3d> targets = middles(positions);
+  double gap = 0.0;
+  for (const Member& member : members_) {
+    gap = std::max(gap, (positions[member.particle] - targets[member.group]).norm());
+  }
+  return gap;
+}
+
+int SeamPull::widestSeam(const std::vector<Vector3d>& positions) const {
+  const std::vector<Vector3d> targets = middles(positions);
+  double gap = -1.0;
+  int widest = -1;
+  for (const Member& member : members_) {
+    const double its = (positions[member.particle] - targets[member.group]).norm();
+    if (its <= gap) continue;
+    gap = its;
+    widest = member.seam;
+  }
+  return widest;
+}
+
+}  // namespace haptex::dressing
