@@ -99,6 +99,7 @@ TEST_F(ViewTest, EveryColourAndStyleIsDrawn) {
       cloth->subProp("Alpha")->setValue(on ? 0.5F : 1.0F);
       cloth->subProp("Full scale")->setValue(on ? 0.5F : 0.0F);
       state_publisher_.publish(sheetState(mesh, 0.1));
+      run(0.1);  // a few frames
       EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); })) << colours;
     }
   }
@@ -259,6 +260,6 @@ int main(int argc, char** argv) {
   QApplication application(argc, argv);
   const ros::NodeHandle node;  // roscpp runs as long as it is there
   const int result = RUN_ALL_TESTS();
-  std::fflush(nullptr);
+  haptex::rviz_plugin::ViewTest::closeWindow();
   return result;
 }

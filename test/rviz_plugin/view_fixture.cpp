@@ -18,11 +18,20 @@ std::string linearFabricFile() {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+rviz::VisualizationFrame* ViewTest::frame_ = nullptr;
+
+void ViewTest::closeWindow() {
+  delete frame_;
+  frame_ = nullptr;
+}
+
 void ViewTest::SetUp() {
-  frame_ = std::make_unique<rviz::VisualizationFrame>();
-  frame_->setSplashPath("");
-  frame_->initialize(HAPTEX_SOURCE_DIRECTORY "/test/rviz_plugin/empty.rviz");
-  frame_->show();
+  if (frame_ == nullptr) {
+    frame_ = new rviz::VisualizationFrame;
+    frame_->setSplashPath("");
+    frame_->initialize(HAPTEX_SOURCE_DIRECTORY "/test/rviz_plugin/empty.rviz");
+    frame_->show();
+  }
   mesh_publisher_ = node_.advertise<haptex::ClothMesh>("cloth/mesh", 1, true);
   state_publisher_ = node_.advertise<haptex::ClothState>("cloth/state", 1, true);
   contact_publisher_ = node_.advertise<haptex::Contact>("index/contact", 1, true);
@@ -35,10 +44,7 @@ void ViewTest::SetUp() {
   broadcaster.sendTransform(transform);
 }
 
-void ViewTest::TearDown() {
-  frame_.reset();
-  run(0.1);
-}
+void ViewTest::TearDown() { load("Panels: []\nVisualization Manager:\n  Displays: []\n"); }
 
 bool ViewTest::run(double seconds, const std::function<bool()>& until) {
   QElapsedTimer timer;

@@ -64,8 +64,13 @@ inline haptex::ClothState sheetState(const haptex::ClothMesh& mesh, double time)
 
 std::string linearFabricFile();
 
-/// rviz's window with a config; its events are handled in run().
+/// rviz's window, whose events are handled in run(). There is one for all tests: rviz makes its
+/// materials once per process.
 class ViewTest : public ::testing::Test {
+ public:
+  /// At the end of all tests.
+  static void closeWindow();
+
  protected:
   void SetUp() override;
   void TearDown() override;
@@ -82,7 +87,7 @@ class ViewTest : public ::testing::Test {
 
   double longest_event_ = 0.0;  // ms, of what run() handled
   ros::NodeHandle node_;
-  std::unique_ptr<rviz::VisualizationFrame> frame_;
+  static rviz::VisualizationFrame* frame_;
   ros::Publisher mesh_publisher_, state_publisher_, contact_publisher_;
   std::string fabric_file_ = linearFabricFile();
 };

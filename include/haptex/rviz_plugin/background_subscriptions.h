@@ -5,6 +5,7 @@
 #include <ros/ros.h>
 
 #include <boost/shared_ptr.hpp>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -51,8 +52,11 @@ class BackgroundSubscriptions {
     ros::CallbackQueue queue;
     std::mutex mutex;  // guards the next
     bool ended = false;
+    std::condition_variable changed;
     std::vector<ros::Subscriber> subscribers;
   };
+
+  static bool awaitMaster(Shared& shared);
 
   std::vector<Subscribe> wanted_;
   std::shared_ptr<Shared> shared_;  // with the thread
