@@ -14,8 +14,10 @@ import rospy
 import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
+from haptex.srv import StartRecording
 from ros_fixtures import Diagnostics, NodeTest
 from std_msgs.msg import String
+from std_srvs.srv import Trigger
 
 TOPIC = '/haptex/said'
 SCENE = 'fabric: linear\nmodel: [%s]\n'
@@ -128,6 +130,30 @@ class RecordScene(NodeTest):
             self.assertEqual(code, 0, errors)
             self.assertIn('does not list recording', output)
         self.assertEqual(list(self.folder.glob('*.bag*')), [])
+
+    def test_records_on_request_with_a_name_and_stops(self):
+        run = self.start('wool_sample', '--on-request')
+        rospy.wait_for_service('/haptex/recording/start', 30.0)
+        start = rospy.ServiceProxy('/haptex/recording/start', StartRecording)
+        stop = rospy.ServiceProxy('/haptex/recording/stop', Trigger)
+        self.assertEqual(stop().message, 'nothing is being recorded')
+        for name in ('', 'a/b', 'x' * 101, '/nowhere/a.bag', f'{self.folder}/a.txt'):
+            answer = start(name)
+            self.assertFalse(answer.success, name)
+            self.assertIn('allowed are', answer.message)
+        answer = start('mine')
+        self.assertTrue(answer.success, answer.message)
+        self.assertIn('stop it first', start('another').message)
+        self.eventually(self.publisher.get_num_connections, 'nobody records')
+        self.publisher.publish('heard')
+        rospy.sleep(0.5)  # until the message is in it
+        answer = stop()
+        self.assertTrue(answer.success, answer.message)
+        bag, = self.folder.glob('mine_*.bag')
+        with rosbag.Bag(bag) as recorded:
+            self.assertIn('heard', [message.data for _, message, _ in recorded.read_messages([TOPIC])])
+        run.send_signal(signal.SIGINT)
+        self.assertEqual(self.ended(run)[0], 0)
 
     def test_refuses_what_is_no_scene(self):
         self.assertEqual(self.ended(self.start('velvet'))[0], 1)

@@ -94,6 +94,16 @@ void ClothMarkers::updateObstacles(const simulation::SimulatedCloth& simulation)
   }
 }
 
+const visualization_msgs::MarkerArray& ClothMarkers::updateMovingObstacles(
+    const simulation::SimulatedCloth& simulation, const ros::Time& stamp) {
+  updateObstacles(simulation);
+  obstacle_markers_.markers.assign(
+      markers_.markers.begin() + static_cast<std::ptrdiff_t>(first_obstacle_),
+      markers_.markers.end());
+  for (visualization_msgs::Marker& marker : obstacle_markers_.markers) marker.header.stamp = stamp;
+  return obstacle_markers_;
+}
+
 void ClothMarkers::addScale() {
   markers_.markers.push_back(makeMarker("scale", 0, visualization_msgs::Marker::TRIANGLE_LIST));
   const double height = 0.7 * size_;

@@ -175,6 +175,8 @@ void ClothNode::advertiseTopics() {
   state_publisher_ = node_.advertise<haptex::ClothState>("cloth/state", 10, republish);
   marker_publisher_ =
       node_.advertise<visualization_msgs::MarkerArray>("cloth/markers", 2, republish);
+  obstacle_publisher_ =
+      node_.advertise<visualization_msgs::MarkerArray>("cloth/obstacle_markers", 2, republish);
   if (quality_) {
     quality_publisher_ = node_.advertise<haptex::ClothQuality>("cloth/quality", 1, true);
   }
@@ -197,6 +199,10 @@ void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double
   const bool markers_due = rests || stamped_step_ % steps_per_markers_ == 0;
   if (markers_due && marker_publisher_.getNumSubscribers() > 0) {
     marker_publisher_.publish(markers_.update(simulation, state_stamp_));
+  }
+  if (markers_due && markers_.haveMovingObstacles() &&
+      obstacle_publisher_.getNumSubscribers() > 0) {
+    obstacle_publisher_.publish(markers_.updateMovingObstacles(simulation, state_stamp_));
   }
   publishQualityIfDue(simulation);
 }

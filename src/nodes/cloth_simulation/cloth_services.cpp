@@ -48,6 +48,7 @@ void ClothNode::advertiseServices() {
                advertiseChecked(node_, "cloth/get_jacobian", &ClothNode::getJacobian, this),
                advertiseChecked(node_, "cloth/set_state", &ClothNode::setState, this),
                node_.advertiseService("cloth/save_state", &ClothNode::saveState, this),
+               node_.advertiseService("cloth/set_quality", &ClothNode::setQuality, this),
                node_.advertiseService("cloth/query_budget", &ClothNode::queryBudget, this)};
 }
 
@@ -185,13 +186,29 @@ bool ClothNode::saveState(SaveState::Request& request, SaveState::Response& resp
   });
 }
 
+bool ClothNode::setQuality(SetQuality::Request& request, SetQuality::Response& response) {
+  return answer("set_quality", response, [&] {
+    requireQuality();
+    std::string message;
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      message = quality_->set(simulation, request.quality, 1e-3 * request.budget_ms);
+      publishQuality(simulation);
+    });
+    return message;
+  });
+}
+
+/// @throws std::invalid_argument
+void ClothNode::requireQuality() const {
+  if (quality_) return;
+  throw std::invalid_argument(
+      "the node runs by the scene's own settings: start it with ~quality "
+      "or ~budget_ms, so that it measures what the qualities take");
+}
+
 bool ClothNode::queryBudget(QueryBudget::Request& request, QueryBudget::Response& response) {
   return answer("query_budget", response, [&] {
-    if (!quality_) {
-      throw std::invalid_argument(
-          "the node runs by the scene's own settings: start it with ~quality "
-          "or ~budget_ms, so that it measures what the qualities take");
-    }
+    requireQuality();
     std::string message;
     loop_.execute([&](simulation::SimulatedCloth& simulation) {
       message = quality_->query(simulation, 1e-3 * request.budget_ms, response);

@@ -239,6 +239,7 @@ haptex::ClothQuality RuntimeQuality::message(const simulation::SimulatedCloth& s
   message.quality = pointMessage(running, simulation.cloth().fabric());
   message.quality.cells_as_measured = scene_.any_cells && !running.quality.measured.empty() &&
                                       running.quality.cell_size == cell_size_;
+  for (const simulation::Candidate& rung : rungs_) message.qualities.push_back(rung.quality.name);
   message.budget_ms = std::isinf(budget_) ? 0.0 : milliseconds(budget_);
   message.cycle_ms = milliseconds(times.smoothed);
   message.worst_cycle_ms = milliseconds(times.worst);
@@ -246,6 +247,40 @@ haptex::ClothQuality RuntimeQuality::message(const simulation::SimulatedCloth& s
   message.load = controller.load();
   message.changes = static_cast<std::uint32_t>(controller.changes());
   return message;
+}
+
+std::size_t RuntimeQuality::rungOf(const std::string& name) const {
+  std::string names;
+  for (std::size_t i = 0; i < rungs_.size(); ++i) {
+    if (rungs_[i].quality.name == name) return i;
+    names += (i == 0 ? "" : ", ") + rungs_[i].quality.name;
+  }
+  throw std::invalid_argument("quality = " + base::quoted(name) + ": allowed are " + names +
+                              ", or none, for one that keeps the budget; others need a restart");
+}
+
+std::string RuntimeQuality::set(simulation::SimulatedCloth& simulation, const std::string& name,
+                                double budget) {
+  if (!std::isfinite(budget) || budget < 0.0) {
+    std::ostringstream message;
+    message << "budget_ms = " << milliseconds(budget) << ": allowed are finite numbers >= 0";
+    throw std::invalid_argument(message.str());
+  }
+  const bool kept = name.empty() && budget > 0.0;
+  const std::size_t first = !name.empty() ? rungOf(name)
+                            : kept        ? simulation.plan()
+                                          : rungs_.size() - 1;
+  std::vector<double> costs;
+  for (const simulation::Candidate& rung : rungs_) costs.push_back(rung.seconds);
+  budget_ = kept ? budget : std::numeric_limits<double>::infinity();
+  if (kept && reducible_) budget_ = std::min(budget_, kMaxShare * scene_.time_step);
+  first_ = first;
+  simulation.setController(
+      simulation::QualityController(std::move(costs), budget_, scene_.time_step, first_));
+  std::ostringstream message;
+  message << "runs by " << rungs_[first].quality.name;
+  if (kept) message << ", and by others to keep " << milliseconds(budget_) << " ms a step";
+  return message.str();
 }
 
 std::string RuntimeQuality::query(const simulation::SimulatedCloth& simulation, double budget,

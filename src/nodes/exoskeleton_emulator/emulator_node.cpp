@@ -15,6 +15,7 @@
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/ros_time.h"
+#include "haptex/nodes/common/service_answer.h"
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/wire/frame_names.h"
@@ -115,6 +116,7 @@ void EmulatorNode::advertise() {
   fault_service_ =
       node_.advertiseService("emulator/inject_fault", &EmulatorNode::injectFault, this);
   power_service_ = node_.advertiseService("emulator/power_cycle", &EmulatorNode::cyclePower, this);
+  grasp_service_ = node_.advertiseService("emulator/grasp", &EmulatorNode::grasp, this);
   hand_timer_ = hand_thread_.handle(node_).createSteadyTimer(
       ros::WallDuration(kHandPeriod), [this](const ros::SteadyTimerEvent&) { publishHand(); });
   diagnostics_.setHardwareID("none");
@@ -157,6 +159,7 @@ void EmulatorNode::publishHand() {
   message.child_frame_id = handFrame();
   message.transform = transformMessage(place.hand_base);
   broadcaster_.sendTransform(message);
+  targets_.moveOn(kHandPeriod, place);
   if (hands_++ % kHandsPerShow == 0) targets_.show(place);
   if (place.phase != phase_) {
     phase_ = place.phase;
@@ -187,6 +190,11 @@ bool EmulatorNode::injectFault(haptex::InjectFault::Request& request,
     ROS_WARN_THROTTLE(1.0, "emulator/inject_fault refused: %s", error.what());
   }
   return true;
+}
+
+bool EmulatorNode::grasp(std_srvs::SetBool::Request& request,
+                         std_srvs::SetBool::Response& response) {
+  return answer("emulator/grasp", response, [&] { return targets_.grasp(request.data); });
 }
 
 bool EmulatorNode::cyclePower(std_srvs::Trigger::Request& /*request*/,

@@ -2,6 +2,8 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
+#include <stdexcept>
+
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/transforms.h"
@@ -62,8 +64,10 @@ void TargetInput::receiveFeedback(const Feedback& feedback) {
   using visualization_msgs::InteractiveMarkerFeedback;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    dragged_ = feedback->event_type == InteractiveMarkerFeedback::MOUSE_UP ? std::string()
-                                                                           : feedback->marker_name;
+    const bool released = feedback->event_type == InteractiveMarkerFeedback::MOUSE_UP;
+    dragged_ = released ? std::string() : feedback->marker_name;
+    if (released) pinched_.reset();
+    grasp_.end();
   }
   if (feedback->event_type != InteractiveMarkerFeedback::POSE_UPDATE) return;
   if (feedback->marker_name == kHandMarker) {
@@ -73,12 +77,48 @@ void TargetInput::receiveFeedback(const Feedback& feedback) {
     receivePose(message);
     return;
   }
+  if (feedback->marker_name == kPinchMarker) {
+    count_.count(kPinchMarker, [&] { receivePinch(feedback->pose.position); });
+    return;
+  }
   geometry_msgs::PointStamped message;
   message.header = feedback->header;
   message.point = feedback->pose.position;
   for (const Finger finger : kFingers) {
     if (feedback->marker_name == base::name(finger)) receivePoint(finger, message);
   }
+}
+
+/// Towards the hand the fingertips close by twice the way of the handle, each by once.
+void TargetInput::receivePinch(const geometry_msgs::Point& handle) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!pinched_) pinched_.emplace(pinchPlace(fingertips_), fingertips_);
+  const auto& [begin, fingertips] = *pinched_;
+  const double way = begin.x() - vector(handle).x();
+  moveFingertips(Grasp::atDistance(Grasp::distanceOf(fingertips) - 2.0 * way, fingertips));
+}
+
+void TargetInput::moveFingertips(const Grasp::Fingertips& targets) {
+  for (const Finger finger : kFingers) motion_.receive(finger, targets[finger]);
+}
+
+void TargetInput::moveOn(double duration, const exoskeleton::HandPlace& place) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  fingertips_ = place.fingertips;
+  if (const auto targets = grasp_.after(duration, fingertips_)) moveFingertips(*targets);
+}
+
+std::string TargetInput::grasp(bool close) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (close) {
+    grasp_.close(fingertips_);
+    return "the fingertips close";
+  }
+  if (!grasp_.open()) {
+    throw std::invalid_argument(
+        "data = false: the fingertips have not been closed by this service");
+  }
+  return "the fingertips open";
 }
 
 void TargetInput::show(const exoskeleton::HandPlace& place) {
@@ -100,6 +140,7 @@ void TargetInput::moveInteractiveMarkers(const exoskeleton::HandPlace& place) {
     }
   };
   for (const Finger finger : kFingers) move(fingertipMarker(finger, place));
+  move(pinchMarker(place));
   move(handMarker(place));
   interactive_->applyChanges();
 }

@@ -18,7 +18,8 @@ using visualization_msgs::Marker;
 constexpr double kSphereSize = 0.008;     // m
 constexpr double kHandleSize = 0.014;     // m, so that it can be grasped around the sphere
 constexpr double kFingertipSize = 0.035;  // m, of the arrows
-constexpr double kHandSize = 0.1;         // m, of the rings
+constexpr double kHandSize = 0.06;        // m, of the rings: they leave the fingertips free
+constexpr double kPinchBefore = 0.035;    // m, of the fingertips
 constexpr double kSkin = 0.011;           // m, from the centre of a fingertip to outside of its cap
 constexpr double kArrowShaft = 0.0025;    // m, diameter
 constexpr double kArrowHead = 0.006;      // m, diameter
@@ -29,6 +30,8 @@ Eigen::Vector3f colour(Finger finger) {
   return finger == Finger::kIndex ? Eigen::Vector3f(0.80F, 0.36F, 0.10F)
                                   : Eigen::Vector3f(0.10F, 0.45F, 0.75F);
 }
+
+const Eigen::Vector3f kPinchColour(0.15F, 0.60F, 0.25F);
 
 Marker sphere(const Eigen::Vector3f& colour, double size, float opacity) {
   Marker marker = makeMarker("target", 0, Marker::SPHERE);
@@ -135,6 +138,24 @@ InteractiveMarker fingertipMarker(Finger finger, const exoskeleton::HandPlace& p
   handle.markers.push_back(sphere(colour(finger), kHandleSize, 0.4F));
   handle.markers.back().header.frame_id.clear();  // then its pose is relative to the marker's
   marker.controls.push_back(handle);
+  return marker;
+}
+
+Eigen::Vector3d pinchPlace(const base::PerFinger<Eigen::Vector3d>& fingertips) {
+  const Eigen::Vector3d middle = 0.5 * (fingertips[Finger::kIndex] + fingertips[Finger::kThumb]);
+  return middle + kPinchBefore * Eigen::Vector3d::UnitX();
+}
+
+InteractiveMarker pinchMarker(const exoskeleton::HandPlace& place) {
+  InteractiveMarker marker = interactive(kPinchMarker, handFrame(), kFingertipSize);
+  marker.description = "pinch";
+  marker.pose.position = pointMessage(pinchPlace(place.fingertips));
+  marker.pose.orientation.w = 1.0;
+  InteractiveMarkerControl handle = control(0, InteractiveMarkerControl::MOVE_AXIS);
+  handle.always_visible = true;
+  handle.markers.push_back(sphere(kPinchColour, kHandleSize, 0.9F));
+  handle.markers.back().header.frame_id.clear();  // then its pose is relative to the marker's
+  marker.controls = {handle};
   return marker;
 }
 

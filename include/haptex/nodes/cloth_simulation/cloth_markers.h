@@ -41,6 +41,11 @@ class ClothMarkers {
   const visualization_msgs::MarkerArray& update(const simulation::SimulatedCloth& simulation,
                                                 const ros::Time& stamp);
 
+  bool haveMovingObstacles() const { return !moving_.empty(); }
+  /// Those of the namespace "obstacles" alone, valid until the next call.
+  const visualization_msgs::MarkerArray& updateMovingObstacles(
+      const simulation::SimulatedCloth& simulation, const ros::Time& stamp);
+
  private:
   void addScale();
   void addFabricNames();
@@ -71,6 +76,7 @@ class ClothMarkers {
   std::vector<mesh::Obstacle> moving_;    // obstacles
   std::size_t first_obstacle_ = 0;        // in markers_
   visualization_msgs::MarkerArray markers_;
+  visualization_msgs::MarkerArray obstacle_markers_;
 };
 
 }  // namespace haptex::nodes

@@ -14,6 +14,7 @@
 #include <haptex/SelectParticles.h>
 #include <haptex/SetFabric.h>
 #include <haptex/SetProperties.h>
+#include <haptex/SetQuality.h>
 #include <haptex/SetSheet.h>
 #include <haptex/SetState.h>
 #include <haptex/StepCloth.h>
@@ -59,15 +60,16 @@ struct ClothNodeParameters {
 
 /// Advertises, below the namespace of `node`:
 ///   cloth/mesh (ClothMesh, latched), cloth/state (ClothState),
-///   cloth/markers (visualization_msgs/MarkerArray), each filled only for subscribers, and while
+///   cloth/markers and cloth/obstacle_markers, of those that move
+///   (visualization_msgs/MarkerArray), each filled only for subscribers, and while
 ///   the simulation is paused or its steps are rejected ten times a second;
 ///   cloth/heartbeat (std_msgs/Header, 200 Hz), whether it is paused or not;
 ///   cloth/quality (ClothQuality, latched), with ~quality or ~budget_ms;
 ///   services cloth/reset (std_srvs/Trigger), cloth/pause (std_srvs/SetBool), cloth/step,
 ///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian,
-///   cloth/query_budget, cloth/set_state, cloth/save_state, cloth/set_sheet, cloth/set_properties
-///   (srv/). By dynamic_reconfigure the same properties can be set (cfg/Cloth.cfg), which begin
-///   with the scene's.
+///   cloth/query_budget, cloth/set_quality, cloth/set_state, cloth/save_state, cloth/set_sheet,
+///   cloth/set_properties (srv/). By dynamic_reconfigure the same properties can be set
+///   (cfg/Cloth.cfg), which begin with the scene's.
 /// It subscribes to cloth/external_forces (ExternalForces; simulation::ForceSources). In a scene
 /// with fingers it subscribes to cloth/contact_forces (ContactForces), which act for
 /// NewestLoads::kLifetime.
@@ -120,6 +122,8 @@ class ClothNode {
   bool getJacobian(GetJacobian::Request& request, GetJacobian::Response& response);
   bool setState(SetState::Request& request, SetState::Response& response);
   bool saveState(SaveState::Request& request, SaveState::Response& response);
+  void requireQuality() const;
+  bool setQuality(SetQuality::Request& request, SetQuality::Response& response);
   bool queryBudget(QueryBudget::Request& request, QueryBudget::Response& response);
 
   ros::NodeHandle node_;
@@ -127,6 +131,7 @@ class ClothNode {
   ros::Publisher mesh_publisher_;
   ros::Publisher state_publisher_;
   ros::Publisher marker_publisher_;
+  ros::Publisher obstacle_publisher_;
   ros::Publisher quality_publisher_;
   diagnostic_updater::Updater diagnostics_;
   ros::SteadyTimer diagnostics_timer_;

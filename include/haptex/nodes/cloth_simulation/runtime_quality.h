@@ -65,6 +65,15 @@ class RuntimeQuality {
   haptex::ClothQuality message(const simulation::SimulatedCloth& simulation,
                                const ros::Time& stamp) const;
 
+  /// Runs by the named quality and stays with it, or, without a name, chooses among them for a
+  /// budget.
+  /// @param budget s per cycle, finite and >= 0; 0: none, and the finest stays. By a thread that
+  /// may
+  ///   change the simulation
+  /// @returns what was done
+  /// @throws std::invalid_argument naming quality or budget and what is allowed
+  std::string set(simulation::SimulatedCloth& simulation, const std::string& name, double budget);
+
   /// Whether less runs than the quality that was asked for, for the sake of the budget.
   bool reduced(const haptex::ClothQuality& message) const;
   const std::string& wanted() const { return rungs_.back().quality.name; }
@@ -80,6 +89,7 @@ class RuntimeQuality {
   void choose(const std::string& scene_path);
   void reduce(const std::string& scene_path, const scene::Quality& wanted);
   scene::Quality qualityOfScene() const;
+  std::size_t rungOf(const std::string& name) const;
   std::vector<simulation::Candidate> borrowed(const std::string& scene_path,
                                               std::size_t chosen) const;
   haptex::QualityPoint pointMessage(const simulation::Candidate& candidate,
@@ -92,7 +102,7 @@ class RuntimeQuality {
   std::vector<simulation::Candidate>
       candidates_;                            // the front, from the cheapest to the most accurate
   std::vector<simulation::Candidate> rungs_;  // what a running cloth switches among
-  std::size_t first_ = 0;                     // of rungs_, to begin with
+  std::size_t first_ = 0;                     // of rungs_, for a cloth that begins
   double cell_size_ = 0.0;  // m, of its cells, which the mesh has if it may have any
   std::vector<simulation::StudiedFabric> studied_;
 };

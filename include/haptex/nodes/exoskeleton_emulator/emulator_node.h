@@ -5,6 +5,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <haptex/InjectFault.h>
 #include <ros/ros.h>
+#include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/transform_broadcaster.h>
 
@@ -48,7 +49,8 @@ struct TruthTopics {
 /// and emulator/<finger>/motor_force (geometry_msgs/WrenchStamped, what is true and no device can
 /// know, by the axes of hand_base), one message per period of the emulator, for subscribers only,
 /// and emulator/phase (std_msgs/String, latched, which phase of its path the hand is in); services
-/// emulator/inject_fault (srv/InjectFault) and emulator/power_cycle (std_srvs/Trigger). Broadcasts
+/// emulator/inject_fault (srv/InjectFault), emulator/power_cycle (std_srvs/Trigger) and
+/// emulator/grasp (std_srvs/SetBool: the fingertips close, or open again). Broadcasts
 /// world -> hand_base on tf, 100 times a second.
 ///
 /// The emulator runs on a thread of its own, which waits neither for topics nor for services.
@@ -72,6 +74,7 @@ class EmulatorNode {
   void publishTruth();
   void publishHand();
   bool injectFault(haptex::InjectFault::Request& request, haptex::InjectFault::Response& response);
+  bool grasp(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool cyclePower(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void diagnose(Status& status);
 
@@ -94,6 +97,7 @@ class EmulatorNode {
   ros::Publisher phase_topic_;
   ros::ServiceServer fault_service_;
   ros::ServiceServer power_service_;
+  ros::ServiceServer grasp_service_;
   ros::SteadyTimer hand_timer_;
   std::uint64_t hands_ = 0;  // published, used by that timer only, and so is the next
   int phase_ = 0;            // published

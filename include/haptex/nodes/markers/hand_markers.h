@@ -40,6 +40,14 @@ constexpr char kHandMarker[] = "hand_base";
 visualization_msgs::InteractiveMarker fingertipMarker(base::Finger finger,
                                                       const exoskeleton::HandPlace& place);
 
+constexpr char kPinchMarker[] = "pinch";
+
+/// Where its handle is: before the fingertips, m, in hand_base.
+Eigen::Vector3d pinchPlace(const base::PerFinger<Eigen::Vector3d>& fingertips);
+
+/// Can be dragged along x of hand_base: towards the hand both fingertips close.
+visualization_msgs::InteractiveMarker pinchMarker(const exoskeleton::HandPlace& place);
+
 /// Can be dragged along and turned about the axes of hand_base.
 visualization_msgs::InteractiveMarker handMarker(const exoskeleton::HandPlace& place);
 

@@ -1,24 +1,30 @@
 """What rviz shows of the fabric: passed on, or kept from the person."""
 import rospy
+from haptex.msg import ClothMesh, ClothState, Contact, ContactForces
 from visualization_msgs.msg import Marker, MarkerArray
 
 # That tell about the fabric, forces included.
-TOPICS = ('cloth/markers', 'contact/markers', 'tactile/markers', 'proximity/markers',
-          'exoskeleton/force_markers')
+MARKERS = ('cloth/markers', 'contact/markers', 'tactile/markers', 'proximity/markers',
+           'exoskeleton/force_markers')
+# Of our displays, which draw nothing of what does not come. The first is latched.
+DRAWN = {'cloth/mesh': ClothMesh, 'cloth/state': ClothState, 'cloth/contact_forces': ContactForces,
+         'index/contact': Contact, 'thumb/contact': Contact}
 
 
 class Picture:
     """rviz draws evaluation/cloth_markers and so on (launch/evaluation.launch). If the fabric is
-    hidden they say once that nothing is to be drawn. Nothing is subscribed to that nobody looks at."""
+    hidden markers say once that nothing is to be drawn, and the others never come. Nothing is subscribed to that nobody looks at."""
 
     def __init__(self, shown):
         self._shown = shown
         self._subscribers = {}
         self._publishers = {}
-        for topic in TOPICS:
+        for topic in (*MARKERS, *DRAWN):
             drawn = f'evaluation/{topic.replace("/", "_")}'
-            self._publishers[topic] = rospy.Publisher(drawn, MarkerArray, queue_size=2, latch=not shown)
-            if not shown:
+            latched = topic == 'cloth/mesh' or (topic in MARKERS and not shown)
+            self._publishers[topic] = rospy.Publisher(drawn, DRAWN.get(topic, MarkerArray), queue_size=2,
+                                                      latch=latched)
+            if topic in MARKERS and not shown:
                 self._publishers[topic].publish(MarkerArray([Marker(action=Marker.DELETEALL)]))
 
     def look(self):

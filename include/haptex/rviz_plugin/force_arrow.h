@@ -1,0 +1,43 @@
+// An arrow of a force in an Ogre scene.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+namespace Ogre {
+class SceneManager;
+class SceneNode;
+}  // namespace Ogre
+namespace rviz {
+class Arrow;
+class MovableText;
+}  // namespace rviz
+
+namespace haptex::rviz_plugin {
+
+/// An arrow of the length nodes::arrowLength() with the force in N beside its head, both before
+/// whatever hides them. By the thread of the scene.
+class ForceArrow {
+ public:
+  /// @param parent the node to which this adds its own; outlives this, as the manager does
+  /// @param colour red, green and blue from 0 to 1
+  ForceArrow(Ogre::SceneManager& manager, Ogre::SceneNode& parent, const Eigen::Vector3f& colour);
+  ~ForceArrow();
+  ForceArrow(const ForceArrow&) = delete;
+  ForceArrow& operator=(const ForceArrow&) = delete;
+
+  /// @param place m, where it begins @param force N; below nodes::kMinShownForce, and where a
+  /// number
+  ///   is not finite, nothing is shown
+  void show(const Eigen::Vector3d& place, const Eigen::Vector3d& force);
+  void hide();
+
+ private:
+  Ogre::SceneManager& manager_;
+  Ogre::SceneNode* node_;
+  Ogre::SceneNode* text_node_;
+  std::unique_ptr<rviz::Arrow> arrow_;
+  std::unique_ptr<rviz::MovableText> text_;
+};
+
+}  // namespace haptex::rviz_plugin

@@ -1,0 +1,44 @@
+// A picture over the view of rviz, and the legends that are shown there.
+#pragma once
+
+#include <QImage>
+#include <string>
+#include <vector>
+
+#include "haptex/rviz_plugin/colour_scale.h"
+
+namespace Ogre {
+class Overlay;
+class PanelOverlayElement;
+}  // namespace Ogre
+
+namespace haptex::rviz_plugin {
+
+/// A vertical bar of the colours with its ticks and its title above.
+QImage paintColourBar(const ColourScale& scale);
+
+/// The names of things beside their colours (nodes::distinctColour()), the first few of many.
+QImage paintNames(const std::string& title, const std::vector<std::string>& names);
+
+/// At the left edge of the view, in pixels. By the thread of the scene.
+class OverlayPicture {
+ public:
+  OverlayPicture();
+  ~OverlayPicture();
+  OverlayPicture(const OverlayPicture&) = delete;
+  OverlayPicture& operator=(const OverlayPicture&) = delete;
+
+  /// @param left, top pixels, from the corner of the view
+  void show(const QImage& picture, int left, int top);
+  void hide();
+
+ private:
+  void release();
+
+  Ogre::Overlay* overlay_;
+  Ogre::PanelOverlayElement* panel_;
+  std::string name_;
+  QImage shown_;
+};
+
+}  // namespace haptex::rviz_plugin

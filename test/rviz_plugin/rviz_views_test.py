@@ -1,0 +1,118 @@
+#!/usr/bin/python3
+"""Views of rviz with our displays and panel under Xvfb: test_rviz_views, which says what is tested.
+HAPTEX_VIEW_CYCLES=1000 adds and removes everything so often (scripts/test: 50 times)."""
+import os
+import pathlib
+import re
+import socket
+import subprocess
+import tempfile
+import time
+import unittest
+
+import rosgraph
+import roslib.packages
+import rospy
+import rostest
+from haptex.srv import SetFabric
+
+LONGEST = 480.0  # s, of the program
+WAIT = 60.0  # s
+FABRICS = ['wool', 'denim', 'silk_habutae', 'linear']
+
+
+def eventually(happens, what):
+    end = time.monotonic() + WAIT
+    while not happens():
+        if time.monotonic() > end:
+            raise AssertionError(what)
+        time.sleep(0.05)
+
+
+def listens(port):
+    try:
+        socket.create_connection(('127.0.0.1', port), 1.0).close()
+        return True
+    except OSError:
+        return False
+
+
+class Display:
+    """Of Xvfb, as long as this lives."""
+
+    def __init__(self):
+        read, write = os.pipe()
+        self.process = subprocess.Popen(['Xvfb', '-displayfd', str(write), '-screen', '0', '1400x900x24'],
+                                        pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            self.name = f':{pipe.readline().strip()}'
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait()
+
+
+class RvizViews(unittest.TestCase):
+    def setUp(self):
+        self.display = Display()
+        self.addCleanup(self.display.close)
+        self.home = tempfile.TemporaryDirectory()
+        self.addCleanup(self.home.cleanup)
+        self.environment = {**os.environ, 'DISPLAY': self.display.name, 'HOME': self.home.name,
+                            'LIBGL_ALWAYS_SOFTWARE': '1', 'QT_X11_NO_MITSHM': '1'}
+
+    def run_program(self, *arguments, **environment):
+        program = roslib.packages.find_node('haptex', 'test_rviz_views')[0]
+        with open(pathlib.Path(self.home.name, 'log'), 'w+', encoding='utf-8') as log:
+            run = subprocess.run([program, *arguments], env={**self.environment, **environment}, stdout=log,
+                                 stderr=subprocess.STDOUT, timeout=LONGEST, check=False)
+            log.seek(0)
+            output = log.read()
+        failed = [line for line in output.splitlines() if 'FAILED' in line or 'Failure' in line]
+        self.assertEqual(run.returncode, 0, '\n'.join(failed) + output[-3000:])
+        return output
+
+    def test_nothing_that_people_do_to_a_view_ends_it(self):
+        output = self.run_program('--gtest_filter=-*AMaster*')
+        self.assertIn('[  PASSED  ] 9 tests', output)
+
+    def test_a_master_that_hangs_or_dies_keeps_nothing(self):
+        with socket.socket() as probe:
+            probe.bind(('', 0))
+            port = probe.getsockname()[1]
+        with subprocess.Popen(['rosmaster', '--core', '-p', str(port)], stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as master:
+            self.addCleanup(lambda: master.poll() is None and master.kill())
+            uri = f'http://127.0.0.1:{port}'
+            eventually(lambda: listens(port), 'the master does not start')
+            output = self.run_program('--gtest_filter=*AMaster*', ROS_MASTER_URI=uri,
+                                      HAPTEX_MASTER=str(master.pid))
+        figures = re.findall(r'^a master that .*$', output, re.MULTILINE)
+        self.assertEqual(len(figures), 3, output)
+        print('\n'.join(figures))
+
+    def test_the_fabric_changes_200_times_while_rviz_draws_it(self):
+        config = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'rviz', 'haptex.rviz')
+        set_fabric = rospy.ServiceProxy('cloth/set_fabric', SetFabric)
+        set_fabric.wait_for_service(WAIT)
+        with subprocess.Popen(['rviz', '-d', str(config), '__ns:=' + rospy.get_namespace()],
+                              env=self.environment, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as rviz:
+            self.addCleanup(lambda: rviz.poll() is None and rviz.kill())
+            master = rosgraph.Master('/rviz_views_test')
+            topic = rospy.resolve_name('cloth/state')
+            eventually(lambda: any(name == topic and any('rviz' in node for node in nodes)
+                                   for name, nodes in master.getSystemState()[1]),
+                       'rviz does not look at the cloth')
+            for i in range(200):
+                self.assertTrue(set_fabric(FABRICS[i % len(FABRICS)]).success)
+                self.assertIsNone(rviz.poll(), f'rviz has ended after {i} changes')
+            time.sleep(2.0)  # to draw the last
+            self.assertIsNone(rviz.poll())
+            rviz.terminate()
+
+
+if __name__ == '__main__':
+    rospy.init_node('rviz_views_test')
+    rostest.rosrun('haptex', 'rviz_views', RvizViews)
