@@ -16,8 +16,7 @@ using Eigen::Vector3d;
 
 /// The square cut along its middle line: the right half lies elsewhere on its fabric, turned, which
 /// its grain takes back.
-mesh::ClothMesh sewnSquare(int cells, int right_fabric = 0, double turn = 0.7,
-                           double size = 0.1) {
+mesh::ClothMesh sewnSquare(int cells, int right_fabric = 0, double turn = 0.7, double size = 0.1) {
   mesh::ClothMesh mesh = square(cells, size);
   mesh.panels = {{0, 0.0}, {right_fabric, turn}};
   const double middle = 0.5 * mesh.rest_coordinates.back().x();
