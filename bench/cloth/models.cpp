@@ -1,4 +1,4 @@
-// What do the three models of stretch and shear deliver of a fabric, and what does a step of each
+// What do the models of stretch and shear deliver of a fabric, and what does a step of each
 // cost? The virtual tensile test with free sides (2500 elements) of wool and the linear reference,
 // forces in N; and 12.5 ms steps of a sheet of 2048 triangles that falls from the horizontal for
 // one simulated second: mean time of the assembly and of the whole step. bench_models CSV also
@@ -26,7 +26,8 @@ struct Named {
   const char* name;
   Elasticity elasticity;
 };
-constexpr std::array<Named, 3> kModels = {{{"green_lagrange", Elasticity::kGreenLagrange},
+constexpr std::array<Named, 4> kModels = {{{"green_lagrange", Elasticity::kGreenLagrange},
+                                           {"bilinear", Elasticity::kBilinear},
                                            {"mass_spring", Elasticity::kMassSpring},
                                            {"corotational", Elasticity::kCorotational}}};
 

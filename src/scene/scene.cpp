@@ -232,8 +232,10 @@ cloth::BendingSettings readBending(const YamlValue& value) {
 }
 
 cloth::Elasticity readElasticity(const YamlValue& value, const mesh::ClothMesh& mesh) {
-  const std::string name = value.oneOf({"green_lagrange", "mass_spring", "corotational"});
+  const std::string name =
+      value.oneOf({"green_lagrange", "bilinear", "mass_spring", "corotational"});
   if (name == "green_lagrange") return cloth::Elasticity::kGreenLagrange;
+  if (name == "bilinear") return cloth::Elasticity::kBilinear;
   if (name == "corotational") return cloth::Elasticity::kCorotational;
   try {
     cloth::findLatticeSprings(mesh, false);

@@ -48,6 +48,8 @@ std::string solverName(linear::LinearSolverMethod method) {
 
 std::string elasticityName(cloth::Elasticity elasticity) {
   switch (elasticity) {
+    case cloth::Elasticity::kBilinear:
+      return "cells of two triangles with the fabric's curves (bilinear)";
     case cloth::Elasticity::kMassSpring:
       return "springs (mass_spring)";
     case cloth::Elasticity::kCorotational:

@@ -222,6 +222,8 @@ const char* nameOf(Motion motion) { return kMotions[static_cast<std::size_t>(mot
 
 const char* nameOf(cloth::Elasticity elasticity) {
   switch (elasticity) {
+    case cloth::Elasticity::kBilinear:
+      return "bilinear";
     case cloth::Elasticity::kMassSpring:
       return "mass_spring";
     case cloth::Elasticity::kCorotational:

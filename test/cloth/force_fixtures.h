@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/forces/cells/bilinear_cells.h"
 #include "haptex/cloth/forces/corotational.h"
 #include "haptex/cloth/forces/membrane.h"
 #include "haptex/cloth/forces/spring_lattice.h"
@@ -21,6 +22,7 @@ inline const Membrane& membraneOf(const Cloth& cloth) { return *cloth.forces().f
 /// The force that resists stretch and shear.
 inline const Force& elasticityOf(const Cloth& cloth) {
   if (const auto* springs = cloth.forces().find<SpringLattice>()) return *springs;
+  if (const auto* cells = cloth.forces().find<BilinearCells>()) return *cells;
   if (const auto* corotational = cloth.forces().find<Corotational>()) return *corotational;
   return membraneOf(cloth);
 }

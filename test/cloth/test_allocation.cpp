@@ -74,7 +74,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 class StepAllocationOfOtherModels : public testing::TestWithParam<Elasticity> {};
 INSTANTIATE_TEST_SUITE_P(Models, StepAllocationOfOtherModels,
-                         testing::Values(Elasticity::kMassSpring, Elasticity::kCorotational));
+                         testing::Values(Elasticity::kBilinear, Elasticity::kMassSpring,
+                                         Elasticity::kCorotational));
 
 TEST_P(StepAllocationOfOtherModels, NoStepAllocatesAfterStartUp) {
 #ifdef __SANITIZE_ADDRESS__

@@ -78,6 +78,7 @@ TEST_F(SceneFile, ReadsTheElasticity) {
     return load(kValid + "elasticity: " + name + "\n").effects.elasticity;
   };
   EXPECT_EQ(read("green_lagrange"), cloth::Elasticity::kGreenLagrange);
+  EXPECT_EQ(read("bilinear"), cloth::Elasticity::kBilinear);
   EXPECT_EQ(read("mass_spring"), cloth::Elasticity::kMassSpring);
   EXPECT_EQ(read("corotational"), cloth::Elasticity::kCorotational);
   EXPECT_EQ(refusalOf(meshScene("corner") + "elasticity: mass_spring\n"),

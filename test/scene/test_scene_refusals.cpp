@@ -66,7 +66,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "integrator: 'bdf2' is not allowed if model lists self_collision and obstacles: "
                 "backward_euler is"},
         Refusal{"UnknownElasticity", "attach:", "elasticity: rubber\nattach:",
-                "elasticity: 'rubber' must be one of green_lagrange, mass_spring, corotational"},
+                "elasticity: 'rubber' must be one of green_lagrange, bilinear, mass_spring, "
+                "corotational"},
         Refusal{"ContractionOfSprings", "[gravity, viscosity]",
                 "[contraction]\nelasticity: mass_spring",
                 "elasticity: 'mass_spring' is not allowed if model lists contraction"},

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "haptex/cloth/forces/bending/bending.h"
+#include "haptex/cloth/forces/cells/triangle_pairs.h"
 
 namespace haptex::cloth {
 namespace {
@@ -102,6 +103,9 @@ std::vector<int> trianglesAround(const Cloth& whole, const std::vector<char>& in
     triangles = touching(mesh, cornersOf(mesh, triangles));
   }
   if (whole.effects().elasticity == Elasticity::kMassSpring) completeCells(mesh, triangles);
+  const bool paired = whole.effects().elasticity == Elasticity::kBilinear;
+  const int rings = paired ? 2 * kPairingRounds : 0;  // pairTriangles()
+  for (int ring = 0; ring < rings; ++ring) triangles = touching(mesh, cornersOf(mesh, triangles));
   return placesOf(triangles);
 }
 

@@ -38,6 +38,14 @@ std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh, std::opti
   return elements;
 }
 
+std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh,
+                                          const std::vector<int>& triangles) {
+  std::vector<MembraneElement> elements;
+  elements.reserve(triangles.size());
+  for (const int triangle : triangles) elements.push_back(restElement(mesh, triangle));
+  return elements;
+}
+
 void bindElements(const linear::SymmetricBlockMatrix& matrix,
                   std::vector<MembraneElement>& elements) {
   for (MembraneElement& element : elements) {

@@ -6,6 +6,7 @@
 #include "haptex/base/quoted.h"
 #include "haptex/cloth/forces/bending/bending_friction.h"
 #include "haptex/cloth/forces/bending/seam_bending.h"
+#include "haptex/cloth/forces/cells/bilinear_cells.h"
 #include "haptex/cloth/forces/corotational.h"
 #include "haptex/cloth/forces/membrane.h"
 #include "haptex/cloth/forces/membrane_friction.h"
@@ -97,7 +98,20 @@ void addMembrane(std::vector<MembraneElement> elements, const material::Fabric& 
   forces.add(std::move(friction));
 }
 
-/// The membrane or the corotational elements of every fabric, or the springs of the only one.
+/// Cells of one fabric, and the membrane where a triangle has no partner.
+void addCells(const mesh::ClothMesh& mesh, int fabric_index, const material::Fabric& fabric,
+              const ModelledEffects& effects, ForceSum& forces) {
+  const PairedTriangles paired = pairTriangles(mesh, fabric_index);
+  if (!paired.pairs.empty()) {
+    forces.add(std::make_unique<BilinearCells>(paired.pairs, fabric, effects.viscosity));
+  }
+  if (!paired.single.empty()) {
+    forces.add(
+        std::make_unique<Membrane>(restElements(mesh, paired.single), fabric, effects.viscosity));
+  }
+}
+
+/// The elements of every fabric, or the springs of the only one.
 void addElasticity(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                    const ModelledEffects& effects, ForceSum& forces) {
   if (effects.elasticity == Elasticity::kMassSpring) {
@@ -107,6 +121,10 @@ void addElasticity(const mesh::ClothMesh& mesh, const std::vector<material::Fabr
   }
   for (std::size_t f = 0; f < fabrics.size(); ++f) {
     const material::Fabric& fabric = fabrics[f];
+    if (effects.elasticity == Elasticity::kBilinear) {
+      addCells(mesh, static_cast<int>(f), fabric, effects, forces);
+      continue;
+    }
     std::vector<MembraneElement> elements = restElements(mesh, static_cast<int>(f));
     if (elements.empty()) continue;
     if (effects.elasticity == Elasticity::kCorotational) {

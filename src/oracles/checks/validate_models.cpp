@@ -2,10 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptex/base/workload.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/kes/virtual_test.h"
 #include "haptex/material/strain_measures.h"
 #include "haptex/oracles/checks/cloth_oracles.h"
+#include "haptex/oracles/exact/elastica.h"
+#include "haptex/oracles/experiments/strip_statics.h"
 
 namespace haptex::oracles {
 namespace {
@@ -101,6 +104,42 @@ void validateLatticeFold(const Fabric& fabric, const Sink& sink) {
   }
 }
 
+/// Cells of an irregular mesh pull as the fabric's curves say, with free sides.
+void validateCellTension(const Fabric& fabric, double weft_strain, double warp_strain,
+                         const Sink& sink) {
+  for (kes::Direction direction : {kes::Direction::kWeft, kes::Direction::kWarp}) {
+    const bool weft = direction == kes::Direction::kWeft;
+    const double most = weft ? weft_strain : warp_strain;
+    for (const kes::Reading& reading : kes::tensileTest(
+             fabric, direction, {0.1 * most, 0.5 * most, most}, Elasticity::kBilinear)) {
+      sink(base::relativeTo(kes::exactTensileForce(fabric, direction, most),
+                            "cloth/bilinear/tensile/" + fabric.name + (weft ? "/weft/" : "/warp/") +
+                                numbered(reading.strain),
+                            kes::exactTensileForce(fabric, direction, reading.strain),
+                            reading.force, kModelTolerance));
+    }
+  }
+}
+
+/// A cantilever of threads that hardly stretch, at 30 degrees to it: how much less it drops than
+/// the elastica does.
+void validateObliqueCells(const Sink& sink) {
+  constexpr double kModulus = 9.7e4;  // N/m: 16 kN/m where B = 6.6e-6 N.m and L = 0.2 m
+  constexpr double kGamma = 10.0;
+  const double exact = exactDropOverReach(kGamma);
+  for (const unsigned seed : {1U, 2U}) {
+    Cantilever cantilever{kGamma, StripMesh::kIrregular};
+    cantilever.cells = 32;
+    cantilever.across = 1.0;
+    cantilever.grain = M_PI / 6.0;
+    cantilever.seed = seed;
+    cantilever.elasticity = Elasticity::kBilinear;
+    cantilever.modulus = kModulus;
+    sink(base::relativeTo(exact, "cloth/bilinear/oblique_cantilever/" + std::to_string(seed), exact,
+                          simulatedDropOverReach(cantilever), 0.01));
+  }
+}
+
 /// Width times modulus times engineering strain, on an irregular mesh.
 void validateCorotationalTension(const Fabric& fabric, double weft_strain, double warp_strain,
                                  const Sink& sink) {
@@ -126,15 +165,19 @@ void validateModels(const Fabric& linear, const Fabric& wool, const Sink& sink) 
   validateLatticeTension(linear, 0.5, 0.5, sink);
   validateLatticeTension(wool, 0.1, 0.01, sink);
   validateLatticeFold(wool, sink);
+  validateCellTension(linear, 0.5, 0.5, sink);
+  validateCellTension(wool, 0.1, 0.01, sink);
+  if (!base::kSanitized) validateObliqueCells(sink);
   validateCorotationalTension(linear, 0.5, 0.5, sink);
   validateCorotationalTension(wool, 0.1, 0.01, sink);
   Eigen::Matrix2d tension, compression, shear;
   tension << 1.05, 0.0, 0.0, 1.008;
   compression << 0.7, 0.0, 0.0, 0.8;
   shear << 1.0, 0.1, 0.0, 1.0;
-  for (Elasticity elasticity : {Elasticity::kMassSpring, Elasticity::kCorotational}) {
-    const std::string name =
-        elasticity == Elasticity::kMassSpring ? "mass_spring/" : "corotational/";
+  for (const auto& [elasticity, name] :
+       {std::pair<Elasticity, std::string>(Elasticity::kBilinear, "bilinear/"),
+        {Elasticity::kMassSpring, "mass_spring/"},
+        {Elasticity::kCorotational, "corotational/"}}) {
     validateJacobian(wool, elasticity, name + "tension", tension, sink);
     validateJacobian(wool, elasticity, name + "compression", compression, sink);
     validateJacobian(wool, elasticity, name + "shear", shear, sink);

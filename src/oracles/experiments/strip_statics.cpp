@@ -151,14 +151,14 @@ double root(double low, double high, const std::function<double(double)>& f) {
 }  // namespace
 
 double simulatedDropOverReach(const Cantilever& cantilever) {
-  constexpr double kLength = 0.1, kModulus = 300.0;  // m, N/m: stretched by 3e-5
+  constexpr double kLength = 0.1;  // m
   constexpr int kRows = 6;
   // Two columns are held: the clamp is half way between them (docs/mechanics.md).
   const double cell = kLength / (cantilever.cells - 0.5);
   Strip strip =
       makeStrip(cantilever.mesh, cantilever.along, cantilever.cells, kRows, cell, cantilever.seed);
   strip.mesh.panels = {{0, cantilever.grain}};
-  material::Fabric fabric = material::linearFabric(kModulus);
+  material::Fabric fabric = material::linearFabric(cantilever.modulus);
   const double rigidity = fabric.areal_density * kGravity * std::pow(kLength, 3) / cantilever.gamma;
   fabric.bending = {cantilever.across * rigidity, cantilever.across * rigidity};
   (cantilever.along == kes::Direction::kWeft ? fabric.bending->weft : fabric.bending->warp) =
@@ -167,6 +167,7 @@ double simulatedDropOverReach(const Cantilever& cantilever) {
   effects.gravity = {0.0, 0.0, -kGravity};
   effects.bending = true;
   effects.bending_settings.model = cantilever.model;
+  effects.elasticity = cantilever.elasticity;
   Cloth cloth(strip.mesh, fabric, effects);
   ClothState state = placed(
       strip, cloth,

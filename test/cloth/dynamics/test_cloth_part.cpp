@@ -74,6 +74,11 @@ std::vector<Case> cases() {
   bending.bending = bending.bending_hysteresis = bending.membrane_hysteresis = true;
   ModelledEffects corotational = plain;
   corotational.elasticity = Elasticity::kCorotational;
+  ModelledEffects cells = plain;
+  cells.elasticity = Elasticity::kBilinear;
+  cells.bending = cells.bending_hysteresis = true;
+  ModelledEffects unbent_cells = cells;
+  unbent_cells.bending = unbent_cells.bending_hysteresis = false;
   ModelledEffects springs = plain;
   springs.elasticity = Elasticity::kMassSpring;
   springs.bending = true;
@@ -86,6 +91,8 @@ std::vector<Case> cases() {
           {"irregular", sheet(Triangulation::kAlternating, true), bending},
           {"curved", sheet(Triangulation::kAlternating), curved},
           {"corotational", sheet(Triangulation::kOneWay), corotational},
+          {"cells", sheet(Triangulation::kOneWay), cells},
+          {"irregular_cells", sheet(Triangulation::kAlternating, true), unbent_cells},
           {"springs", sheet(Triangulation::kAlternating), springs},
           regions(bending)};
 }

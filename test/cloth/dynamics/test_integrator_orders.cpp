@@ -165,7 +165,8 @@ class OrderOfOtherModels
     : public testing::TestWithParam<std::tuple<NamedIntegrationMethod, Elasticity>> {};
 INSTANTIATE_TEST_SUITE_P(Methods, OrderOfOtherModels,
                          testing::Combine(testing::ValuesIn(kIntegrationMethods),
-                                          testing::Values(Elasticity::kMassSpring,
+                                          testing::Values(Elasticity::kBilinear,
+                                                          Elasticity::kMassSpring,
                                                           Elasticity::kCorotational)));
 
 TEST_P(OrderOfOtherModels, ConvergesWithItsOrder) {

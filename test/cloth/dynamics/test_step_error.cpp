@@ -64,8 +64,8 @@ struct Swing {
 };
 
 TEST(StrainPast, SeesNoRateInARigidMotion) {
-  for (const Elasticity elasticity :
-       {Elasticity::kGreenLagrange, Elasticity::kMassSpring, Elasticity::kCorotational}) {
+  for (const Elasticity elasticity : {Elasticity::kGreenLagrange, Elasticity::kBilinear,
+                                      Elasticity::kMassSpring, Elasticity::kCorotational}) {
     ModelledEffects effects;
     effects.viscosity = true;
     effects.elasticity = elasticity;

@@ -34,10 +34,11 @@ std::vector<int> allParticles(const Cloth& cloth) {
 
 class EveryElasticity : public testing::TestWithParam<Elasticity> {};
 INSTANTIATE_TEST_SUITE_P(Models, EveryElasticity,
-                         testing::Values(Elasticity::kGreenLagrange, Elasticity::kMassSpring,
-                                         Elasticity::kCorotational),
+                         testing::Values(Elasticity::kGreenLagrange, Elasticity::kBilinear,
+                                         Elasticity::kMassSpring, Elasticity::kCorotational),
                          [](const auto& info) {
                            return info.param == Elasticity::kMassSpring     ? "mass_spring"
+                                  : info.param == Elasticity::kBilinear     ? "bilinear"
                                   : info.param == Elasticity::kCorotational ? "corotational"
                                                                             : "green_lagrange";
                          });

@@ -40,7 +40,8 @@ mesh::ClothMesh sewnSquare(int cells, int right_fabric = 0, double turn = 0.7, d
 
 class SewnCloth : public testing::TestWithParam<Elasticity> {};
 INSTANTIATE_TEST_SUITE_P(Elasticity, SewnCloth,
-                         testing::Values(Elasticity::kGreenLagrange, Elasticity::kCorotational));
+                         testing::Values(Elasticity::kGreenLagrange, Elasticity::kBilinear,
+                                         Elasticity::kCorotational));
 
 TEST_P(SewnCloth, OfOneFabricIsTheSheetInOnePiece) {
   ModelledEffects effects;

@@ -27,6 +27,9 @@ struct MembraneElement {
 /// The elements of all triangles of a mesh without defects, or of those of one fabric.
 std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh,
                                           std::optional<int> fabric = std::nullopt);
+/// Those of some triangles.
+std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh,
+                                          const std::vector<int>& triangles);
 
 /// Looks up the slots of elements in a matrix.
 /// @throws std::out_of_range if the pattern lacks one of them

@@ -16,6 +16,7 @@ namespace haptex::cloth {
 /// How the cloth resists stretch and shear.
 enum class Elasticity {
   kGreenLagrange,  ///< Membrane: nonlinear, exact for every curve
+  kBilinear,       ///< BilinearCells of each two triangles; of those without a partner Membrane
   kMassSpring,     ///< SpringLattice: for comparison, on rectangular cells
   kCorotational,   ///< Corotational: for comparison, linear
 };

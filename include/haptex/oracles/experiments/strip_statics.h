@@ -4,6 +4,7 @@
 #include <array>
 
 #include "haptex/cloth/forces/bending/bending.h"
+#include "haptex/cloth/forces/modelled_effects.h"
 #include "haptex/kes/virtual_test.h"
 #include "haptex/mesh/mesh.h"
 
@@ -34,6 +35,9 @@ struct Cantilever {
   /// all directions alike. Otherwise oblique threads twist what they bend.
   double grain = 0.0;
   unsigned seed = 5;  ///< of the irregular mesh
+  cloth::Elasticity elasticity = cloth::Elasticity::kGreenLagrange;
+  /// N/m, of a strip of 0.1 m and 0.1 N/m^2: its threads stretch by 3e-5 unless it is less.
+  double modulus = 300.0;
 };
 
 /// Drop of the tip over its horizontal distance from the clamp, mean of the tip's particles; exact:
