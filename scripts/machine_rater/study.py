@@ -253,7 +253,7 @@ def draw_presets(path, fabrics, by_device, files):
     panel.axhline(0.0, color='#555', lw=0.8)
     panel.set_xticks(range(len(names)), [name.replace('_', '\n') for name in names], fontsize=8)
     panel.set(ylabel='rank correlation with the files', ylim=(min(0.0, panel.get_ylim()[0]), 1.05))
-    panel.legend(loc='lower right', fontsize=8)
+    panel.legend(loc='lower center', bbox_to_anchor=(0.5, 1.0), ncol=len(by_device), fontsize=8)
     picture.savefig(path, dpi=110)
 
 
