@@ -19,7 +19,7 @@ from ros_fixtures import eventually
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COMMANDS = commands_of((ROOT / 'README.md').read_text('utf-8'))
-WAIT = 90.0  # s, for what a command does; more than any takes
+WAIT = 300.0  # s, for what a command does; more than any takes on a busy machine
 RECORDING = 3.0  # s
 
 # What stands for something of the reader's own.

@@ -63,7 +63,7 @@ class SeveralComputers(unittest.TestCase):
             printed.append(re.sub(r'\\\n *\\?', '', self.computers.run(name, *command)[0]))
             return re.search(text, printed[-1])
 
-        eventually(is_there, lambda: f'{text!r} of {command}: {printed[-1]}\n{self.computers.logs()}', 90.0)
+        eventually(is_there, lambda: f'{text!r} of {command}: {printed[-1]}\n{self.computers.logs()}', 180.0)
 
     def test_1_the_hand_feels_the_cloth_of_the_other_computer(self):
         self.await_text('hand', ('rostopic', 'echo', '-p', '-n', '100', '/haptex/index/contact/normal_force'),
