@@ -18,13 +18,13 @@ namespace {
 using base::YamlValue;
 using Eigen::Vector3d;
 
-constexpr double kFarthestJoint = 100.0;  // m
+constexpr double kFarthestPlace = 100.0;  // m
 constexpr double kLeastSegment = 1e-3;    // m
 
 Vector3d readVector(const YamlValue& value) {
   const auto items = value.items(3);
   const Vector3d vector(items[0].number(), items[1].number(), items[2].number());
-  if (vector.cwiseAbs().maxCoeff() > kFarthestJoint) value.refuse("must be within 100");
+  if (vector.cwiseAbs().maxCoeff() > kFarthestPlace) value.refuse("must be within 100");
   return vector;
 }
 
@@ -46,6 +46,12 @@ class SurfaceReader {
     mesh::ObstacleMesh surface = mesh::loadObjSurface(path_, groups_);
     body_.vertices = std::move(surface.vertices);
     body_.triangles = std::move(surface.triangles);
+    for (const Vector3d& vertex : body_.vertices) {
+      if (!(vertex.cwiseAbs().maxCoeff() <= kFarthestPlace)) {
+        base::refuse(path_, ": has a vertex at ", vertex.transpose(),
+                     ": allowed are coordinates up to ", kFarthestPlace, " m");
+      }
+    }
     body_.shares.resize(body_.vertices.size());
     for (std::size_t i = 0; i < parts_.size(); ++i) assignGroup(static_cast<int>(i));
     assignNearest();

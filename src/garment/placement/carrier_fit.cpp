@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "haptex/base/require.h"
+
 namespace haptex::garment {
 namespace {
 
@@ -51,6 +53,9 @@ SegmentAxis::SegmentAxis(const Body& body, int segment) {
   const Vector3d &low = starts_below_ ? of.start : of.end,
                  &high = starts_below_ ? of.end : of.start;
   length_ = (high - low).norm();
+  if (!(length_ > 0.0)) {
+    base::refuse("segment '", of.name, "' has no length: there can be no carrier around it");
+  }
   axis_.origin = low;
   axis_.up = (high - low) / length_;
   const bool along_x = std::abs(axis_.up.x()) > 0.9;

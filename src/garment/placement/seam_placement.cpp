@@ -22,6 +22,7 @@ constexpr int kAngles = 24;            // of the grid
 constexpr int kHeights = 17;           // of the grid
 constexpr double kLeastRadius = 1e-3;  // m
 constexpr int kMostSteps = 60;
+constexpr double kStep = 1e-5;       // m, of differences
 constexpr double kConverged = 1e-6;  // m
 constexpr double kSideways = 0.7;  // sine of a direction: at the side of a panel rather than above
 constexpr double kOverlap = 0.5;   // rad, that panels may overlap by on the way
@@ -154,66 +155,84 @@ class Placement {
   }
 
   void collectUnknowns() {
+    unknowns_of_.resize(panels_.size());
     for (std::size_t i = 0; i < panels_.size(); ++i) {
       PanelToPlace& panel = panels_[i];
       if (panel.pose) continue;
-      const double radius = panel.surface.radiusAt(panel.place.height);
-      if (!panel.angle) unknowns_.push_back({static_cast<int>(i), &panel.place.angle, radius});
-      if (!panel.height) unknowns_.push_back({static_cast<int>(i), &panel.place.height, 1.0});
+      if (!panel.angle) addUnknown(i, panel.place.angle, panel.radius);
+      if (!panel.height) addUnknown(i, panel.place.height, 1.0);
     }
   }
 
-  VectorXd residuals() const {
-    VectorXd all(3 * kPoints * static_cast<Eigen::Index>(pairings_.size()));
-    Eigen::Index row = 0;
+  void addUnknown(std::size_t panel, double& value, double metres) {
+    unknowns_of_[panel].push_back(static_cast<Eigen::Index>(unknowns_.size()));
+    unknowns_.push_back({&value, metres});
+  }
+
+  double cost() const {
+    double sum = 0.0;
     for (const Pairing& pairing : pairings_) {
-      for (int i = 0; i < kPoints; ++i, row += 3) {
-        all.segment<3>(row) = std::sqrt(pairing.weight) * apart(pairing, i);
-      }
+      for (int i = 0; i < kPoints; ++i) sum += pairing.weight * apart(pairing, i).squaredNorm();
     }
-    return all;
+    return sum;
   }
 
-  /// By central differences, in metres of every unknown.
-  MatrixXd jacobian(Eigen::Index rows) {
-    MatrixXd matrix = MatrixXd::Zero(rows, static_cast<Eigen::Index>(unknowns_.size()));
-    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
-      const Unknown& unknown = unknowns_[k];
-      const double value = *unknown.value, step = 1e-5 / unknown.metres;
-      Eigen::Index row = 0;
-      for (const Pairing& pairing : pairings_) {
-        const bool moves = pairing.panels[0] == unknown.panel || pairing.panels[1] == unknown.panel;
-        for (int i = 0; i < kPoints; ++i, row += 3) {
-          if (!moves) continue;
-          *unknown.value = value + step;
-          const Vector3d after = apart(pairing, i);
-          *unknown.value = value - step;
-          matrix.col(static_cast<Eigen::Index>(k)).segment<3>(row) =
-              std::sqrt(pairing.weight) * (after - apart(pairing, i)) / 2e-5;
-        }
+  /// Of Gauss and Newton: sums of J^T J and J^T r over all points, J by central differences in
+  /// metres of every unknown.
+  struct NormalEquations {
+    MatrixXd matrix;
+    VectorXd gradient;
+  };
+
+  NormalEquations normalEquations() {
+    const auto count = static_cast<Eigen::Index>(unknowns_.size());
+    NormalEquations sums{MatrixXd::Zero(count, count), VectorXd::Zero(count)};
+    for (const Pairing& pairing : pairings_) {
+      std::vector<Eigen::Index> moving;
+      for (const int panel : pairing.panels) {
+        moving.insert(moving.end(), unknowns_of_[panel].begin(), unknowns_of_[panel].end());
       }
+      for (int point = 0; point < kPoints; ++point) addPoint(pairing, point, moving, sums);
+    }
+    return sums;
+  }
+
+  void addPoint(const Pairing& pairing, int point, const std::vector<Eigen::Index>& moving,
+                NormalEquations& sums) {
+    const Vector3d error = apart(pairing, point);
+    std::vector<Vector3d> columns;
+    for (const Eigen::Index index : moving) {
+      const Unknown& unknown = unknowns_[static_cast<std::size_t>(index)];
+      const double value = *unknown.value;
+      *unknown.value = value + kStep / unknown.metres;
+      const Vector3d after = apart(pairing, point);
+      *unknown.value = value - kStep / unknown.metres;
+      columns.emplace_back((after - apart(pairing, point)) / (2.0 * kStep));
       *unknown.value = value;
     }
-    return matrix;
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+      sums.gradient[moving[i]] += pairing.weight * columns[i].dot(error);
+      for (std::size_t k = 0; k < moving.size(); ++k) {
+        sums.matrix(moving[i], moving[k]) += pairing.weight * columns[i].dot(columns[k]);
+      }
+    }
   }
 
   void minimise() {
     if (unknowns_.empty() || pairings_.empty()) return;
-    VectorXd error = residuals();
+    double error = cost();
     double damping = 1e-3;
     for (int step = 0; step < kMostSteps; ++step) {
-      const MatrixXd matrix = jacobian(error.size());
-      const MatrixXd normal = matrix.transpose() * matrix;
-      const VectorXd gradient = matrix.transpose() * error;
-      const double scale = normal.diagonal().maxCoeff();
+      const NormalEquations sums = normalEquations();
+      const double scale = sums.matrix.diagonal().maxCoeff();
       if (!(scale > 0.0)) return;
-      const MatrixXd damped =
-          normal + damping * scale * MatrixXd::Identity(normal.rows(), normal.cols());
-      const VectorXd change = -damped.ldlt().solve(gradient);
+      MatrixXd damped = sums.matrix;
+      damped.diagonal().array() += damping * scale;
+      const VectorXd change = -damped.ldlt().solve(sums.gradient);
       move(change);
-      VectorXd moved = residuals();
-      if (isAllowed() && moved.squaredNorm() <= error.squaredNorm()) {
-        error = std::move(moved);
+      const double moved = cost();
+      if (isAllowed() && moved <= error) {
+        error = moved;
         damping = std::max(1e-9, 0.2 * damping);
         if (change.cwiseAbs().maxCoeff() <= kConverged) return;
       } else {
@@ -238,7 +257,6 @@ class Placement {
   }
 
   struct Unknown {
-    int panel;
     double* value;
     double metres;  // that the panel moves per unit of the value
   };
@@ -248,6 +266,7 @@ class Placement {
   std::vector<bool> placed_;
   std::vector<Pairing> pairings_;
   std::vector<Unknown> unknowns_;
+  std::vector<std::vector<Eigen::Index>> unknowns_of_;  // per panel
 };
 
 }  // namespace

@@ -133,6 +133,10 @@ TEST_F(BodyFile, RefusalsNameKeyValueAndWhatIsAllowed) {
     const std::string refusal = refusalOf([&] { parse(text); });
     EXPECT_NE(refusal.find(message), std::string::npos) << part << ": " << refusal;
   }
+  std::ofstream(directory_ / "far.obj") << "v 0 0 0\nv 1 0 0\nv 0 1e9 0\nf 1 2 3\n";
+  const std::string far =
+      refusalOf([&] { parse("surface: far.obj" + kSurface.substr(kSurface.find('\n'))); });
+  EXPECT_NE(far.find("far.obj: has a vertex at"), std::string::npos) << far;
   EXPECT_NE(
       refusalOf([&] { parse("makehuman: nowhere\nshape: female\n"); }).find("nowhere/base.obj"),
       std::string::npos);

@@ -98,5 +98,11 @@ TEST(CarrierFit, AxisGoesToTheMiddleOfTheBody) {
   }
 }
 
+TEST(CarrierFit, SegmentWithoutLengthIsRefused) {
+  Body body = makePrism(0.1, 1.0, 6);
+  body.segments[0].end = body.segments[0].start;
+  EXPECT_THROW(SegmentAxis(body, 0), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace haptex::garment::test_carrier_surface

@@ -30,6 +30,7 @@ class SegmentAxis {
  public:
   /// Along the segment, with its front towards the world's x, or towards z for a segment along x.
   /// @param segment of the body
+  /// @throws std::invalid_argument naming it if it has no length
   SegmentAxis(const Body& body, int segment);
 
   /// Shifts the axis to the middle of the smallest circle around what of the body lies between
