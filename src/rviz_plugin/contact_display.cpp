@@ -1,10 +1,16 @@
 #include "haptex/rviz_plugin/contact_display.h"
 
+#include <OGRE/OgreCamera.h>
 #include <OGRE/OgreSceneNode.h>
+#include <OGRE/OgreViewport.h>
 #include <rviz/display_context.h>
 #include <rviz/frame_manager.h>
 #include <rviz/properties/bool_property.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
 
+#include <cmath>
+#include <cstdio>
 #include <string>
 
 namespace haptex::rviz_plugin {
@@ -13,6 +19,7 @@ namespace {
 using base::Finger;
 using base::kFingers;
 
+constexpr int kLabelAway = 6;                      // pixels
 constexpr int kLegendLeft = 12, kLegendTop = 270;  // pixels, below the legend of the cloth
 const Eigen::Vector3f kColour(0.75F, 0.10F, 0.15F);
 
@@ -32,8 +39,9 @@ ContactDisplay::~ContactDisplay() { subscriptions_.end(); }
 
 void ContactDisplay::onInitialize() {
   legend_ = std::make_unique<OverlayPicture>();
-  for (auto& arrow : arrows_.values) {
-    arrow = std::make_unique<ForceArrow>(*scene_manager_, *scene_node_, kColour);
+  for (const Finger finger : kFingers) {
+    arrows_[finger] = std::make_unique<ForceArrow>(*scene_manager_, *scene_node_, kColour);
+    labels_[finger] = std::make_unique<OverlayPicture>();
   }
 }
 
@@ -52,6 +60,9 @@ void ContactDisplay::reset() {
 void ContactDisplay::hide() {
   for (auto& arrow : arrows_.values) {
     if (arrow) arrow->hide();
+  }
+  for (auto& label : labels_.values) {
+    if (label) label->hide();
   }
   if (legend_) legend_->hide();
 }
@@ -100,6 +111,39 @@ void ContactDisplay::showLegend() {
   }
 }
 
-void ContactDisplay::update(float /*wall_dt*/, float /*ros_dt*/) { subscriptions_.callAvailable(); }
+void ContactDisplay::update(float /*wall_dt*/, float /*ros_dt*/) {
+  subscriptions_.callAvailable();
+  for (const Finger finger : kFingers) showLabel(finger);
+}
+
+/// Beside the head of the arrow, as the camera sees it: that of the index above, of the thumb
+/// below, so that two in a pinch are read.
+void ContactDisplay::showLabel(Finger finger) {
+  const auto& shown = arrows_[finger]->shown();
+  rviz::ViewController* view = context_->getViewManager()->getCurrent();
+  const Ogre::Camera* camera = view != nullptr ? view->getCamera() : nullptr;
+  if (!shown || camera == nullptr || camera->getViewport() == nullptr) {
+    labels_[finger]->hide();
+    return;
+  }
+  const Eigen::Vector3f head = shown->head.cast<float>();
+  const Ogre::Vector3 seen =
+      camera->getViewMatrix() *
+      (scene_node_->convertLocalToWorldPosition({head.x(), head.y(), head.z()}));
+  const Ogre::Vector3 place = camera->getProjectionMatrix() * seen;
+  if (seen.z >= 0.0F || std::abs(place.x) > 1.0F || std::abs(place.y) > 1.0F) {
+    labels_[finger]->hide();
+    return;
+  }
+  char caption[48];
+  std::snprintf(caption, sizeof(caption), shown->force < 0.1 ? "%s %.3f N" : "%s %.2f N",
+                base::name(finger), shown->force);
+  const QImage picture = paintLabel(caption);
+  const int x = static_cast<int>(0.5F * (1.0F + place.x) * camera->getViewport()->getActualWidth());
+  const int y =
+      static_cast<int>(0.5F * (1.0F - place.y) * camera->getViewport()->getActualHeight());
+  const int above = finger == Finger::kIndex ? -kLabelAway - picture.height() : kLabelAway;
+  labels_[finger]->show(picture, x + kLabelAway, y + above);
+}
 
 }  // namespace haptex::rviz_plugin

@@ -37,9 +37,11 @@ class ContactDisplay : public rviz::Display {
   void receive(base::Finger finger, const haptex::Contact& contact);
   void hide();
   void showLegend();
+  void showLabel(base::Finger finger);
 
   rviz::BoolProperty* legend_wanted_;
   base::PerFinger<std::unique_ptr<ForceArrow>> arrows_;
+  base::PerFinger<std::unique_ptr<OverlayPicture>> labels_;
   std::unique_ptr<OverlayPicture> legend_;
   BackgroundSubscriptions subscriptions_;  // last: its callbacks use the members above
 };
