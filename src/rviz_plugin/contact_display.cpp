@@ -113,37 +113,49 @@ void ContactDisplay::showLegend() {
 
 void ContactDisplay::update(float /*wall_dt*/, float /*ros_dt*/) {
   subscriptions_.callAvailable();
-  for (const Finger finger : kFingers) showLabel(finger);
+  showLabels();
 }
 
-/// Beside the head of the arrow, as the camera sees it: that of the index above, of the thumb
-/// below, so that two in a pinch are read.
-void ContactDisplay::showLabel(Finger finger) {
-  const auto& shown = arrows_[finger]->shown();
+/// In pixels of the view, where it is before the camera.
+std::optional<Eigen::Vector2i> ContactDisplay::placeOf(const Eigen::Vector3d& point) const {
   rviz::ViewController* view = context_->getViewManager()->getCurrent();
   const Ogre::Camera* camera = view != nullptr ? view->getCamera() : nullptr;
-  if (!shown || camera == nullptr || camera->getViewport() == nullptr) {
-    labels_[finger]->hide();
-    return;
-  }
-  const Eigen::Vector3f head = shown->head.cast<float>();
-  const Ogre::Vector3 seen =
-      camera->getViewMatrix() *
-      (scene_node_->convertLocalToWorldPosition({head.x(), head.y(), head.z()}));
+  if (camera == nullptr || camera->getViewport() == nullptr) return std::nullopt;
+  const Eigen::Vector3f local = point.cast<float>();
+  const Ogre::Vector3 seen = camera->getViewMatrix() * scene_node_->convertLocalToWorldPosition(
+                                                           {local.x(), local.y(), local.z()});
   const Ogre::Vector3 place = camera->getProjectionMatrix() * seen;
-  if (seen.z >= 0.0F || std::abs(place.x) > 1.0F || std::abs(place.y) > 1.0F) {
-    labels_[finger]->hide();
-    return;
+  if (seen.z >= 0.0F || std::abs(place.x) > 1.0F || std::abs(place.y) > 1.0F) return std::nullopt;
+  const auto* port = camera->getViewport();
+  return Eigen::Vector2i(static_cast<int>(0.5F * (1.0F + place.x) * port->getActualWidth()),
+                         static_cast<int>(0.5F * (1.0F - place.y) * port->getActualHeight()));
+}
+
+/// Beside the heads of the arrows, the upper one above, the lower one below, so that both are read
+/// in a pinch.
+void ContactDisplay::showLabels() {
+  base::PerFinger<std::optional<Eigen::Vector2i>> places;
+  for (const Finger finger : kFingers) {
+    if (const auto& shown = arrows_[finger]->shown()) places[finger] = placeOf(shown->head);
   }
-  char caption[48];
-  std::snprintf(caption, sizeof(caption), shown->force < 0.1 ? "%s %.3f N" : "%s %.2f N",
-                base::name(finger), shown->force);
-  const QImage picture = paintLabel(caption);
-  const int x = static_cast<int>(0.5F * (1.0F + place.x) * camera->getViewport()->getActualWidth());
-  const int y =
-      static_cast<int>(0.5F * (1.0F - place.y) * camera->getViewport()->getActualHeight());
-  const int above = finger == Finger::kIndex ? -kLabelAway - picture.height() : kLabelAway;
-  labels_[finger]->show(picture, x + kLabelAway, y + above);
+  const auto& index = places[Finger::kIndex];
+  const auto& thumb = places[Finger::kThumb];
+  const bool index_above = !index || !thumb || index->y() <= thumb->y();
+  for (const Finger finger : kFingers) {
+    if (!places[finger]) {
+      labels_[finger]->hide();
+      continue;
+    }
+    const double force = arrows_[finger]->shown()->force;
+    char caption[48];
+    std::snprintf(caption, sizeof(caption), force < 0.1 ? "%s %.3f N" : "%s %.2f N",
+                  base::name(finger), force);
+    const QImage picture = paintLabel(caption);
+    const bool above = (finger == Finger::kIndex) == index_above;
+    labels_[finger]->show(
+        picture, places[finger]->x() + kLabelAway,
+        places[finger]->y() + (above ? -kLabelAway - picture.height() : kLabelAway));
+  }
 }
 
 }  // namespace haptex::rviz_plugin
