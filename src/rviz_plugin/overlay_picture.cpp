@@ -106,6 +106,16 @@ QImage paintNames(const std::string& title, const std::vector<std::string>& name
   return picture;
 }
 
+QImage paintLabel(const std::string& text) {
+  const QFontMetrics metrics(textFont());
+  QImage picture = emptyPicture(widthOf(metrics, text) + kMargin, metrics.height() + 2);
+  QPainter painter(&picture);
+  painter.setFont(textFont());
+  painter.setPen(Qt::black);
+  painter.drawText(kMargin / 2, 1 + metrics.ascent(), QString::fromStdString(text));
+  return picture;
+}
+
 OverlayPicture::OverlayPicture() {
   static std::atomic<unsigned> count{0};
   name_ = "haptex overlay " + std::to_string(count++);

@@ -297,9 +297,10 @@ void Panel::subscribe() {
 
 void Panel::receive(const diagnostic_msgs::DiagnosticArray& diagnostics) {
   const base::Time now = realtime::steadyNow();
+  const double stamp = diagnostics.header.stamp.toSec();
   for (const diagnostic_msgs::DiagnosticStatus& status : diagnostics.status) {
     const std::string name = statusOfNamespace(status.name, ros::this_node::getNamespace());
-    if (!name.empty()) status_.hear(name, diagnosisOf(status), now);
+    if (!name.empty()) status_.hear(name, diagnosisOf(status, stamp), now);
   }
 }
 

@@ -21,12 +21,13 @@ std::string statusOfNamespace(const std::string& name, const std::string& space)
   return inside ? name.substr(end + 2) : "";
 }
 
-Diagnosis diagnosisOf(const diagnostic_msgs::DiagnosticStatus& status) {
+Diagnosis diagnosisOf(const diagnostic_msgs::DiagnosticStatus& status, double stamp) {
   using Status = diagnostic_msgs::DiagnosticStatus;
   Diagnosis diagnosis;
   diagnosis.level = status.level == Status::OK     ? Diagnosis::Level::kOk
                     : status.level == Status::WARN ? Diagnosis::Level::kWarn
                                                    : Diagnosis::Level::kError;
+  diagnosis.stamp = stamp;
   diagnosis.message = cut(status.message);
   for (const diagnostic_msgs::KeyValue& pair : status.values) {
     diagnosis.values[cut(pair.key)] = cut(pair.value);

@@ -17,6 +17,7 @@ constexpr char kLink[] = "exoskeleton link";
 constexpr char kDriverLoop[] = "exoskeleton loop";
 constexpr char kForceLoop[] = "force loop";
 constexpr char kSources[] = "force sources";
+constexpr double kShortestRate = 0.1;  // s, between two diagnoses that have a rate
 constexpr char kNoForce[] = "no force: ";
 
 std::string ofFinger(const char* what, Finger finger) {
@@ -55,8 +56,9 @@ std::string reasonIn(const std::string& message) {
 void SystemStatus::hear(const std::string& name, Diagnosis diagnosis, Time now) {
   Heard heard{std::move(diagnosis), now, std::nullopt, 0.0};
   const auto before = heard_.find(name);
-  if (before != heard_.end() && now > before->second.time) {
-    const double seconds = base::seconds(now - before->second.time);
+  const double seconds =
+      before != heard_.end() ? heard.diagnosis.stamp - before->second.diagnosis.stamp : 0.0;
+  if (seconds >= kShortestRate) {
     const auto since = [&](const char* key) {
       return numberIn(heard.diagnosis, key) - numberIn(before->second.diagnosis, key);
     };
@@ -171,6 +173,24 @@ std::optional<StatusLine> SystemStatus::forceTrouble(Time now) const {
   return std::nullopt;
 }
 
+/// Of both fingers, in a clause each.
+std::string SystemStatus::feelings() const {
+  std::string text;
+  for (const Finger finger : kFingers) {
+    const Heard* force = find(ofFinger("contact force", finger));
+    if (force == nullptr) continue;
+    const std::string& message = force->diagnosis.message;
+    text += text.empty() ? "the " : ", the ";
+    text += std::string(base::name(finger)) + " ";
+    if (message == "touches") {
+      text += "feels " + formatted("%.2f N", numberIn(force->diagnosis, "force (N)"));
+    } else {
+      text += message == "the force rises" ? "feels a rising force" : message;
+    }
+  }
+  return text;
+}
+
 StatusLine SystemStatus::allIsWell(Time now) const {
   const Heard* cloth = find(kCloth);
   const bool paused = cloth != nullptr && cloth->diagnosis.message.rfind("paused", 0) == 0;
@@ -180,15 +200,7 @@ StatusLine SystemStatus::allIsWell(Time now) const {
   if (find(kLink) == nullptr && !device_) {
     text = "There is a cloth and no exoskeleton: nothing is felt.";
   } else {
-    for (const Finger finger : kFingers) {
-      const Heard* force = find(ofFinger("contact force", finger));
-      if (force == nullptr) continue;
-      text += text.empty() ? "" : ", ";
-      text += std::string("the ") + base::name(finger) + " ";
-      text += force->diagnosis.message == "touches"
-                  ? "feels " + formatted("%.2f N", numberIn(force->diagnosis, "force (N)"))
-                  : force->diagnosis.message;
-    }
+    text = feelings();
     text = (mood == Mood::kWell ? "All is well: " : "") + text + ".";
     if (mood != Mood::kWell && !text.empty()) text[0] = static_cast<char>(std::toupper(text[0]));
   }

@@ -25,7 +25,7 @@ TEST(DiagnosisOf, CutsWhatIsTooLong) {
   status.values.resize(1);
   status.values[0].key = "key";
   status.values[0].value = std::string(5000, 'y');
-  const Diagnosis diagnosis = diagnosisOf(status);
+  const Diagnosis diagnosis = diagnosisOf(status, 3.0);
   EXPECT_EQ(diagnosis.level, Diagnosis::Level::kWarn);
   EXPECT_EQ(diagnosis.message.size(), kLongest);
   EXPECT_EQ(diagnosis.values.at("key").size(), kLongest);

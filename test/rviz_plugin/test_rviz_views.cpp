@@ -27,7 +27,7 @@ namespace {
 
 int cycles() {
   const char* text = std::getenv("HAPTEX_VIEW_CYCLES");
-  return text != nullptr ? std::atoi(text) : 50;
+  return text != nullptr ? std::atoi(text) : 200;
 }
 
 /// Whether a display says that something of this name is well.

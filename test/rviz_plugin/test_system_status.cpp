@@ -42,6 +42,13 @@ TEST(SystemStatus, SaysThatAllIsWellAndWhatIsFelt) {
   EXPECT_EQ(line.text, "All is well: the index feels 0.31 N, the thumb does not touch.");
 }
 
+TEST(SystemStatus, AForceThatRisesIsSaidInASentence) {
+  SystemStatus status = wellStatus();
+  status.hear("contact force of the thumb", {Level::kOk, "the force rises", {}}, kNow);
+  EXPECT_EQ(status.line(kNow).text,
+            "All is well: the index feels 0.31 N, the thumb feels a rising force.");
+}
+
 TEST(SystemStatus, ANodeThatFellSilentIsNamed) {
   const SystemStatus status = wellStatus(kNow);
   EXPECT_EQ(status.line(kNow + SystemStatus::kSilent).mood, Mood::kWell);
@@ -175,14 +182,15 @@ std::string figureOf(const SystemStatus& status, const std::string& name) {
 
 TEST(SystemStatus, RatesAndDipsAreThoseBetweenTheLastTwoDiagnoses) {
   SystemStatus status;
-  const auto diagnosis = [](const char* periods, const char* missed) {
+  const auto diagnosis = [](double stamp, const char* periods, const char* missed) {
     return Diagnosis{Level::kOk,
                      "in time",
-                     {{"periods", periods}, {"periods missed", missed}, {"SCHED_FIFO", "granted"}}};
+                     {{"periods", periods}, {"periods missed", missed}, {"SCHED_FIFO", "granted"}},
+                     stamp};
   };
-  status.hear("force loop", diagnosis("5000", "3"), kNow - milliseconds(1250));
+  status.hear("force loop", diagnosis(7.0, "5000", "3"), kNow);
   EXPECT_EQ(figureOf(status, "force loop"), "none") << "one diagnosis has no rate";
-  status.hear("force loop", diagnosis("6250", "5"), kNow);
+  status.hear("force loop", diagnosis(8.25, "6250", "5"), kNow);  // arrives at the same time
   EXPECT_EQ(figureOf(status, "force loop"), "1000 Hz, 2 missed lately");
 }
 

@@ -4,7 +4,9 @@
 #include <haptex/Contact.h>
 #include <rviz/display.h>
 
+#include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 #include "haptex/base/finger.h"
 #include "haptex/rviz_plugin/background_subscriptions.h"
@@ -37,9 +39,12 @@ class ContactDisplay : public rviz::Display {
   void receive(base::Finger finger, const haptex::Contact& contact);
   void hide();
   void showLegend();
+  std::optional<Eigen::Vector2i> placeOf(const Eigen::Vector3d& point) const;
+  void showLabels();
 
   rviz::BoolProperty* legend_wanted_;
   base::PerFinger<std::unique_ptr<ForceArrow>> arrows_;
+  base::PerFinger<std::unique_ptr<OverlayPicture>> labels_;
   std::unique_ptr<OverlayPicture> legend_;
   BackgroundSubscriptions subscriptions_;  // last: its callbacks use the members above
 };

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 namespace Ogre {
 class SceneManager;
@@ -10,13 +11,12 @@ class SceneNode;
 }  // namespace Ogre
 namespace rviz {
 class Arrow;
-class MovableText;
 }  // namespace rviz
 
 namespace haptex::rviz_plugin {
 
-/// An arrow of the length nodes::arrowLength() with the force in N beside its head, both before
-/// whatever hides them. By the thread of the scene.
+/// An arrow of the length nodes::arrowLength(), before whatever hides it. By the thread of the
+/// scene.
 class ForceArrow {
  public:
   /// @param parent the node to which this adds its own; outlives this, as the manager does
@@ -32,12 +32,18 @@ class ForceArrow {
   void show(const Eigen::Vector3d& place, const Eigen::Vector3d& force);
   void hide();
 
+  /// Where its head ends (m), of what is shown, and the force (N).
+  struct Shown {
+    Eigen::Vector3d head;
+    double force;
+  };
+  const std::optional<Shown>& shown() const { return shown_; }
+
  private:
   Ogre::SceneManager& manager_;
   Ogre::SceneNode* node_;
-  Ogre::SceneNode* text_node_;
   std::unique_ptr<rviz::Arrow> arrow_;
-  std::unique_ptr<rviz::MovableText> text_;
+  std::optional<Shown> shown_;
 };
 
 }  // namespace haptex::rviz_plugin

@@ -20,7 +20,10 @@ QImage paintColourBar(const ColourScale& scale);
 /// The names of things beside their colours (nodes::distinctColour()), the first few of many.
 QImage paintNames(const std::string& title, const std::vector<std::string>& names);
 
-/// At the left edge of the view, in pixels. By the thread of the scene.
+/// One line of text.
+QImage paintLabel(const std::string& text);
+
+/// In pixels of the view. By the thread of the scene.
 class OverlayPicture {
  public:
   OverlayPicture();

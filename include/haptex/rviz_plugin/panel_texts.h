@@ -15,8 +15,8 @@ namespace haptex::rviz_plugin {
 /// @param space as ros::this_node::getNamespace(), for example "/haptex"
 std::string statusOfNamespace(const std::string& name, const std::string& space);
 
-/// Texts are cut off after kLongest characters.
-Diagnosis diagnosisOf(const diagnostic_msgs::DiagnosticStatus& status);
+/// Texts are cut off after kLongest characters. @param stamp of the array, s
+Diagnosis diagnosisOf(const diagnostic_msgs::DiagnosticStatus& status, double stamp);
 constexpr std::size_t kLongest = 400;
 
 /// What runs and the errors to expect, in lines.

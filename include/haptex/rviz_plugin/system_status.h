@@ -18,6 +18,7 @@ struct Diagnosis {
   Level level = Level::kOk;
   std::string message;
   std::map<std::string, std::string> values;
+  double stamp = 0.0;  ///< s, when the node said so, by its clock: messages may arrive together
 };
 
 /// exoskeleton/operating_state.
@@ -77,6 +78,7 @@ class SystemStatus {
   std::optional<StatusLine> stateTrouble() const;
   std::optional<StatusLine> forceTrouble(Time now) const;
   StatusLine allIsWell(Time now) const;
+  std::string feelings() const;
   std::string warnings(Time now) const;
 
   std::map<std::string, Heard> heard_;

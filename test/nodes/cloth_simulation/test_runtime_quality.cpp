@@ -145,6 +145,34 @@ TEST_F(RuntimeQualityOfAScene, ABudgetForTheScenesOwnSettingsKeepsItsMeshAndStar
   EXPECT_TRUE(quality.reduced(message));
 }
 
+TEST_F(RuntimeQualityOfAScene, RunsByTheQualityOrTheBudgetThatIsAskedForLater) {
+  QualityRequest request;
+  request.of_scene = true;
+  request.budget = 0.005;
+  RuntimeQuality quality(scene("top"), request);
+  simulation::SimulatedCloth simulation = quality.simulate();
+  const ros::Time stamp(1.0);
+  const std::vector<std::string> names = quality.message(simulation, stamp).qualities;
+  ASSERT_GE(names.size(), 2u);
+  EXPECT_EQ(names.back(), "scene");
+  EXPECT_EQ(quality.set(simulation, names.front(), 0.002), "runs by " + names.front());
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(simulation.step());
+  EXPECT_EQ(quality.message(simulation, stamp).quality.name, names.front()) << "it stays";
+  EXPECT_EQ(quality.message(simulation, stamp).budget_ms, 0.0);
+  quality.set(simulation, "", 0.0);
+  EXPECT_EQ(quality.message(simulation, stamp).quality.name, "scene");
+  EXPECT_NE(quality.set(simulation, "", 0.004).find("4 ms"), std::string::npos);
+  EXPECT_EQ(quality.message(simulation, stamp).budget_ms, 4.0);
+  quality.set(simulation, "", 1.0);
+  EXPECT_DOUBLE_EQ(quality.message(simulation, stamp).budget_ms, 10.0) << "four fifths of a cycle";
+  for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(quality.set(simulation, "", bad), std::invalid_argument);
+  }
+  EXPECT_THROW(quality.set(simulation, "finest", 0.0), std::invalid_argument);
+  EXPECT_DOUBLE_EQ(quality.message(simulation, stamp).budget_ms, 10.0)
+      << "what is refused changes nothing";
+}
+
 TEST_F(RuntimeQualityOfAScene, APresetMayBeReducedForABudgetOfAtMostFourFifthsOfACycle) {
   const RuntimeQuality quality(scene("top"), {kFast, 1.0});
   const simulation::SimulatedCloth simulation = quality.simulate();

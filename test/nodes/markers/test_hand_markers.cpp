@@ -106,6 +106,17 @@ TEST(TargetMarkers, FingertipsCanBeDraggedButNotTurned) {
   }
 }
 
+TEST(TargetMarkers, ThePinchHasAHandleBeforeTheFingertipsThatGoesOneWay) {
+  const exoskeleton::HandPlace place = somePlace();
+  const InteractiveMarker marker = pinchMarker(place);
+  expectSound(marker);
+  EXPECT_EQ(marker.name, kPinchMarker);
+  EXPECT_EQ(position(marker.pose), pinchPlace(place.fingertips));
+  EXPECT_GT(marker.pose.position.x, place.fingertips[Finger::kThumb].x());
+  EXPECT_EQ(countOf(marker, InteractiveMarkerControl::MOVE_AXIS), 1);
+  EXPECT_EQ(marker.controls.size(), 1u);
+}
+
 TEST(TargetMarkers, TheHandCanBeDraggedAndTurned) {
   const exoskeleton::HandPlace place = somePlace();
   const InteractiveMarker marker = handMarker(place);

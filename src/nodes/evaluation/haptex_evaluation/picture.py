@@ -13,7 +13,8 @@ DRAWN = {'cloth/mesh': ClothMesh, 'cloth/state': ClothState, 'cloth/contact_forc
 
 class Picture:
     """rviz draws evaluation/cloth_markers and so on (launch/evaluation.launch). If the fabric is
-    hidden markers say once that nothing is to be drawn, and the others never come. Nothing is subscribed to that nobody looks at."""
+    hidden markers say once that nothing is to be drawn, and the others never come. Nothing is
+    subscribed to that nobody looks at."""
 
     def __init__(self, shown):
         self._shown = shown
