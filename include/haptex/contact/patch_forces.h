@@ -22,7 +22,7 @@ struct PatchForces {
 /// Those around them bend by their corners, together with the corners of the refined ones, which
 /// resist nothing there: so both are as regular as the mesh is, and where its cells are rectangles
 /// hinges of four particles are exact (cloth::BendingModel::kLinear). Along the line between both
-/// the half of a fine cell on its one side resists no bend across it.
+/// some half of a coarse cell resists no bend across it.
 /// @param coarse  the mesh that was cut
 /// @param fabrics with bending
 /// @throws std::invalid_argument as cloth::Membrane, cloth::Bending and cloth::Aerodynamics
