@@ -74,6 +74,22 @@ haptex_compile() {
   haptex_logged "$build/build.log" cmake --build "$build" -j "$(nproc)" --target "${@:-all}"
 }
 
+# haptex_link_programs: links in bin/ to the programs of build/, which lies where rosrun never looks
+# (PACKAGE/build). It finds the scripts without them, and in a catkin workspace the programs.
+haptex_link_programs() {
+  local program
+  rm -rf "${haptex_root:?}/bin"
+  mkdir "$haptex_root/bin"
+  for program in "$haptex_root"/build/devel/lib/haptex/*; do
+    # The others are catkin's relays of the scripts.
+    [ "$(head -c 4 "$program" | tail -c 3)" = ELF ] || continue
+    case "$(basename "$program")" in
+      test_* | bench_*) ;;
+      *) ln -s "../build/devel/lib/haptex/$(basename "$program")" "$haptex_root/bin/" ;;
+    esac
+  done
+}
+
 # haptex_environment SETUP_FILE: ROS's own setup files read variables that may be unset.
 haptex_environment() {
   local setup_file="$1"
@@ -112,6 +128,7 @@ haptex_setup() {
     tail -n 40 "$haptex_root/build/build.log" >&2
     haptex_die "building failed; the whole log: $haptex_root/build/build.log"
   }
+  haptex_link_programs
   haptex_environment "$haptex_root/build/devel/setup.bash"
 }
 

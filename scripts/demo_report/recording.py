@@ -7,6 +7,17 @@ import rosbag
 from .series import FINGERS, PHASES, Series
 
 
+def namespace_of(bag):
+    """@returns the namespace of the only cloth in a bag, without its last slash
+    @throws ValueError naming the bag if there is none or more than one"""
+    ending = '/cloth/state'
+    found = sorted(topic[:-len(ending)] for topic in bag.get_type_and_topic_info().topics
+                   if topic.endswith(ending))
+    if len(found) != 1:
+        raise ValueError(f'{bag.filename}: has {len(found)} topics that end in {ending}, must have one')
+    return found[0]
+
+
 class Recording:
     """What the bag of a demo holds."""
 
@@ -33,14 +44,16 @@ class Recording:
 
     def read(self, bag):
         """In one pass, because every one unpacks the whole bag."""
-        take = {'/haptex/cloth/state': self.take_state, '/haptex/cloth/mesh': self.take_mesh,
-                '/haptex/cloth/quality': self.take_quality,
-                '/haptex/emulator/phase': self.take_phase, '/diagnostics': self.take_diagnostics,
-                '/haptex/exoskeleton/operating_state': self.take_operating}
+        place = namespace_of(bag)
+        take = {place + '/cloth/state': self.take_state, place + '/cloth/mesh': self.take_mesh,
+                place + '/cloth/quality': self.take_quality,
+                place + '/emulator/phase': self.take_phase, '/diagnostics': self.take_diagnostics,
+                place + '/exoskeleton/operating_state': self.take_operating}
         for finger in FINGERS:
-            take[f'/haptex/{finger}/measured_cf'] = self.taker(self.felt[finger], parse_wrench)
-            take[f'/haptex/{finger}/contact'] = self.taker(self.contact[finger], parse_contact)
-            take[f'/haptex/{finger}/tactile'] = self.taker(self.tactile[finger], parse_tactile)
+            of = f'{place}/{finger}'
+            take[of + '/measured_cf'] = self.taker(self.felt[finger], parse_wrench)
+            take[of + '/contact'] = self.taker(self.contact[finger], parse_contact)
+            take[of + '/tactile'] = self.taker(self.tactile[finger], parse_tactile)
         for topic, raw, time in bag.read_messages(list(take), raw=True):
             take[topic](raw, time.to_sec())
 

@@ -10,7 +10,7 @@ GRAVITY = 9.80665  # m/s^2
 AREA = 0.04  # m^2, of the sample
 BLOCKS = 8  # that means are taken over, for their deviation
 KES_PRESSURE = 50 * 98.0665  # Pa, under which Tm is measured
-FIRST_FORCE = 1e-4  # N, of a pinch
+FIRST_FORCE = 3e-5  # N, of a pinch
 EXPONENT = 0.2  # of a compression curve, for a linearity LC = 2 EXPONENT / (1 + EXPONENT) of 1/3
 
 
@@ -67,48 +67,37 @@ def pinch_force(gap, thickness, compressed, fingertips):
     return np.interp(gap, gaps[::-1], forces[::-1], right=0.0)
 
 
-def compression(record, fingertips):
-    """Thickness without pressure, thickness under 50 gf/cm^2 (m) and compressibility (T0 - Tm) / T0. The
-    first force is felt at T0; then the fabric is the one whose pinch_force() is that of the record."""
+def compression(record, fingertips, pinch_seconds):
+    """Thickness without pressure, thickness under 50 gf/cm^2 (m) and compressibility (T0 - Tm) / T0: means
+    over pinches of pinch_seconds each. The first force that both fingers feel is felt at T0; then the fabric
+    is the one whose pinch_force() is that of the record."""
     apart = record.positions[:, 0] - record.positions[:, 1]
     distance = np.linalg.norm(apart, axis=1)
+    along = apart / distance[:, None]
     gap = distance - fingertips.index_radius - fingertips.thumb_radius
-    force = 0.5 * np.abs(np.einsum('ni,ni->n', record.forces[:, 0] - record.forces[:, 1],
-                                   apart / distance[:, None]))
+    # What one finger feels alone pushes the fabric aside.
+    force = np.minimum(np.einsum('ni,ni->n', record.forces[:, 0], along),
+                       -np.einsum('ni,ni->n', record.forces[:, 1], along))
     if force.max() < 0.02:
-        raise ValueError(f'the pinch presses with up to {force.max():.3g} N: allowed are 0.02 N or more')
-    parts = [judge_pinch(gap[part::BLOCKS], force[part::BLOCKS], fingertips)
-             for part in range(BLOCKS)]
+        raise ValueError(f'the pinch presses with up to {force.max() + 0.0:.3g} N: allowed are 0.02 N or more')
+    numbers = np.floor((record.times - record.times[0]) / pinch_seconds)
+    pinches = [judge_pinch(gap[numbers == number], force[numbers == number], fingertips)
+               for number in np.unique(numbers)]
     return [Judgement(float(value), float(deviation)) for value, deviation in
-            zip(np.mean(parts, axis=0), np.std(parts, axis=0, ddof=1) / np.sqrt(BLOCKS))]
+            zip(np.mean(pinches, axis=0),
+                np.std(pinches, axis=0, ddof=min(1, len(pinches) - 1)) / np.sqrt(len(pinches)))]
 
 
 def judge_pinch(gap, force, fingertips):
-    """T0, Tm and (T0 - Tm) / T0 of samples of a pinch."""
-    pressed = force > FIRST_FORCE
-    thick = gap[pressed].max()
+    """T0, Tm and (T0 - Tm) / T0 of samples of a pinch, while it closes."""
+    closed = int(np.argmin(gap)) + 1
+    pressed = force[:closed] > FIRST_FORCE
+    gap, force = gap[:closed][pressed], force[:closed][pressed]
+    thick = gap.max(initial=0.0)
     if thick <= 0.0:
         raise ValueError(f'the first force is felt at a gap of {thick:.3g} m: allowed are > 0')
     def residual(compressed):
-        return (np.sqrt(pinch_force(gap[pressed], thick, compressed[0], fingertips))
-                - np.sqrt(force[pressed]))
+        return np.sqrt(pinch_force(gap, thick, compressed[0], fingertips)) - np.sqrt(force)
     compressed = least_squares(residual, (0.2 * thick,), x_scale=(1e-4,),
                                bounds=((0.0,), (thick,))).x[0]
     return thick, thick - compressed, compressed / thick
-
-
-def stiffness(record, direction, least, largest):
-    """N/m: force that both fingertips feel against a direction over their way along it, between two forces
-    (N), as far as it rises for the first time."""
-    direction = np.asarray(direction, float)
-    way = record.places @ direction
-    force = -record.sums @ direction
-    smooth = np.convolve(force, np.ones(50) / 50.0, 'same')  # over the tremor
-    begin = int(np.argmax(smooth > least))
-    reached = np.flatnonzero(smooth[begin:] > largest)
-    end = begin + int(reached[0]) if len(reached) else begin + int(np.argmax(smooth[begin:]))
-    if end - begin < 20:
-        raise ValueError(f'the hand draws with {least} to {largest} N for {end - begin} samples: allowed '
-                         'are 20 or more')
-    (slope, _), covariance = np.polyfit(way[begin:end], force[begin:end], 1, cov=True)
-    return Judgement(float(slope), float(np.sqrt(covariance[0, 0])))

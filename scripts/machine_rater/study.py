@@ -1,10 +1,12 @@
 """Judges fabrics by machine: the manipulations in simulated time, estimates, and rank correlations with
 what the fabric files say. Called by scripts/evaluate."""
 import argparse
+import concurrent.futures
 import pathlib
 import subprocess
 import sys
 import tempfile
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,22 +14,32 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / 'scripts'), str(ROOT / 'src' / 'nodes' / 'evaluation')]
 from haptex_evaluation import statistics  # noqa: E402
 from haptex_evaluation.kes_values import FabricValues  # noqa: E402
-from machine_rater import rater  # noqa: E402
+from machine_rater import overhang, pressed_strips, rater  # noqa: E402
 from machine_rater.records import DeviceRecord  # noqa: E402
 
 PROGRAM = ROOT / 'build' / 'devel' / 'lib' / 'haptex' / 'device_records'
 SEEDS = (1, 2)  # of the tremor
-RATE = 80.0  # Hz, of the large-scale cloth
+FINEST = 'finest'  # how the cloth is computed unless by a preset
+PRESETS = ('fast', 'balanced', 'accurate')
 LIMITS = {'quantum': 0.005, 'delay': 0.003}  # N, s: of a device with a coarse sensor and a slow loop
+PROCESSES = 2
 NOT_FABRICS = ('linear',)  # neither woven nor knitted
-DOWN, SIDEWAYS = (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)
 # Unit, and by what a value of the file is of the same quantity: then its error is told.
-PROPERTIES = {'tensile_stiffness': ('N/m', True), 'shear_stiffness': ('N/m', False),
-              'roughness': ('um', False), 'friction': ('1', True), 'compressibility': ('1', True),
-              'thickness_under_load': ('m', True), 'weight': ('kg/m2', True)}
+PROPERTIES = {'tensile_stiffness': ('N/m', True), 'shear_stiffness': ('N/m', True),
+              'bending_stiffness': ('N.m', True), 'roughness': ('um', False),
+              'friction': ('1', True), 'compressibility': ('1', True),
+              'thickness_under_load': ('m', True), 'weight': ('kg/m2', True), 'drape': ('m', True)}
 # By strokes that do not tremble and meet no limit of the device: to repeat them says nothing.
 BY_STROKES = ('roughness',)
-NOT_JUDGED = ('bending_stiffness', 'drape')
+
+
+class Hand(NamedTuple):
+    """What a hand knows of itself and of the strips that it cut."""
+    fingertips: rater.Fingertips
+    pinch_seconds: float
+    pressed: pressed_strips.Contact
+    biased: pressed_strips.Contact
+    overhang: pressed_strips.Strip
 
 
 def say(text):
@@ -39,53 +51,94 @@ def fabric_names():
             if path.stem not in NOT_FABRICS]
 
 
-def run_hand(directory, fabrics):
-    """Both seeds at once. @returns what the program says: fingertips, and strokes by fabric"""
-    runs = [subprocess.Popen([PROGRAM, ROOT / 'config', directory, str(seed), str(RATE), *fabrics],
-                             stdout=subprocess.PIPE, text=True) for seed in SEEDS]
-    said = []
-    for line in runs[0].stdout:
-        fields = line.rstrip('\n').split('\t')
-        said.append(fields)
-        if fields[0] == 'done':
-            say(f'{fields[1]} has been touched')
-    for run in runs:
-        run.communicate()
-        if run.returncode != 0:
+def run_hand(directory, fabrics, runs):
+    """At most PROCESSES at once. @param runs pairs of the tremor's seed and of how the cloth is computed
+    @returns what the program says: the hand, and strokes by fabric"""
+    def run(pair):
+        seed, quality = pair
+        folder = pathlib.Path(directory) / quality
+        folder.mkdir(exist_ok=True)
+        process = subprocess.Popen(
+            [PROGRAM, ROOT / 'config', folder, str(seed), quality, *fabrics],
+            stdout=subprocess.PIPE, text=True)
+        said = []
+        for line in process.stdout:
+            said.append(line.rstrip('\n').split('\t'))
+            if said[-1][0] == 'done':
+                say(f'{said[-1][1]} has been touched ({quality}, tremor {seed})')
+        if process.wait() != 0:
             raise SystemExit(f'evaluate: {PROGRAM} failed')
-    fingertips = next(rater.Fingertips(*map(float, fields[1:])) for fields in said
-                      if fields[0] == 'fingertips')
-    strokes = {fields[1]: float(fields[2]) for fields in said if fields[0] == 'stroke'}
-    return fingertips, strokes
+        return said
+    with concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool:
+        said = list(pool.map(run, runs))[0]
+    numbers = {tuple(fields[:2]) if fields[0] == 'strip' else fields[0]: fields for fields in said}
+    fingertips = rater.Fingertips(*map(float, numbers['fingertips'][1:]))
+    pressed, biased, over = (pressed_strips.Strip(*map(float, numbers['strip', name][2:]))
+                             for name in ('pressed', 'biased', 'overhang'))
+    def contact(strip):
+        return pressed_strips.Contact(strip, fingertips.index_radius, fingertips.pulp_stiffness)
+    hand = Hand(fingertips, float(numbers['pinch'][1]), contact(pressed), contact(biased), over)
+    return hand, {fields[1]: float(fields[2]) for fields in said if fields[0] == 'stroke'}
 
 
-def judge_drawn(read):
-    drawn = [rater.stiffness(read(f'draw_{way}'), DOWN, 0.05, 0.3) for way in ('warp', 'weft')]
-    return [rater.Judgement(float(np.mean([one.value for one in drawn])),
-                            float(np.hypot(*(one.uncertainty for one in drawn)) / 2.0))]
+def mean(judgements):
+    return rater.Judgement(float(np.mean([one.value for one in judgements])),
+                           float(np.hypot(*(one.uncertainty for one in judgements)) / 2.0))
 
 
-def judge(read, fingertips, stroke, what):
+def judge(read, hand, stroke, what):
     """Judgements by property; of what a record does not show there is none, and that is said.
     @param read a DeviceRecord by the name of its manipulation
     @param stroke perceived intensity (m) of the contactors, or none without a surface
     @param what for the message"""
-    ways = (
-        (('weight',), lambda: [rater.weight(read('weigh'))]),
-        (('friction',), lambda: [rater.friction(read('drag'))]),
-        (('thickness_under_load', 'compressibility'),
-         lambda: rater.compression(read('pinch'), fingertips)[1:]),
-        (('tensile_stiffness',), lambda: judge_drawn(read)),
-        (('shear_stiffness',), lambda: [rater.stiffness(read('shear'), SIDEWAYS, 0.02, 0.15)]))
-    found = {}
-    for names, way in ways:
+    found = {} if stroke is None else {'roughness': rater.Judgement(1e6 * stroke, 0.0)}
+    radius = hand.fingertips.index_radius
+
+    def pressed(name, way, *more):
+        return way(read(name), hand.biased if name == 'press_bias' else hand.pressed, radius,
+                   thickness, *more)
+
+    def attempt(names, way):
         try:
-            found.update(zip(names, way()))
+            judgements = way()
         except ValueError as error:
             say(f'{what}, no {" and ".join(names)}: {error}')
-    if stroke is not None:
-        found['roughness'] = rater.Judgement(1e6 * stroke, 0.0)
+            return None
+        found.update(zip(names, judgements))
+        return judgements
+
+    attempt(('weight',), lambda: [rater.weight(read('weigh'))])
+    attempt(('friction',), lambda: [rater.friction(read('drag'))])
+    compression = attempt(('thickness', 'thickness_under_load', 'compressibility'), lambda:
+                          rater.compression(read('pinch'), hand.fingertips, hand.pinch_seconds))
+    # Who cannot tell the thickness takes the strips for thin.
+    thickness = found.pop('thickness').value if compression else 0.0
+    names = ('press_warp', 'press_weft')
+    attempt(('tensile_stiffness',), lambda: [mean(
+        [pressed(name, pressed_strips.tensile_stiffness) for name in names])])
+    attempt(('shear_stiffness',), lambda: [pressed(
+        'press_bias', pressed_strips.shear_stiffness,
+        sum(pressed(name, pressed_strips.thread_compliance) for name in names))])
+    if 'weight' in found:
+        weight = found['weight'].value
+        attempt(('bending_stiffness', 'drape'), lambda: hanging(
+            [overhang.bending(read(name), hand.overhang, hand.fingertips, thickness, weight)
+             for name in ('lower_warp', 'lower_weft')], weight))
     return found
+
+
+def hanging(rigidities, weight):
+    """Mean rigidity and bending length."""
+    rigidity = mean(rigidities)
+    length = (rigidity.value / (weight * rater.GRAVITY)) ** (1.0 / 3.0)
+    return rigidity, rater.Judgement(length, length * rigidity.uncertainty / rigidity.value / 3.0)
+
+
+def judge_record(directory, hand, fabric, stroke, seed, quality, limits):
+    def read(name):
+        record = DeviceRecord.read(f'{directory}/{quality}/{fabric}_{name}_{seed}.f32')
+        return record.limited(**limits) if limits else record
+    return judge(read, hand, stroke, f'{fabric} ({"coarse device" if limits else quality})')
 
 
 def values_of(fabric):
@@ -110,6 +163,16 @@ def print_judgements(fabrics, judged, files):
                       f'{files[fabric].get(name, float("nan")):.5g}')
 
 
+def spearman_of(name, fabrics, judged, files):
+    """With the files, over the fabrics with both; NaN for less than three, or if one is not judged that
+    could be."""
+    known = [fabric for fabric in fabrics if name in files[fabric]]
+    if len(known) < 3 or any(name not in judged[fabric] for fabric in known):
+        return float('nan')
+    return statistics.spearman(np.array([judged[fabric][name].value for fabric in known]),
+                               np.array([files[fabric][name] for fabric in known]))
+
+
 def print_ranks(fabrics, judged, again, coarse, files):
     """Rank correlations with the files, between two seeds of the tremor, and by a coarse device."""
     for name, (_, same) in PROPERTIES.items():
@@ -123,14 +186,27 @@ def print_ranks(fabrics, judged, again, coarse, files):
         low, high = statistics.bootstrap_interval(statistics.spearman, column(judged), file)
         print(f'evaluate/{name}/spearman\t{statistics.spearman(column(judged), file):.4f}\t'
               f'{low:.4f}\t{high:.4f}')
-        if name in BY_STROKES:
-            continue
-        print(f'evaluate/{name}/repeat\t{statistics.spearman(column(judged), column(again)):.4f}')
-        if all(name in coarse[fabric] for fabric in known):
-            print(f'evaluate/{name}/spearman_coarse\t'
-                  f'{statistics.spearman(column(coarse), file):.4f}')
+        if name not in BY_STROKES:
+            if all(name in again[fabric] for fabric in known):
+                print(f'evaluate/{name}/repeat\t'
+                      f'{statistics.spearman(column(judged), column(again)):.4f}')
+            rank = spearman_of(name, fabrics, coarse, files)
+            print(f'evaluate/{name}/spearman_coarse\t{rank:.4f}')
         if same:
             print(f'evaluate/{name}/value_error\t{np.abs(column(judged) / file - 1.0).max():.4f}')
+
+
+def print_presets(fabrics, by_preset, files):
+    for name, (_, same) in PROPERTIES.items():
+        if name in BY_STROKES:
+            continue
+        for preset, judged in by_preset.items():
+            print(f'evaluate/{name}/spearman_{preset}\t{spearman_of(name, fabrics, judged, files):.4f}')
+            errors = [abs(judged[fabric][name].value / files[fabric][name] - 1.0)
+                      for fabric in fabrics if name in judged[fabric] and name in files[fabric]]
+            if same and errors:
+                print(f'evaluate/{name}/value_error_{preset}\t{max(errors):.4f}\t'
+                      f'{np.median(errors):.4f}')
 
 
 def draw_picture(path, fabrics, judged, files):
@@ -138,7 +214,7 @@ def draw_picture(path, fabrics, judged, files):
     import matplotlib
     matplotlib.use('Agg')
     from matplotlib import pyplot
-    picture, panels = pyplot.subplots(2, 4, figsize=(13, 6.5), constrained_layout=True)
+    picture, panels = pyplot.subplots(3, 3, figsize=(11, 10), constrained_layout=True)
     for panel, (name, (unit, same)) in zip(panels.flat, PROPERTIES.items()):
         known = [fabric for fabric in fabrics if name in judged[fabric] and name in files[fabric]]
         file = [files[fabric][name] for fabric in known]
@@ -154,7 +230,29 @@ def draw_picture(path, fabrics, judged, files):
             panel.plot(ends, ends, color='#555', lw=0.8)
         panel.set(title=name.replace('_', ' '), xlabel='fabric file', ylabel=f'judged, {unit}')
         panel.margins(x=0.2)
-    panels.flat[-1].set_axis_off()
+    picture.savefig(path, dpi=110)
+
+
+def draw_presets(path, fabrics, by_device, files):
+    """Rank correlation by property for each way to compute the cloth, and the coarse device."""
+    import matplotlib
+    matplotlib.use('Agg')
+    from matplotlib import pyplot
+    names = [name for name in PROPERTIES if name not in BY_STROKES]
+    picture, panel = pyplot.subplots(figsize=(9, 4.5), constrained_layout=True)
+    width = 0.8 / len(by_device)
+    for number, (device, judged) in enumerate(by_device.items()):
+        ranks = [spearman_of(name, fabrics, judged, files) for name in names]
+        places = np.arange(len(names)) + (number + 0.5) * width - 0.4
+        panel.bar(places, np.nan_to_num(ranks), width, label=device)
+        for place, rank in zip(places, ranks):
+            if not np.isfinite(rank):
+                panel.text(place, 0.02, 'not told', rotation=90, fontsize=7, ha='center')
+    panel.axhline(0.95, color='#555', lw=0.8, ls=':')
+    panel.axhline(0.0, color='#555', lw=0.8)
+    panel.set_xticks(range(len(names)), [name.replace('_', '\n') for name in names], fontsize=8)
+    panel.set(ylabel='rank correlation with the files', ylim=(min(0.0, panel.get_ylim()[0]), 1.05))
+    panel.legend(loc='lower right', fontsize=8)
     picture.savefig(path, dpi=110)
 
 
@@ -162,28 +260,36 @@ def main():
     parser = argparse.ArgumentParser(prog='scripts/evaluate', description=__doc__.splitlines()[0])
     parser.add_argument('fabrics', nargs='*', metavar='FABRIC', help='of config/fabrics; none: all')
     parser.add_argument('--picture', help='path of a PNG to draw the judgements into')
+    parser.add_argument('--presets', help='judge with the presets, too; path of a PNG to compare them in')
     arguments = parser.parse_args()
     fabrics = arguments.fabrics or fabric_names()
     unknown = sorted(set(fabrics) - set(fabric_names()))
     if unknown:
         parser.error(f'no fabric {", ".join(unknown)}; there are {", ".join(fabric_names())}')
     files = {fabric: values_of(fabric) for fabric in fabrics}
-    judged, again, coarse = {}, {}, {}
-    with tempfile.TemporaryDirectory() as directory:
-        fingertips, strokes = run_hand(directory, fabrics)
-        for fabric in fabrics:
-            def read(name, seed=SEEDS[0], fabric=fabric):
-                return DeviceRecord.read(f'{directory}/{fabric}_{name}_{seed}.f32')
-            stroke = strokes.get(fabric)
-            judged[fabric] = judge(read, fingertips, stroke, fabric)
-            again[fabric] = judge(lambda name: read(name, SEEDS[1]), fingertips, stroke, fabric)
-            coarse[fabric] = judge(lambda name: read(name).limited(**LIMITS), fingertips, stroke,
-                                   f'{fabric} by a coarse device')
+    runs = [(seed, FINEST) for seed in SEEDS]
+    if arguments.presets:
+        runs += [(SEEDS[0], preset) for preset in PRESETS]
+    with tempfile.TemporaryDirectory() as directory, \
+            concurrent.futures.ProcessPoolExecutor(PROCESSES) as pool:
+        hand, strokes = run_hand(directory, fabrics, runs)
+        def judge_all(seed, quality, limits=None):
+            return {fabric: pool.submit(judge_record, directory, hand, fabric, strokes.get(fabric),
+                                        seed, quality, limits) for fabric in fabrics}
+        def results(futures):
+            return {fabric: future.result() for fabric, future in futures.items()}
+        waiting = [judge_all(*run) for run in runs]
+        coarse = results(judge_all(SEEDS[0], FINEST, LIMITS))
+        judged, again, *presets = (results(futures) for futures in waiting)
     if arguments.picture:
         draw_picture(arguments.picture, fabrics, judged, files)
     print_judgements(fabrics, judged, files)
     print_ranks(fabrics, judged, again, coarse, files)
-    say('not judged: ' + ', '.join(NOT_JUDGED))
+    if arguments.presets:
+        by_preset = dict(zip(PRESETS, presets))
+        print_presets(fabrics, by_preset, files)
+        draw_presets(arguments.presets, fabrics,
+                     {**by_preset, FINEST: judged, 'finest, coarse device': coarse}, files)
 
 
 if __name__ == '__main__':

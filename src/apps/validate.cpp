@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "haptex/base/quoted.h"
 #include "haptex/oracles/checks/random_checks.h"
 #include "haptex/oracles/checks/validation.h"
 
@@ -25,8 +26,9 @@ std::uint64_t seedOf(const std::string& text) {
   constexpr std::size_t kDigits = std::numeric_limits<std::uint64_t>::digits10;
   if (text.empty() || text.size() > kDigits ||
       text.find_first_not_of("0123456789") != std::string::npos) {
-    throw std::invalid_argument("--seed is '" + text + "'; it must be a whole number of up to " +
-                                std::to_string(kDigits) + " digits");
+    throw std::invalid_argument("--seed is " + base::quoted(text) +
+                                "; it must be a whole number of up to " + std::to_string(kDigits) +
+                                " digits");
   }
   return std::stoull(text);
 }
@@ -56,7 +58,7 @@ bool known(const std::string& room) {
   for (const oracles::Validation& validation : oracles::validations()) {
     if (room.empty() || validation.room == room) return true;
   }
-  std::cerr << "validate: no room '" << room << "'; rooms with oracles:";
+  std::cerr << "validate: no room " << base::quoted(room) << "; rooms with oracles:";
   for (const oracles::Validation& validation : oracles::validations())
     std::cerr << ' ' << validation.room;
   std::cerr << '\n';

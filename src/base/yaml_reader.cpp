@@ -8,6 +8,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/file_size.h"
+#include "haptex/base/quoted.h"
+#include "yaml_size.h"
+
 namespace haptex::base {
 namespace {
 
@@ -21,21 +25,44 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+/// The kind of a syntax error. To some kinds yaml-cpp appends what stands in the file.
+std::string kindOf(const YAML::Exception& error) {
+  for (const char* const kind : {YAML::ErrorMsg::UNKNOWN_ANCHOR, YAML::ErrorMsg::INVALID_ESCAPE,
+                                 YAML::ErrorMsg::INVALID_UNICODE}) {
+    std::string begin = kind;
+    if (error.msg.compare(0, begin.size(), begin) != 0) continue;
+    begin.erase(begin.find_last_not_of(": ") + 1);
+    return begin;
+  }
+  return error.msg;
+}
+
+std::string below(const std::string& key_path, const std::string& key) {
+  return key_path.empty() ? shortened(key) : key_path + "." + shortened(key);
+}
+
 }  // namespace
 
-std::string readTextFile(const std::string& path) {
+std::string readTextFile(const std::string& path, std::size_t largest) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
-    throw std::runtime_error(path + ": there is no such file");
+    throw std::runtime_error(shortened(path) + ": there is no such file");
   }
   if (std::filesystem::is_directory(path, error)) {
-    throw std::runtime_error(path + ": is a directory, not a file");
+    throw std::runtime_error(shortened(path) + ": is a directory, not a file");
   }
+  requireFileSize(path, largest);
   std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (!stream.is_open() || stream.bad()) throw std::runtime_error(path + ": cannot be read");
-  return text.str();
+  std::string text, part(std::size_t{1} << 16, '\0');
+  while (stream && text.size() <= largest) {  // of a pipe the size is not known
+    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
+    text.append(part, 0, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.is_open() || stream.bad()) {
+    throw std::runtime_error(shortened(path) + ": cannot be read");
+  }
+  requireSize(path, text.size(), largest);
+  return text;
 }
 
 YamlValue::YamlValue(std::shared_ptr<const std::string> file, std::string key_path,
@@ -45,15 +72,19 @@ YamlValue::YamlValue(std::shared_ptr<const std::string> file, std::string key_pa
 YamlValue YamlValue::load(const std::string& path) { return parse(readTextFile(path), path); }
 
 YamlValue YamlValue::parse(const std::string& text, const std::string& name) {
+  requireSize(name, text.size(), kLargestYaml);
   std::vector<YAML::Node> documents;
   try {
+    requireSmallYaml(text);
     documents = YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
-    throw std::runtime_error(name + ": line " + std::to_string(error.mark.line + 1) +
-                             ": is not YAML: " + error.msg);
+    throw std::runtime_error(shortened(name) + ": line " + std::to_string(error.mark.line + 1) +
+                             ": is not YAML: " + kindOf(error));
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(shortened(name) + ": " + error.what());
   }
   if (documents.size() != 1) {
-    throw std::runtime_error(name + ": has " + std::to_string(documents.size()) +
+    throw std::runtime_error(shortened(name) + ": has " + std::to_string(documents.size()) +
                              " YAML documents, must have one");
   }
   return YamlValue(std::make_shared<const std::string>(name), "", documents.front());
@@ -64,10 +95,11 @@ void YamlValue::requireKeys(const std::vector<std::string>& required,
   std::vector<std::string> allowed = required;
   allowed.insert(allowed.end(), optional.begin(), optional.end());
   if (!node_.IsMap()) refuse("must be a map with the keys " + join(allowed));
+  if (key_path_.empty()) requireKind(allowed);
   std::vector<std::string> seen;
   for (const auto& entry : node_) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "(not a text)";
-    const YamlValue value(file_, key_path_.empty() ? key : key_path_ + "." + key, entry.second);
+    const YamlValue value(file_, below(key_path_, key), entry.second);
     if (!contains(allowed, key)) value.refuseBecause("unknown key, allowed here: " + join(allowed));
     if (contains(seen, key)) value.refuseBecause("the key is given twice");
     seen.push_back(key);
@@ -79,10 +111,18 @@ void YamlValue::requireKeys(const std::vector<std::string>& required,
   }
 }
 
+void YamlValue::requireKind(const std::vector<std::string>& keys) const {
+  const bool has_known =
+      node_.size() == 0 || std::any_of(node_.begin(), node_.end(), [&](const auto& entry) {
+        return entry.first.IsScalar() && contains(keys, entry.first.Scalar());
+      });
+  if (!has_known) refuseBecause("has none of the keys " + join(keys));
+}
+
 bool YamlValue::has(const std::string& key) const { return node_[key].IsDefined(); }
 
 YamlValue YamlValue::at(const std::string& key) const {
-  return YamlValue(file_, key_path_.empty() ? key : key_path_ + "." + key, node_[key]);
+  return YamlValue(file_, below(key_path_, key), node_[key]);
 }
 
 std::vector<YamlValue> YamlValue::items() const {
@@ -134,7 +174,10 @@ std::string YamlValue::oneOf(const std::vector<const char*>& words) const {
 }
 
 std::string YamlValue::describeValue() const {
-  if (node_.IsScalar()) return "'" + node_.Scalar() + "'";
+  if (node_.IsScalar() && key_path_.empty()) {
+    return "a text of " + std::to_string(node_.Scalar().size()) + " characters";
+  }
+  if (node_.IsScalar()) return quoted(node_.Scalar());
   if (node_.IsMap()) return "a map";
   if (node_.IsSequence()) return "a list of " + std::to_string(node_.size());
   return "nothing";
@@ -145,7 +188,8 @@ void YamlValue::refuse(const std::string& reason) const {
 }
 
 void YamlValue::refuseBecause(const std::string& reason) const {
-  throw std::invalid_argument(*file_ + ": " + (key_path_.empty() ? "" : key_path_ + ": ") + reason);
+  throw std::invalid_argument(shortened(*file_) + ": " +
+                              (key_path_.empty() ? "" : key_path_ + ": ") + reason);
 }
 
 }  // namespace haptex::base

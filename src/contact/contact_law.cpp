@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::contact {
 namespace {
 
@@ -28,8 +30,8 @@ constexpr double kTangentialByNormal = 2.0 / 3.0;
 void requireContactProperties(const material::Fabric& fabric) {
   const auto require_property = [&](bool present, const std::string& property) {
     if (!present) {
-      throw std::invalid_argument("fabric " + fabric.name + ": contact needs the property '" +
-                                  property + "'");
+      throw std::invalid_argument("fabric " + base::shortened(fabric.name) +
+                                  ": contact needs the property '" + property + "'");
     }
   };
   require_property(fabric.compression.has_value(), "compression");

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 
 namespace haptex::contact {
@@ -18,8 +19,8 @@ using Eigen::Vector3d;
 const material::Fabric& requireBending(const material::Fabric& fabric,
                                        const HapticSettings& settings) {
   if (settings.layer == HapticSettings::Layer::kPatch && !fabric.bending) {
-    throw std::invalid_argument("fabric '" + fabric.name +
-                                "' has no bending; a patch needs it: add the key bending");
+    throw std::invalid_argument("fabric " + base::quoted(fabric.name) +
+                                " has no bending; a patch needs it: add the key bending");
   }
   return fabric;
 }
@@ -29,6 +30,11 @@ mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
   if (mesh.panelCount() > 1) {
     throw std::invalid_argument("fingertips touch one panel, and the mesh has " +
                                 std::to_string(mesh.panelCount()));
+  }
+  if (!mesh.ties.empty()) {
+    throw std::invalid_argument("fingertips touch one panel without seams, and " +
+                                std::to_string(mesh.ties.size()) +
+                                " particles of the mesh are tied");
   }
   return mesh;
 }

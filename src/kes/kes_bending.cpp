@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/kes/static_sample.h"
 #include "haptex/kes/virtual_kes.h"
 #include "haptex/kes/virtual_test.h"
@@ -121,8 +122,8 @@ void addBending(const material::Fabric& fabric, Direction direction, KesResult& 
 
 KesResult kesBending(const material::Fabric& fabric) {
   if (!fabric.bending) {
-    throw std::invalid_argument("fabric '" + fabric.name +
-                                "' has no bending rigidity: add the key bending");
+    throw std::invalid_argument("fabric " + base::quoted(fabric.name) +
+                                " has no bending rigidity: add the key bending");
   }
   KesResult result;
   addBending(fabric, Direction::kWeft, result);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "haptex/base/quoted.h"
 #include "haptex/contact/sphere_contact.h"
 #include "haptex/kes/virtual_kes.h"
 #include "haptex/material/compression.h"
@@ -191,7 +192,8 @@ KesResult kesCompression(const material::Fabric& fabric) {
 
 KesResult kesSurface(const material::Fabric& fabric) {
   if (!fabric.surface) {
-    throw std::invalid_argument("fabric '" + fabric.name + "' has no surface: add the key surface");
+    throw std::invalid_argument("fabric " + base::quoted(fabric.name) +
+                                " has no surface: add the key surface");
   }
   Plate plate(fabric, kKesFrictionSide);
   const TestedSurface tested = testBuiltSurface(fabric);

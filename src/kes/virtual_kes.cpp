@@ -4,6 +4,8 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::kes {
 
 double KesParameter::error() const {
@@ -31,7 +33,8 @@ void printKes(const material::Fabric& fabric, const std::string& test, std::ostr
     names += " " + each.name;
     found = found || each.name == test;
   }
-  if (!found) throw std::invalid_argument("there is no test '" + test + "'; there are:" + names);
+  if (!found)
+    throw std::invalid_argument("there is no test " + base::quoted(test) + "; there are:" + names);
   out.precision(8);
   out << "# fabric " << fabric.name << '\n';
   for (const KesTest& each : kesTests()) {

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/file_size.h"
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/material/kes_conditions.h"
 #include "haptex/material/surface.h"
@@ -168,6 +170,7 @@ class Reader {
   TesterFile read() {
     std::ifstream stream(file_.path);
     if (!stream) throw std::runtime_error(file_.path + ": cannot be read");
+    base::requireFileSize(file_.path, kLargestTesterFile);
     bool header = false;
     for (std::string text; std::getline(stream, text);) {
       ++line_;
@@ -177,7 +180,7 @@ class Reader {
       if (text.front() == '#') {
         readComment(trimmed(text.substr(1)));
       } else if (!header) {
-        if (text != kHeader) refuse("'", text, "' must be the line of columns, ", kHeader);
+        if (text != kHeader) refuse("must be the line of columns, ", kHeader);
         header = true;
       } else {
         readRow(wordsOf(text, ','));
@@ -202,7 +205,7 @@ class Reader {
   const auto& ruleOf(const Rules& rules, const char* what, const std::string& key) const {
     const auto rule = rules.find(key);
     if (rule == rules.end()) {
-      refuse(what, " '", key, "' is unknown; allowed are ", keysOf(rules));
+      refuse(what, " ", base::quoted(key), " is unknown; allowed are ", keysOf(rules));
     }
     return rule->second;
   }
@@ -212,7 +215,7 @@ class Reader {
     for (const Unit& unit : units) {
       if (unit.name == name) return unit.factor;
     }
-    refuse("unit '", name, "' of ", of, " is unknown; allowed are ", namesOf(units));
+    refuse("unit ", base::quoted(name), " of ", of, " is unknown; allowed are ", namesOf(units));
   }
 
   /// In SI, checked there; a refusal has the number as written.
@@ -221,13 +224,14 @@ class Reader {
     double number = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || end != text.data() + text.size()) {
-      refuse(what, " '", text, "' must be a number with a point for decimals");
+      refuse(what, " ", base::quoted(text), " must be a number with a point for decimals");
     }
     const double si = number * factor;
     // In this order, so that NaN is refused.
     if (!(si >= range.low && si <= range.high) || (range.above_low && si == range.low)) {
-      refuse(what, " is ", text, factor == 1.0 ? "" : ", in SI " + base::shortNumber(si),
-             "; it must be ", textOf(range));
+      refuse(what, " is ", base::shortened(text),
+             factor == 1.0 ? "" : ", in SI " + base::shortNumber(si), "; it must be ",
+             textOf(range));
     }
     return si;
   }
@@ -240,7 +244,8 @@ class Reader {
       file_.source += (file_.source.empty() ? "" : " ") + rest;
     } else if (key == "provenance") {
       if (rest != "measured" && rest != "representative") {
-        refuse("provenance '", rest, "' is unknown; allowed are measured, representative");
+        refuse("provenance ", base::quoted(rest),
+               " is unknown; allowed are measured, representative");
       }
       file_.measured = rest == "measured";
     } else if (key == "units") {
@@ -267,7 +272,8 @@ class Reader {
       refuse("has ", words.size(), " columns, must have 5: ", kHeader);
     }
     if (words[1] != "weft" && words[1] != "warp" && !words[1].empty()) {
-      refuse("direction '", words[1], "' is unknown; allowed are weft, warp, or nothing");
+      refuse("direction ", base::quoted(words[1]),
+             " is unknown; allowed are weft, warp, or nothing");
     }
     if (words[0] == "value") {
       readValue(words);
@@ -278,14 +284,15 @@ class Reader {
 
   void requireDirection(bool allowed, const std::string& of, const std::string& direction) const {
     if (!allowed && !direction.empty()) {
-      refuse(of, " has no direction; '", direction, "' must be left out");
+      refuse(of, " has no direction; ", base::quoted(direction), " must be left out");
     }
   }
 
   void readReading(const std::vector<std::string>& words) {
     const std::string& name = words[0];
     if (testRules().count(name) == 0) {
-      refuse("test '", name, "' is unknown; allowed are ", keysOf(testRules()), ", value");
+      refuse("test ", base::quoted(name), " is unknown; allowed are ", keysOf(testRules()),
+             ", value");
     }
     const TestRule& rule = testRules().at(name);
     requireDirection(rule.has_direction, name, words[1]);
@@ -293,7 +300,7 @@ class Reader {
       refuse("the direction of ", name, " is missing; allowed are weft, warp");
     }
     if (words[2] != "loading" && words[2] != "unloading") {
-      refuse("branch '", words[2], "' is unknown; allowed are loading, unloading");
+      refuse("branch ", base::quoted(words[2]), " is unknown; allowed are loading, unloading");
     }
     const auto units = units_.find(name);
     if (units == units_.end()) {

@@ -3,9 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+
+#include "haptex/base/require.h"
 
 namespace haptex::mesh {
 namespace {
@@ -66,6 +69,21 @@ void findPanelDefects(const ClothMesh& mesh, MeshDefects& defects) {
   }
 }
 
+const Eigen::Vector2d kUnknownPlace =
+    Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+
+/// @param place of the particle in the panel so far
+void putCorner(int panel, int particle, const Eigen::Vector2d& corner, Eigen::Vector2d& place) {
+  constexpr double kSame = 1e-9;  // of the coordinates
+  if ((corner - place).norm() > kSame * (corner.norm() + place.norm())) {
+    base::refuse("particle ", particle, " has two places in panel ", panel, ", (",
+                 place.transpose(), ") m and (", corner.transpose(),
+                 ") m, as that of a dart that was merged; a panel by itself has one of each: "
+                 "allowed is to sew darts by ties");
+  }
+  place = corner;
+}
+
 }  // namespace
 
 std::array<Eigen::Vector2d, 3> ClothMesh::restCorners(std::size_t triangle) const {
@@ -96,14 +114,15 @@ CutPanel cutPanel(const ClothMesh& mesh, int panel) {
     cut.particles.push_back(static_cast<int>(i));
     cut.sheet.initial_positions.push_back(mesh.initial_positions[i]);
   }
-  cut.sheet.rest_coordinates.resize(cut.particles.size());
+  cut.sheet.rest_coordinates.assign(cut.particles.size(), kUnknownPlace);
   for (const std::size_t t : triangles) {
     cut.sheet.triangle_fabrics.push_back(mesh.fabricOf(t));
     const std::array<Eigen::Vector2d, 3> corners = mesh.restCorners(t);
     std::array<int, 3>& triangle = cut.sheet.triangles.emplace_back(mesh.triangles[t]);
     for (int i = 0; i < 3; ++i) {
-      triangle[i] = place[triangle[i]];
-      cut.sheet.rest_coordinates[triangle[i]] = corners[i];
+      const int particle = triangle[i];
+      triangle[i] = place[particle];
+      putCorner(panel, particle, corners[i], cut.sheet.rest_coordinates[triangle[i]]);
     }
   }
   return cut;

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "haptex/base/file_size.h"
+
 namespace haptex::mesh {
 namespace {
 
@@ -35,6 +37,7 @@ class ObjReader {
     if (!stream.is_open() || std::filesystem::is_directory(path_, error)) {
       throw std::runtime_error(path_ + ": cannot be read, must be a Wavefront OBJ file");
     }
+    base::requireFileSize(path_, kLargestObj);  // before a line is held: all of it may be one
     std::string line;
     while (std::getline(stream, line)) {
       ++line_number_;
@@ -52,6 +55,10 @@ class ObjReader {
     throw std::invalid_argument(path_ + ": line " + std::to_string(line_number_) + ": " + what);
   }
 
+  void requireRoom(std::size_t held, std::size_t most, const std::string& what) const {
+    if (held >= most) refuse("more than " + std::to_string(most) + " " + what);
+  }
+
   void readLine(const std::string& line) {
     std::istringstream words(line);
     std::string statement;
@@ -59,9 +66,11 @@ class ObjReader {
     std::vector<std::string> arguments;
     for (std::string word; words >> word;) arguments.push_back(word);
     if (statement == "v") {
+      requireRoom(mesh_.initial_positions.size(), 3 * kMostTriangles, "positions");
       mesh_.initial_positions.push_back(readNumbers<3>("v", arguments));
       texture_of_particle_.emplace_back();
     } else if (statement == "vt" && with_textures_) {
+      requireRoom(textures_.size(), 3 * kMostTriangles, "texture coordinates");
       textures_.push_back(readNumbers<2>("vt", arguments));
     } else if (statement == "f") {
       readFace(arguments);
@@ -81,13 +90,15 @@ class ObjReader {
     }
     for (int i = 0; i < kSize; ++i) {
       if (!parseAll(words[i], numbers[i]) || !std::isfinite(numbers[i])) {
-        refuse("'" + words[i] + "' must be a finite number");
+        refuse("number " + std::to_string(i + 1) + " of '" + statement +
+               "' must be a finite number");
       }
     }
     return numbers;
   }
 
   void readFace(const std::vector<std::string>& corners) {
+    requireRoom(mesh_.triangles.size(), kMostTriangles, "triangles");
     if (corners.size() != 3) {
       refuse("a face has " + std::to_string(corners.size()) + " corners, must be a triangle");
     }
@@ -116,7 +127,7 @@ class ObjReader {
     const std::size_t second =
         first == std::string::npos ? std::string::npos : corner.find('/', first + 1);
     if (first == std::string::npos || first + 1 == corner.size() || second == first + 1) {
-      refuse("corner '" + corner + "' has no texture coordinate, which is its rest coordinate");
+      refuse("a corner has no texture coordinate, which is its rest coordinate");
     }
     const int texture = readIndex(corner.substr(first + 1, second - first - 1),
                                   "texture coordinate", textures_.size());
@@ -133,8 +144,9 @@ class ObjReader {
   int readIndex(const std::string& word, const std::string& kind, std::size_t count) const {
     const int size = static_cast<int>(count);
     int index = 0;
-    if (!parseAll(word, index) || index == 0 || index > size || index < -size) {
-      refuse(kind + " '" + word + "' does not exist, " + std::to_string(size) +
+    if (!parseAll(word, index)) refuse(kind + " of a corner must be a whole number");
+    if (index == 0 || index > size || index < -size) {
+      refuse(kind + " " + std::to_string(index) + " does not exist, " + std::to_string(size) +
              " are defined before this line");
     }
     return index > 0 ? index - 1 : size + index;

@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "haptex/base/file_size.h"
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/proximity/cursor.h"
 
@@ -72,8 +74,10 @@ class StateReader {
   explicit StateReader(const std::string& path) : path_(path), stream_(path) {
     std::error_code error;
     if (!stream_.is_open() || fs::is_directory(path, error)) {
-      throw std::runtime_error(path + ": cannot be read, must be a file of a state of a cloth");
+      throw std::runtime_error(base::shortened(path) +
+                               ": cannot be read, must be a file of a state of a cloth");
     }
+    base::requireFileSize(path, kLargestStateFile);  // before a line is held
   }
 
   cloth::ClothState read() {
@@ -82,6 +86,10 @@ class StateReader {
     cloth::ClothState state;
     state.time = readValue("time");
     while (readLine()) {
+      if (static_cast<double>(state.positions.size()) >= particles) {
+        refuseLine("one particle more than the " + base::shortNumber(particles) +
+                   " that the file says");
+      }
       if (words_.size() != 6) {
         refuseLine("has " + std::to_string(words_.size()) +
                    " words, must be 6 numbers: position (m) and velocity (m/s) of a particle");
@@ -126,7 +134,8 @@ class StateReader {
     const char* end = word.data() + word.size();
     const std::from_chars_result result = std::from_chars(word.data(), end, value);
     if (result.ec != std::errc() || result.ptr != end || !(std::abs(value) <= kLargest)) {
-      refuseLine("'" + word + "' must be a finite number up to " + base::shortNumber(kLargest));
+      refuseLine(base::quoted(word) + " must be a finite number up to " +
+                 base::shortNumber(kLargest));
     }
     return value;
   }
@@ -143,7 +152,8 @@ class StateReader {
 void saveState(const std::string& path, const cloth::ClothState& state) {
   const fs::path target(path);
   if (!target.is_absolute() || target.extension() != kStateExtension) {
-    refuse("path = '", path, "': allowed are absolute paths that end with ", kStateExtension);
+    refuse("path = ", base::quoted(path), ": allowed are absolute paths that end with ",
+           kStateExtension);
   }
   const std::string text = textOf(path, state), part = partOf(path);
   std::error_code error;
@@ -159,7 +169,7 @@ void saveState(const std::string& path, const cloth::ClothState& state) {
   }
   std::error_code ignored;
   fs::remove(part, ignored);
-  throw std::runtime_error(path + ": cannot be written: " + error.message());
+  throw std::runtime_error(base::shortened(path) + ": cannot be written: " + error.message());
 }
 
 cloth::ClothState loadState(const std::string& path) { return StateReader(path).read(); }

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/yaml_reader.h"
 #include "haptex/scene/scene_values.h"
 #include "haptex/scene/step_values.h"
@@ -59,8 +60,8 @@ Quality readQuality(const YamlValue& value) {
     quality.measured.push_back(readMeasured(item));
     const MeasuredQuality& measured = quality.measured.back();
     if (!seen.insert({measured.motion, measured.fabric}).second) {
-      item.refuseBecause("the motion '" + measured.motion + "' of the fabric '" + measured.fabric +
-                         "' is listed twice");
+      item.refuseBecause("the motion " + base::quoted(measured.motion) + " of the fabric " +
+                         base::quoted(measured.fabric) + " is listed twice");
     }
   }
   if (quality.measured.empty()) value.at("measured").refuse("must have at least one item");
@@ -84,8 +85,9 @@ std::vector<Quality> loadQualities(const std::string& path) {
     const Quality quality = readQuality(item);
     const auto same = [&](const Quality& other) { return clash(quality, other); };
     if (std::any_of(qualities.begin(), qualities.end(), same)) {
-      item.at("name").refuse("is listed twice" +
-                             (quality.fabric.empty() ? "" : " for '" + quality.fabric + "'"));
+      item.at("name").refuse("is listed twice" + (quality.fabric.empty()
+                                                      ? ""
+                                                      : " for " + base::quoted(quality.fabric)));
     }
     qualities.push_back(quality);
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/scene/scene_values.h"
 
@@ -64,7 +65,7 @@ const std::vector<int>& readGroup(const YamlValue& region, const mesh::MeshGroup
   std::string names;
   for (const auto& [name, triangles] : groups) names += (names.empty() ? "" : ", ") + name;
   value.refuse("must be a group ('g') of the mesh that has a face: " +
-               (names.empty() ? "there is none" : names));
+               (names.empty() ? "there is none" : base::shortened(names)));
 }
 
 /// Which of the cloth's fabrics; a new one is added.

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/contact/haptic_layer.h"
 #include "haptex/contact/haptic_settings.h"
 #include "haptex/material/fabric_file.h"
@@ -18,8 +19,9 @@ void requireTouchable(const std::string& scene_path, const Scene& scene,
     throw std::invalid_argument(scene_path + ": model: lists fingers, but " + error.what());
   }
   if (scene.tactile && !fabric.surface) {
-    throw std::invalid_argument(scene_path + ": model: lists tactile, but fabric '" + fabric.name +
-                                "' has no surface: " + fabric_path + " needs the key surface");
+    throw std::invalid_argument(scene_path + ": model: lists tactile, but fabric " +
+                                base::quoted(fabric.name) + " has no surface: " + fabric_path +
+                                " needs the key surface");
   }
 }
 

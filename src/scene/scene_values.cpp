@@ -5,13 +5,16 @@
 #include <set>
 #include <vector>
 
+#include "haptex/base/quoted.h"
+#include "haptex/mesh/obj_file.h"
+
 namespace haptex::scene {
 namespace {
 
 using base::YamlValue;
 namespace fs = std::filesystem;
 
-constexpr long long kMaxTriangles = 200000;
+constexpr auto kMaxTriangles = static_cast<long long>(mesh::kMostTriangles);
 
 // Names of the files of one kind, for a message that says what there is.
 std::string namesIn(const fs::path& directory, const std::string& extension) {
@@ -48,7 +51,7 @@ std::string resolveFile(const YamlValue& value, const std::string& kind,
   if (!fs::is_regular_file(path, error)) {
     value.refuse("must be a name in " + kind_directory.string() + " (" +
                  namesIn(kind_directory, extension) + ") or a path with a '/'; there is no file " +
-                 path.string());
+                 base::shortened(path.string()));
   }
   return path.string();
 }

@@ -4,6 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::serial {
 namespace {
 
@@ -38,13 +40,13 @@ void parseName(const std::string& name, const std::vector<const char*>& of_devic
     }
     allowed += std::string(", ") + device_fault;
   }
-  throw std::invalid_argument("fault = '" + name + "': allowed are " + allowed);
+  throw std::invalid_argument("fault = " + base::quoted(name) + ": allowed are " + allowed);
 }
 
 void parseDirection(const std::string& direction, EmulatorFault& fault) {
   if (direction != kToDevice && direction != kFromDevice && direction != kBoth) {
-    throw std::invalid_argument("direction = '" + direction + "': allowed are " + kToDevice + ", " +
-                                kFromDevice + " and " + kBoth);
+    throw std::invalid_argument("direction = " + base::quoted(direction) + ": allowed are " +
+                                kToDevice + ", " + kFromDevice + " and " + kBoth);
   }
   fault.to_device = direction != kFromDevice;
   fault.from_device = direction != kToDevice;

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::serial {
 
 LineDescriptor::~LineDescriptor() {
@@ -68,12 +70,13 @@ void makeRaw(int descriptor, const std::string& path) {
   termios actual{};
   if (::tcgetattr(descriptor, &actual) != 0) throwSystemError(path, "not a serial port");
   if (::cfgetospeed(&actual) != B921600 || ::cfgetispeed(&actual) != B921600) {
-    throw std::runtime_error(path + ": cannot do " + std::to_string(kBaudRate) + " baud");
+    throw std::runtime_error(base::shortened(path) + ": cannot do " + std::to_string(kBaudRate) +
+                             " baud");
   }
 }
 
 void throwSystemError(const std::string& path, const std::string& what) {
-  throw std::runtime_error(path + ": " + what + ": " + std::strerror(errno));
+  throw std::runtime_error(base::shortened(path) + ": " + what + ": " + std::strerror(errno));
 }
 
 }  // namespace haptex::serial

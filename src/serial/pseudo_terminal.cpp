@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +10,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
+
+#include "haptex/base/quoted.h"
 
 namespace haptex::serial {
 namespace {
@@ -35,11 +38,38 @@ void openAndClose(const std::string& path) {
   if (other.get() < 0) throwSystemError(path, "cannot be opened");
 }
 
+/// Whether the path still leads to the file: who had the lock before removes it.
+bool isAt(const std::string& path, int descriptor) {
+  struct stat here {
+  }, open{};
+  return ::stat(path.c_str(), &here) == 0 && ::fstat(descriptor, &open) == 0 &&
+         here.st_dev == open.st_dev && here.st_ino == open.st_ino;
+}
+
+/// The open lock, or -1 without a link.
+int locked(const std::string& link) {
+  if (link.empty()) return -1;
+  const std::string path = link + ".lock";
+  while (true) {
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
+    if (descriptor < 0) throwSystemError(link, "cannot be made a symbolic link");
+    const bool done = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+    if (done && isAt(path, descriptor)) return descriptor;
+    ::close(descriptor);
+    if (!done) {
+      throw std::runtime_error(base::shortened(link) +
+                               ": is the link of another emulator, which runs: give this one "
+                               "another, or start it in another namespace");
+    }
+  }
+}
+
 void makeLink(const std::string& link, const std::string& path) {
   struct stat status {};
   if (::lstat(link.c_str(), &status) == 0) {
     if (!S_ISLNK(status.st_mode)) {
-      throw std::runtime_error(link + ": exists and is not a symbolic link, so it stays");
+      throw std::runtime_error(base::shortened(link) +
+                               ": exists and is not a symbolic link, so it stays");
     }
     if (::unlink(link.c_str()) != 0) throwSystemError(link, "cannot be replaced");
   }
@@ -61,8 +91,15 @@ bool nobodyAtOtherEnd(int descriptor) {
 
 }  // namespace
 
+PseudoTerminal::LinkLock::LinkLock(const std::string& link)
+    : path_(link.empty() ? "" : link + ".lock"), file_(locked(link)) {}
+
+PseudoTerminal::LinkLock::~LinkLock() {
+  if (!path_.empty()) ::unlink(path_.c_str());
+}
+
 PseudoTerminal::PseudoTerminal(const std::string& link)
-    : line_(open()), path_(otherEnd(line_.get())), link_(link) {
+    : lock_(link), line_(open()), path_(otherEnd(line_.get())), link_(link) {
   makeRaw(line_.get(), path_);
   openAndClose(path_);
   if (!link_.empty()) makeLink(link_, path_);

@@ -12,6 +12,8 @@
 #include <cerrno>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::serial {
 namespace {
 
@@ -30,7 +32,8 @@ int open(const std::string& path) {
 // killed driver, and keep out its successor for as long as the emulator runs.
 void makeExclusive(int descriptor, const struct stat& status, const std::string& path) {
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EWOULDBLOCK) throw std::runtime_error(path + ": another program has it open");
+    if (errno == EWOULDBLOCK)
+      throw std::runtime_error(base::shortened(path) + ": another program has it open");
     throwSystemError(path, "cannot be locked");
   }
   const unsigned kind = major(status.st_rdev);
@@ -53,7 +56,7 @@ SerialPort::SerialPort(const std::string& path) : line_(open(path)) {
   struct stat status {};
   if (::fstat(line_.get(), &status) != 0) throwSystemError(path, "cannot be examined");
   if (!S_ISCHR(status.st_mode) || ::isatty(line_.get()) == 0) {
-    throw std::runtime_error(path + ": not a serial port");
+    throw std::runtime_error(base::shortened(path) + ": not a serial port");
   }
   makeExclusive(line_.get(), status, path);
   makeRaw(line_.get(), path);

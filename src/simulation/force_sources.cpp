@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/simulation/particle_requests.h"
 
@@ -39,7 +40,8 @@ void ForceSources::set(const std::string& source, ParticleForces forces) {
     if (ends) return;
     slot = std::find_if(slots_.begin(), slots_.end(), [](const Slot& it) { return it.isFree(); });
     if (slot == slots_.end()) {
-      refuse("source '", source, "' is one too many: allowed are ", kMax, " whose forces act");
+      refuse("source ", base::quoted(source), " is one too many: allowed are ", kMax,
+             " whose forces act");
     }
     sums_.resize(particle_count_);  // for the first of all
     slot->source = source;

@@ -8,6 +8,7 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/contact/haptic_settings.h"
 #include "haptex/scene/scene_fabric.h"
 #include "haptex/simulation/step_cost.h"
@@ -267,7 +268,8 @@ scene::Scene withoutEffect(scene::Scene scene, const std::string& name) {
   } else if (name == "fingers") {
     scene.fingers = scene.tactile = effects.point_loads = false;
   } else {
-    throw std::invalid_argument("'" + name + "' is no effect that a step of the cloth knows");
+    throw std::invalid_argument(base::quoted(name) +
+                                " is no effect that a step of the cloth knows");
   }
   return scene;
 }

@@ -25,6 +25,11 @@ cloth::StepReport sum(const cloth::StepReport& first, cloth::StepReport last) {
   return last;
 }
 
+bool givesWayToLoads(const StepPlan& plan) {
+  return cloth::isImplicit(plan.step.method) &&
+         plan.step.method != cloth::IntegrationMethod::kBackwardEuler && !plan.adaptive;
+}
+
 }  // namespace
 
 SimulatedCloth::SimulatedCloth(scene::Scene scene, material::Fabric fabric)
@@ -203,7 +208,8 @@ void SimulatedCloth::runAdaptiveSubsteps(double duration) {
 }
 
 cloth::StepReport SimulatedCloth::runSubstep(double duration) {
-  cloth::Integrator& integrator = integrators_[plan_];
+  cloth::Integrator& integrator =
+      loaded_ && loaded_ones_[plan_] ? *loaded_ones_[plan_] : integrators_[plan_];
   cloth::ClothState& state = part_ ? part_->begin(cloth_, state_) : state_;
   const cloth::StepReport report = collision_
                                        ? collision_->step(computed(), integrator, state, duration)
@@ -264,10 +270,17 @@ cloth::ClothState SimulatedCloth::startState() const {
 
 void SimulatedCloth::makeIntegrators() {
   integrators_.clear();
+  loaded_ones_.clear();
   lengths_.clear();
   bool several = false, adaptive = false;
   for (const StepPlan& plan : plans_) {
     integrators_.emplace_back(computed(), plan.step);
+    loaded_ones_.emplace_back();
+    if (cloth_.effects().point_loads && givesWayToLoads(plan)) {
+      cloth::StepSettings step = plan.step;
+      step.method = cloth::IntegrationMethod::kBackwardEuler;
+      loaded_ones_.back().emplace(computed(), step);
+    }
     lengths_.emplace_back();
     if (plan.adaptive) lengths_.back().emplace(cloth_, plan.step.method, *plan.adaptive);
     several = several || plan.substeps > 1 || plan.adaptive;

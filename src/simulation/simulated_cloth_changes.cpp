@@ -86,6 +86,8 @@ void SimulatedCloth::setState(const std::vector<std::uint32_t>& particles,
     if (!positions.empty()) state_.positions[indices[i]] = positions[i];
     if (!velocities.empty()) state_.velocities[indices[i]] = velocities[i];
   }
+  cloth_.ties().place(state_.time, state_.positions);
+  cloth_.ties().carry(state_.time, state_.velocities);
   if (!positions.empty()) cloth_.forget(state_);
   makeIntegrators();  // the old ones remember where they have been
   wake();
@@ -111,6 +113,7 @@ void SimulatedCloth::requireHeld(int particle, const Eigen::Vector3d* position,
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
   const std::vector<int> indices = requireSome(particles);
   requireIncluded(indices);
+  for (const int particle : indices) cloth_.requireAttachable(particle);
   for (const int particle : indices) {
     cloth_.attach(particle, {state_.positions[particle], Eigen::Vector3d::Zero(), state_.time, 0});
   }
@@ -123,6 +126,7 @@ void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,
   requireIncluded(indices);
   requireOneEach("positions", places.size(), indices.size(), "none to attach them where they are");
   requireAllWithin("positions", places, kMaxCoordinate, "m");
+  for (const int particle : indices) cloth_.requireAttachable(particle);
   for (std::size_t i = 0; i < places.size(); ++i) {
     cloth_.attach(indices[i], {places[i], Eigen::Vector3d::Zero(), state_.time, 0});
   }

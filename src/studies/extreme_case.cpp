@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/material/compression.h"
 
 namespace haptex::studies {
@@ -232,7 +233,7 @@ ExtremeCase parseExtremeCase(const std::string& text) {
       known = true;
       understood = read(word.substr(equals + 1), value);
     });
-    if (!known) throw std::invalid_argument("an extreme case has no field '" + key + "'");
+    if (!known) throw std::invalid_argument("an extreme case has no field " + base::quoted(key));
     if (!understood) throw std::invalid_argument("'" + word + "' is not a value of the field");
   }
   return extreme;

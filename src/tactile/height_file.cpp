@@ -20,6 +20,8 @@
 #include <string>
 #include <vector>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::tactile {
 namespace {
 
@@ -180,7 +182,7 @@ Samples readSamples(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
   if (ending == ".png") return readPng(path);
   if (ending == ".raw") return readRaw(path);
-  throwUnreadable(path, "ends in '" + ending + "': allowed are .png and .raw");
+  throwUnreadable(path, "ends in " + base::quoted(ending) + ": allowed are .png and .raw");
 }
 
 void requirePositive(const material::HeightFile& file, const char* name, double value) {

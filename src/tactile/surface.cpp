@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "haptex/base/quoted.h"
 #include "haptex/tactile/height_file.h"
 #include "haptex/tactile/kes_surface.h"
 #include "haptex/tactile/weave_relief.h"
@@ -177,16 +178,16 @@ bool isFlat(const Relief& relief, const KesSurface& tested) {
 
 Surface buildSurface(const material::Fabric& fabric) {
   if (!fabric.surface) {
-    throw std::invalid_argument("fabric '" + fabric.name +
-                                "' has no surface; the tactile renderer needs it: add the key "
+    throw std::invalid_argument("fabric " + base::quoted(fabric.name) +
+                                " has no surface; the tactile renderer needs it: add the key "
                                 "surface");
   }
   const material::Surface& measured = *fabric.surface;
   Relief relief = std::visit([](const auto& kind) { return reliefOf(kind); }, measured.relief);
   const KesSurface tested = testSurface(relief.field);
   if (isFlat(relief, tested)) {
-    throw std::invalid_argument("fabric '" + fabric.name +
-                                "': the relief of its surface is flat; it must rise and fall from "
+    throw std::invalid_argument("fabric " + base::quoted(fabric.name) +
+                                ": the relief of its surface is flat; it must rise and fall from "
                                 "sample to sample");
   }
   const double scale = measured.roughness / tested.roughness;

@@ -7,6 +7,7 @@
 #include "../malloc_counter.h"
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
+#include "seam_fixtures.h"
 #include "self_contact_fixtures.h"
 
 namespace haptex::cloth::test_allocation {
@@ -94,6 +95,32 @@ TEST_P(StepAllocationOfOtherModels, NoStepAllocatesAfterStartUp) {
     const long before = allocations;
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(integrator.step(cloth, state, 1e-5).accepted);
     EXPECT_EQ(allocations - before, 0);
+  }
+}
+
+TEST(StepAllocation, StepsOfSewnClothAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  ModelledEffects effects;
+  effects.viscosity = effects.bending = true;
+  material::Fabric fabric = stiffeningFabric();
+  fabric.bending = {1e-5, 1e-5};
+  Halves made = halves(6, 10);
+  made.seam.angle = 0.2;
+  mesh::sew(made.mesh, {made.seam});
+  for (const NamedIntegrationMethod& named : kIntegrationMethods) {
+    Cloth cloth(made.mesh, fabric, effects);
+    StepSettings settings;
+    settings.method = named.method;
+    settings.newton_iterations = 5;
+    Integrator integrator(cloth, settings);
+    ClothState state = cloth.initialState();
+    state.positions[made.seam.second[3]].z() += 1e-5;
+    cloth.closeSeams(state, 0.5);
+    const long before = allocations;
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(integrator.step(cloth, state, 1e-5).accepted);
+    EXPECT_EQ(allocations - before, 0) << named.name;
   }
 }
 

@@ -285,6 +285,10 @@ TEST_F(HapticLayerTest, RefusesSewnPanels) {
   sewn.triangle_panels.assign(sewn.triangles.size(), 0);
   EXPECT_EQ(refusalOf([&] { HapticLayer(sewn, wool(), {}, {}); }),
             "fingertips touch one panel, and the mesh has 2");
+  mesh::ClothMesh tied = mesh_;
+  tied.ties.push_back({0, {1, 2}, 0.5});
+  EXPECT_EQ(refusalOf([&] { HapticLayer(tied, wool(), {}, {}); }),
+            "fingertips touch one panel without seams, and 1 particles of the mesh are tied");
 }
 
 TEST_F(HapticLayerTest, InAWholeClothSceneTheLargeScaleParticlesAreTouched) {

@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(TesterFile, NeedsTheLineOfColumns) {
   EXPECT_EQ(refusalOf("strain,stress\n"),
-            ":1: 'strain,stress' must be the line of columns, test,direction,branch,x,y");
+            ":1: must be the line of columns, test,direction,branch,x,y");
   EXPECT_EQ(refusalOf("# nothing\n"),
             ":1: the line of columns is missing, test,direction,branch,x,y");
 }

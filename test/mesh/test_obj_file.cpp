@@ -72,6 +72,49 @@ TEST(ObjFile, AcceptsTextureCoordinatesRepeatedWithEqualValues) {
   expectSquare(loadObj(TemporaryObj(kPoints + repeated).path()));
 }
 
+/// The refusal without the path.
+std::string refusalOf(const TemporaryObj& file) {
+  try {
+    loadObj(file.path());
+  } catch (const std::exception& error) {
+    return std::string(error.what()).substr(file.path().size());
+  }
+  return "accepted";
+}
+
+TEST(ObjFile, OfAMillionTrianglesIsRefusedAtTheFirstTooMany) {
+  std::string text = kPoints;
+  for (std::size_t i = 0; i < 1'000'000; ++i) text += "f 1/1 2/2 3/3\n";
+  // Twelve lines come before the first.
+  EXPECT_EQ(refusalOf(TemporaryObj(text)), ": line 200014: more than 200000 triangles");
+}
+
+TEST(ObjFile, OfTooManyPositionsOrTextureCoordinatesIsRefusedAtTheFirstTooMany) {
+  std::string positions, textures;
+  for (std::size_t i = 0; i <= 3 * kMostTriangles; ++i) {
+    positions += "v 0 0 0\n";
+    textures += "vt 0 0\n";
+  }
+  EXPECT_EQ(refusalOf(TemporaryObj(positions)), ": line 600001: more than 600000 positions");
+  EXPECT_EQ(refusalOf(TemporaryObj(textures)),
+            ": line 600001: more than 600000 texture coordinates");
+}
+
+TEST(ObjFile, TooLargeIsRefusedUnread) {
+  const TemporaryObj file("");
+  ASSERT_EQ(truncate(file.path().c_str(), 1'000'000'000), 0);  // takes no room on the disk
+  EXPECT_EQ(refusalOf(file), ": has 1000000000 bytes: allowed are up to 67108864");
+}
+
+TEST(ObjFile, RefusalsRepeatNothingOfTheFile) {
+  for (const std::string text : {"v secret 0 0\n", "vt 0 secret\n", "f secret/1 2/2 3/3\n",
+                                 "f 1/secret 2/2 3/3\n", "f secret\n"}) {
+    const std::string refusal = refusalOf(TemporaryObj(kPoints + text));
+    EXPECT_NE(refusal, "accepted");
+    EXPECT_EQ(refusal.find("secret"), std::string::npos) << refusal;
+  }
+}
+
 struct Refusal {
   std::string name;
   std::string after_points;  // lines from 14 on
@@ -100,27 +143,29 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"Seam", "vt 0.5 0.2\nf 1/1 2/2 3/3\nf 1/1 3/5 4/4\n",
                 "line 16: position 3 has the texture coordinates 3 and 5 (a seam), must have one"},
         Refusal{"PositionAlone", "f 1 2 3\n",
-                "line 14: corner '1' has no texture coordinate, which is its rest coordinate"},
+                "line 14: a corner has no texture coordinate, which is its rest coordinate"},
         Refusal{"PositionAndNormal", "f 1//1 2//1 3//1\n",
-                "line 14: corner '1//1' has no texture coordinate, which is its rest coordinate"},
+                "line 14: a corner has no texture coordinate, which is its rest coordinate"},
         Refusal{"EmptyTexture", "f 1/ 2/2 3/3\n",
-                "line 14: corner '1/' has no texture coordinate, which is its rest coordinate"},
+                "line 14: a corner has no texture coordinate, which is its rest coordinate"},
         Refusal{"PositionIndexTooLarge", "f 1/1 2/2 5/3\n",
-                "line 14: position '5' does not exist, 4 are defined before this line"},
+                "line 14: position 5 does not exist, 4 are defined before this line"},
         Refusal{"PositionIndexZero", "f 0/1 2/2 3/3\n",
-                "line 14: position '0' does not exist, 4 are defined before this line"},
+                "line 14: position 0 does not exist, 4 are defined before this line"},
         Refusal{"PositionIndexTooFarBack", "f 1/1 2/2 -5/3\n",
-                "line 14: position '-5' does not exist, 4 are defined before this line"},
+                "line 14: position -5 does not exist, 4 are defined before this line"},
         Refusal{"TextureIndexTooLarge", "f 1/1 2/2 3/7\n",
-                "line 14: texture coordinate '7' does not exist, 4 are defined before this line"},
+                "line 14: texture coordinate 7 does not exist, 4 are defined before this line"},
         Refusal{"IndexBeyondIntegers", "f 1/1 2/2 99999999999/3\n",
-                "line 14: position '99999999999' does not exist, 4 are defined before this line"},
+                "line 14: position of a corner must be a whole number"},
         Refusal{"IndexNotANumber", "f 1/1 b/2 3/3\n",
-                "line 14: position 'b' does not exist, 4 are defined before this line"},
-        Refusal{"PositionNotANumber", "v 1 2 up\n", "line 14: 'up' must be a finite number"},
-        Refusal{"PositionNan", "v 1 nan 3\n", "line 14: 'nan' must be a finite number"},
-        Refusal{"TextureInfinite", "vt 1 inf\n", "line 14: 'inf' must be a finite number"},
-        Refusal{"NumberWithRest", "vt 1 2m\n", "line 14: '2m' must be a finite number"},
+                "line 14: position of a corner must be a whole number"},
+        Refusal{"PositionNotANumber", "v 1 2 up\n",
+                "line 14: number 3 of 'v' must be a finite number"},
+        Refusal{"PositionNan", "v 1 nan 3\n", "line 14: number 2 of 'v' must be a finite number"},
+        Refusal{"TextureInfinite", "vt 1 inf\n",
+                "line 14: number 2 of 'vt' must be a finite number"},
+        Refusal{"NumberWithRest", "vt 1 2m\n", "line 14: number 2 of 'vt' must be a finite number"},
         Refusal{"TwoNumbers", "v 1 2\n", "line 14: 'v' has 2 numbers, must have 3"}),
     [](const auto& info) { return info.param.name; });
 

@@ -12,6 +12,8 @@ from geometry_msgs.msg import Point, Vector3
 from haptex.msg import ClothMesh, ClothState, ContactForces, ExternalForces
 from haptex.srv import (AttachParticles, GetJacobian, MoveParticles, QueryBudget, ReleaseParticles,
                         SaveState, SelectParticles, SetFabric, SetState, StepCloth)
+from ros_fixtures import eventually
+from rosgraph_msgs.msg import Log
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import MarkerArray
@@ -472,6 +474,26 @@ class ClothSimulation(unittest.TestCase):
         scene = rospy.get_param('/scene_path')
         self.refused(self.set_fabric, scene, says=scene)  # YAML, but not of a fabric
         self.assertEqual(message('cloth/mesh', ClothMesh).fabrics, ['wool'])
+
+    def test_refusals_tell_nothing_of_a_file_of_another_kind(self):
+        with open('/etc/passwd', encoding='utf-8') as file:
+            words = [line.split(':')[-2] for line in file]  # home directories
+        answer = self.refused(self.set_fabric, '/etc/passwd', says='must be a map with the keys')
+        self.assertEqual([word for word in words if len(word) > 3 and word in answer.message], [])
+
+    def test_refusals_repeat_at_most_two_hundred_characters(self):
+        logged = []
+        subscriber = rospy.Subscriber('/rosout', Log, lambda log: logged.append(log.msg))
+        eventually(lambda: subscriber.get_num_connections() > 1, 'the log')  # this test and the node
+        long = 'a' * 10_000_000
+        says = f"there is no '{200 * 'a'}'... (10000000 characters)"
+        answers = [
+            self.refused(self.set_fabric, long, says=says),
+            self.refused(self.set_state, Header(frame_id=long), [CORNER], [Point()], [],
+                         says='(10000000 characters)')]
+        eventually(lambda: any(says in text for text in logged), 'the refusal in the log')
+        subscriber.unregister()
+        self.assertLess(max(map(len, [*logged, *(answer.message for answer in answers)])), 1000)
 
     def refuses_particles(self, call):
         """`call` takes a list of particles."""

@@ -83,7 +83,7 @@ class KesValues(unittest.TestCase):
     def test_refuses_a_fabric_that_is_none(self):
         with self.assertRaisesRegex(ValueError, "no fabric 'velvet': allowed is .* wool"):
             values_of('velvet')
-        with self.assertRaisesRegex(ValueError, 'no fabric file'):
+        with self.assertRaisesRegex(ValueError, 'rest.yaml: has none of the keys name, areal_density'):
             FabricValues(CONFIG / 'paths' / 'rest.yaml')
 
 

@@ -13,15 +13,63 @@ from unit_fixtures import Folder, suite_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'src' / 'nodes' / 'evaluation'))
+from haptex_evaluation import strict_yaml  # noqa: E402
 from haptex_evaluation.hand import HandPath  # noqa: E402
 from haptex_evaluation.latin_square import row_of, williams_rows  # noqa: E402
 from haptex_evaluation.plan import STANDARD, TRIAL, trials_of  # noqa: E402
 from haptex_evaluation.protocol import PROPERTIES, read_protocol  # noqa: E402
+from haptex_evaluation.quoted import quoted  # noqa: E402
 from haptex_evaluation.results import read_results  # noqa: E402
 from haptex_evaluation.session import Session  # noqa: E402
 
 CONFIG = ROOT / 'config'
 SHIPPED = CONFIG / 'protocols' / 'eight_properties.yaml'
+
+
+class Quoted(unittest.TestCase):
+    def test_repeats_at_most_two_hundred_characters_and_says_how_many_there_are(self):
+        self.assertEqual(quoted('wool'), "'wool'")
+        self.assertEqual(quoted('a' * 200), f"'{'a' * 200}'")
+        self.assertEqual(quoted('a' * 10 ** 7), f"'{'a' * 199}... (10000000 characters)")
+        self.assertEqual(quoted('\x1b\n'), r"'\x1b\n'")
+        self.assertLess(len(quoted(['a' * 1000] * 1000)), 230)
+
+
+class StrictYaml(Folder):
+    def refusal(self, content):
+        path = self.folder / 'file.yaml'
+        path.write_bytes(content)
+        with self.assertRaises(ValueError) as caught:
+            strict_yaml.load(path, ['title', 'scale'])
+        return str(caught.exception).replace(str(path), 'file')
+
+    def test_tells_nothing_of_a_file_of_another_kind(self):
+        for content, says in [
+                (b'root:x:0:0:root:/root:/bin/bash\n', 'file: must be a mapping with the keys title, scale'),
+                (b'token: secret\n', 'file: has none of the keys title, scale'),
+                (b'title: *secret\n', 'file: line 1: is not YAML: found undefined alias'),
+                (b'title: [secret\n}', 'file: line 2: is not YAML: expected'),
+                (b'title: "\\secret"\n', 'file: line 1: is not YAML: found unknown escape character'),
+                (b'title: \x01secret\n', 'file: is not YAML: it has characters that are not allowed'),
+                (b'title: \xffsecret\n', 'file: is not UTF-8')]:
+            refusal = self.refusal(content)
+            self.assertTrue(refusal.startswith(says), refusal)
+            self.assertNotIn('secret', refusal)
+            self.assertNotIn('root', refusal)
+
+
+    def test_refuses_what_is_too_large_before_it_is_held(self):
+        laughs = 'title: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n' + ''.join(
+            f'a{i}: &a{i} [{", ".join(10 * [f"*a{i - 1}"])}]\n' for i in range(1, 9))
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # kB
+        for content, says in [
+                (b'title: [' + 2_000_000 * b'1,' + b']', 'file: more than 262144 bytes'),
+                (b'title: [' + 20_000 * b'1,' + b']', 'file: line 1: more than 20000 values'),
+                (b'title: ' + 100_000 * b'[', 'file: line 1: nested deeper than 32 levels'),
+                (laughs.encode(), 'file: line 5: more than 20000 values'),
+                (b'title: &a [*a]', 'file: line 1: more than 20000 values')]:
+            self.assertTrue(self.refusal(content).startswith(says), says)
+        self.assertLess(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before, 32_000)
 
 
 class LatinSquares(unittest.TestCase):
@@ -329,7 +377,7 @@ class Sessions(Folder):
                 self.open()
 
 
-Tests = suite_of(LatinSquares, Protocols, HandPaths, Plans, Sessions)
+Tests = suite_of(Quoted, StrictYaml, LatinSquares, Protocols, HandPaths, Plans, Sessions)
 
 
 if __name__ == '__main__':

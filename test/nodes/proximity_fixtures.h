@@ -13,6 +13,7 @@
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/proximity/cloth_proximity.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 
@@ -25,7 +26,7 @@ inline mesh::ClothMesh testMesh(int cells = kTestCells) {
 
 inline haptex::ClothMesh testMeshMessage(const mesh::ClothMesh& mesh) {
   haptex::ClothMesh message;
-  message.header.frame_id = kFixedFrame;
+  message.header.frame_id = fixedFrame();
   for (const Eigen::Vector2d& rest : mesh.rest_coordinates) {
     message.rest_weft_coordinates.push_back(rest.x());
     message.rest_warp_coordinates.push_back(rest.y());
@@ -55,7 +56,7 @@ inline std::vector<Eigen::Vector3d> wavy(std::vector<Eigen::Vector3d> positions)
 inline haptex::ClothStatePtr testState(std::uint32_t step,
                                        const std::vector<Eigen::Vector3d>& positions) {
   const haptex::ClothStatePtr message(new haptex::ClothState);
-  message->header.frame_id = kFixedFrame;
+  message->header.frame_id = fixedFrame();
   message->header.stamp = ros::Time(1000 + step);
   message->step = step;
   for (const Eigen::Vector3d& position : positions) {
@@ -71,7 +72,7 @@ inline haptex::QueryProximity::Request testRequest(std::uint8_t shape,
                                                    const std::vector<double>& radii,
                                                    double distance) {
   haptex::QueryProximity::Request request;
-  request.header.frame_id = kFixedFrame;
+  request.header.frame_id = fixedFrame();
   request.shape = shape;
   for (const Eigen::Vector3d& point : points) request.points.push_back(pointMessage(point));
   request.radii = radii;

@@ -3,6 +3,7 @@
 import base64
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import tempfile
@@ -28,10 +29,14 @@ class RecordScene(NodeTest):
         self.publisher = rospy.Publisher(TOPIC, String, queue_size=10)
         self.addCleanup(self.publisher.unregister)
 
-    def start(self, *arguments):
+    def start(self, *arguments, largest_file=None):
+        """@param largest_file bytes, as on a disk that is full then"""
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
         program = roslib.packages.find_node('haptex', 'record_scene')[0]
         run = subprocess.Popen([program, *arguments, '--', TOPIC], cwd=self.folder, text=True,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               preexec_fn=limit if largest_file else None)
         self.addCleanup(run.kill)
         return run
 
@@ -67,9 +72,9 @@ class RecordScene(NodeTest):
     def test_records_what_a_person_asks_for(self):
         self.assert_records(self.start('wool_sample', f'--bag={self.folder}/mine.bag'), 'mine.bag')
 
-    def start_growing(self):
+    def start_growing(self, **limits):
         """A recorder whose bag grows, and the process that writes it."""
-        run = self.start('wool_sample', f'--bag={self.folder}/mine.bag')
+        run = self.start('wool_sample', f'--bag={self.folder}/mine.bag', **limits)
         self.eventually(self.publisher.get_num_connections, 'nobody records')
         incompressible = base64.b64encode(os.urandom(3 << 18)).decode()  # 1 MiB
         stream = rospy.Timer(rospy.Duration(0.1), lambda _: self.publisher.publish(incompressible))
@@ -95,6 +100,17 @@ class RecordScene(NodeTest):
         run.send_signal(signal.SIGINT)
         code, _, errors = self.ended(run)
         self.assertNotEqual(code, 0)
+        self.assertIn('the bag is not written any more: the recorder has ended', errors)
+
+    def test_says_that_the_disk_is_full_and_what_to_do(self):
+        run, _ = self.start_growing(largest_file=100 << 20)
+        self.assert_says('the recorder has ended with status 1. Everything else goes on; free space on the '
+                         'disk if it is full, and start a recorder again. What it has written is in '
+                         f'{self.folder}/mine.bag.active: rosbag reindex')
+        self.assertIsNone(run.poll())  # it goes on to say so
+        run.send_signal(signal.SIGINT)
+        code, _, errors = self.ended(run)
+        self.assertEqual(code, 1)
         self.assertIn('the bag is not written any more: the recorder has ended', errors)
 
     def test_says_that_a_bag_does_not_grow_any_more(self):

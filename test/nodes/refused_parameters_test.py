@@ -26,6 +26,7 @@ class RefusedParameters(unittest.TestCase):
         self.assertEqual(run.returncode, 1, run.stderr)
         for text in says:
             self.assertIn(text.replace('~', f'/{name}/'), run.stderr)
+        return run.stderr
 
     def test_missing_scene(self):
         self.refused(says=['~scene', 'is not set'])
@@ -50,6 +51,22 @@ class RefusedParameters(unittest.TestCase):
             for value in ('0', '-1', 'many'):
                 self.refused('_scene:=wool_sample', f'_{name}:={value}',
                              says=[f'~{name}'])
+
+    def test_prefixes_of_frames_that_there_are_not(self):
+        for value in ('/left', 'left/', 'a-b'):
+            self.refused('_scene:=wool_sample', f'_tf_prefix:={value}',
+                         says=[f"tf_prefix = '{value}'", 'allowed are letters, digits and _'])
+        self.refused('_scene:=wool_sample', '_tf_prefix:=3', says=['~tf_prefix is not a string'])
+
+    def test_files_of_another_kind_without_their_content(self):
+        with open('/etc/passwd', encoding='utf-8') as file:
+            words = [line.split(':')[-2] for line in file]  # home directories
+        for parameter, node in (('scene', 'cloth_simulation'), ('scene', 'proximity'),
+                                ('quality', 'cloth_simulation')):
+            scene = [] if parameter == 'scene' else ['_scene:=wool_sample']
+            errors = self.refused(*scene, f'_{parameter}:=/etc/passwd', node=node,
+                                  says=['/etc/passwd: a text of', 'must be a map with the keys'])
+            self.assertEqual([word for word in words if len(word) > 3 and word in errors], [])
 
     def test_colours_by_what_there_is_not(self):
         for value in ('weight', '3'):

@@ -141,6 +141,8 @@ TEST_F(StateFile, IsRefusedForWhatIsWrongWithIt) {
          "line 2: 'twelve' must be a finite number up to 1000000000");
   expect("particles 12\n", "", "line 2: must be 'particles' and a number >= 0");
   expect("particles 12", "particles 13", "has lines of 12 particles, must have 13 as it says");
+  expect("particles 12", "particles 11",
+         "line 16: one particle more than the 11 that the file says");
   expect("time 0.3", "time -0.3", "line 3: must be 'time' and a number >= 0");
   for (const std::string spoiled : {"nan", "inf", "-inf", "1e400", "1.5e9", "0.3x", "0x1p3"}) {
     expect("0.3333333333333333 -0 5e-324", "0.5 " + spoiled + " 1",

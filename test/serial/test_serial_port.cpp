@@ -302,14 +302,46 @@ TEST(PseudoTerminal, MakesALinkAndRemovesIt) {
   EXPECT_FALSE(exists(link));
 }
 
-TEST(PseudoTerminal, ReplacesALinkAndRemovesOnlyItsOwn) {
+TEST(PseudoTerminal, ReplacesALinkThatADeadEmulatorHasLeft) {
   const TemporaryDirectory directory;
   const std::string link = directory / "exoskeleton";
   ASSERT_EQ(::symlink("/nowhere", link.c_str()), 0);
-  auto first = std::make_unique<PseudoTerminal>(link);
-  const PseudoTerminal second(link);
-  first.reset();
-  EXPECT_EQ(refusal(link), "") << "leads to the second";
+  std::ofstream(link + ".lock").close();
+  const PseudoTerminal device(link);
+  EXPECT_EQ(refusal(link), "");
+}
+
+TEST(PseudoTerminal, DoesNotTakeTheLinkOfAnother) {
+  const TemporaryDirectory directory;
+  const std::string link = directory / "exoskeleton";
+  {
+    const PseudoTerminal first(link);
+    try {
+      const PseudoTerminal second(link);
+      ADD_FAILURE() << "the link was taken";
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(error.what(), link +
+                                  ": is the link of another emulator, which runs: give this one "
+                                  "another, or start it in another namespace");
+    }
+    EXPECT_EQ(std::filesystem::read_symlink(link), first.path());
+  }
+  EXPECT_FALSE(exists(link + ".lock"));
+  const PseudoTerminal third(link);
+  EXPECT_EQ(std::filesystem::read_symlink(link), third.path());
+}
+
+TEST(PseudoTerminal, RemovesOnlyItsOwnLink) {
+  const TemporaryDirectory directory;
+  const std::string link = directory / "exoskeleton";
+  const PseudoTerminal other;
+  {
+    const PseudoTerminal device(link);
+    ASSERT_EQ(::unlink(link.c_str()), 0);
+    ASSERT_EQ(::symlink(other.path().c_str(), link.c_str()), 0);
+  }
+  EXPECT_EQ(refusal(link), "") << "leads to the other";
+  ::unlink(link.c_str());
 }
 
 TEST(PseudoTerminal, DoesNotReplaceAFile) {

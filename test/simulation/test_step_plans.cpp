@@ -59,6 +59,29 @@ TEST(StepPlans, ASceneWithoutThemRunsAsWithTheOneOfItsSettings) {
   expectSame(plain.state(), planned.state());
 }
 
+TEST(StepPlans, UnderLoadsMethodsOfSecondOrderGiveWayToBackwardEuler) {
+  for (const auto method : {cloth::IntegrationMethod::kBackwardMidpoint,
+                            cloth::IntegrationMethod::kBdf2, cloth::IntegrationMethod::kTrBdf2}) {
+    cloth::StepSettings step;
+    SimulatedCloth damped = plannedSimulation({{step, 2}});
+    step.method = method;
+    SimulatedCloth undamped = plannedSimulation({{step, 2}});
+    const cloth::PointLoad load{3,
+                                Eigen::Vector3d::Constant(1.0 / 3.0),
+                                Eigen::Vector3d::Zero(),
+                                {0.01, 0.0, 0.0},
+                                Eigen::Matrix3d::Zero()};
+    for (SimulatedCloth* simulation : {&damped, &undamped}) simulation->setPointLoads({load});
+    runSteps(damped, 5);
+    runSteps(undamped, 5);
+    expectSame(undamped.state(), damped.state());
+    for (SimulatedCloth* simulation : {&damped, &undamped}) simulation->setPointLoads({});
+    runSteps(damped, 1);
+    runSteps(undamped, 1);
+    EXPECT_NE(undamped.state().positions, damped.state().positions) << nameOf(method);
+  }
+}
+
 TEST(StepPlans, AChangeLeavesTheStateAsItIs) {
   SimulatedCloth simulation = plannedSimulation(severalPlans(), true);
   simulation.move({kSmallTop}, {0.05, 0.1, 0.0}, 0.1);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -16,7 +17,7 @@ material::Fabric wool() {
 
 DeviceRecord run(const std::string& name, std::uint64_t seed) {
   ManipulationSettings settings;
-  settings.seed = seed;
+  settings.tremor = seed;
   settings.cells = 8;
   for (const Manipulation& manipulation : manipulations()) {
     if (manipulation.name == name) return manipulation.run(wool(), settings);
@@ -59,6 +60,34 @@ TEST(Manipulations, TheHandTremblesByFourteenMicrometres) {
   }
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(record.size())), 20e-6 / std::sqrt(2.0),
               8e-6);
+}
+
+TEST(Manipulations, AStripThatIsPressedResistsUntilTheHandCeasesOrItSlipsOff) {
+  const DeviceRecord record = run("press_warp", 1);
+  ASSERT_FALSE(record.empty());
+  double largest = 0.0, other = 0.0;
+  for (const DeviceSample& sample : record) {
+    largest = std::max(largest, sample.forces[base::Finger::kIndex].x());
+    other = std::max(other, sample.forces[base::Finger::kThumb].norm());
+  }
+  EXPECT_GT(largest, 1.5) << "it is pressed with the forces of KES's stretch";
+  EXPECT_EQ(other, 0.0) << "the thumb stays behind";
+}
+
+TEST(Manipulations, AnOverhangIsBorneByTheFingerUntilItHangsByItself) {
+  const DeviceRecord record = run("lower_weft", 1);
+  ASSERT_EQ(record.size(), 8000u);
+  const double weight = 0.15 * 9.80665 * kOverhang.length * kOverhang.width;
+  const auto mean = [&](std::size_t begin) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < begin + 200; ++i) {
+      sum -= record[i].forces[base::Finger::kIndex].z() / 200.0;
+    }
+    return sum;
+  };
+  EXPECT_GT(mean(0), 0.4 * weight);
+  EXPECT_LT(mean(0), 1.5 * weight);
+  EXPECT_LT(mean(7800), 0.1 * weight);
 }
 
 }  // namespace

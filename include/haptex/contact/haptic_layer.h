@@ -74,7 +74,7 @@ class HapticLayer {
   /// @param mesh, fabrics, effects those of the large-scale layer; at most mesh::kMostFabrics
   /// @param obstacles of the scene; patches touch those without mass if effects has contacts
   /// @throws std::invalid_argument what requireTouchable(), cloth::Cloth or PlacedObstacles throws,
-  ///   or if the mesh has several panels, or a triangle a fabric that is not there
+  ///   or if the mesh has several panels or ties, or a triangle a fabric that is not there
   HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
               const cloth::ModelledEffects& effects, const HapticSettings& settings,
               std::vector<mesh::Obstacle> obstacles = {});

@@ -49,8 +49,12 @@ struct TesterFile {
   std::optional<double> value(const std::string& name, const std::string& direction = "") const;
 };
 
+/// Bytes of a file of readings at most.
+constexpr std::size_t kLargestTesterFile = std::size_t{16} << 20;
+
 /// Reads a file of readings; docs/fit_curves.md describes the format.
-/// @throws std::runtime_error if the file cannot be read; std::invalid_argument naming file, line,
+/// @throws std::runtime_error if the file cannot be read or is larger than that;
+/// std::invalid_argument naming file, line,
 ///   what is wrong and what is allowed: an unknown test, direction, branch, unit or name, a number
 ///   that is missing, not finite or out of range, a value that is there twice, or a stress that
 ///   falls on a loading branch by more than kMostFall

@@ -15,9 +15,29 @@ struct Panel {
       0.0;  ///< rad, from the axes of its rest coordinates to weft and warp of the fabric
 };
 
+/// A particle that is sewn to an edge between two others, and goes with it:
+///   x_particle = (1 - share) x_ends[0] + share x_ends[1].
+struct Tie {
+  int particle = -1;
+  std::array<int, 2> ends = {-1, -1};
+  double share = 0.0;  ///< from 0 to 1
+};
+
+/// A piece of a seam with the triangles on either side. Directions are in the rest coordinates of
+/// each triangle's fabric (ClothMesh::restCorners()), of unit length.
+struct SeamHinge {
+  std::array<int, 2> triangles = {-1, -1};
+  std::array<Eigen::Vector2d, 2> along = {};   ///< the seam, from the same end to the other
+  std::array<Eigen::Vector2d, 2> inward = {};  ///< into the triangle, across the seam
+  double length = 0.0;                         ///< m, at rest
+  /// rad, of the cloth without forces, from flat; positive towards the first one's weft x warp.
+  double angle = 0.0;
+};
+
 /// Cloth as triangles between particles. A sheet is one panel, whose particles have one rest
-/// coordinate each. Where panels are sewn together they share the particles of the seam, and every
-/// corner of a triangle has the rest coordinate that it has in its own panel.
+/// coordinate each. Where panels are sewn together (haptex/mesh/seam.h) they share the particles of
+/// the seam, and every corner of a triangle has the rest coordinate that it has in its own panel;
+/// or the particles of one edge are tied to the other.
 struct ClothMesh {
   std::vector<Eigen::Vector2d> rest_coordinates;   ///< (u along weft, v along warp), m
   std::vector<Eigen::Vector3d> initial_positions;  ///< m, world frame
@@ -31,6 +51,8 @@ struct ClothMesh {
   /// can be of other fabrics, as one piece that is woven or reinforced there: along the same grain,
   /// and without a seam.
   std::vector<int> triangle_fabrics = {};
+  std::vector<Tie> ties = {};               ///< as resolveTies() allows
+  std::vector<SeamHinge> seam_hinges = {};  ///< of the seams that resist bending
 
   int panelCount() const { return panels.empty() ? 1 : static_cast<int>(panels.size()); }
   int panelOf(std::size_t triangle) const {
@@ -52,6 +74,8 @@ struct CutPanel {
   std::vector<int> particles;  ///< of the mesh, for every one of the sheet, ascending
 };
 /// @param mesh sound @param panel of it
+/// @throws std::invalid_argument if a particle has two rest coordinates in the panel, as where a
+///   dart was merged
 CutPanel cutPanel(const ClothMesh& mesh, int panel);
 
 /// How makeRectangle() splits its cells into two triangles.

@@ -1,6 +1,7 @@
 // Triangle meshes from Wavefront OBJ files.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,13 +11,21 @@
 
 namespace haptex::mesh {
 
+/// What a mesh may have at most: bytes of its file and triangles; and of positions and of texture
+/// coordinates three times as many.
+constexpr std::size_t kLargestObj = std::size_t{64} << 20;
+constexpr std::size_t kMostTriangles = 200'000;
+
 /// Reads triangles ("f"), positions ("v", metres, world frame) and texture coordinates ("vt"),
 /// which are the rest coordinates (u weft, v warp) in metres. Every particle needs exactly one
 /// texture coordinate; a position that faces give two of different value (a seam) is an error, as
 /// is a face that is not a triangle. Indices count from 1, or backwards if negative, over what
-/// stands before the face in the file. Other statements are ignored.
-/// @throws std::runtime_error if the file cannot be read
-/// @throws std::invalid_argument naming file, line and what is wrong, or the mesh defects by index
+/// stands before the face in the file. Other statements are ignored. Refusals repeat no words of
+/// the file.
+/// @throws std::runtime_error if the file cannot be read or has more than kLargestObj bytes
+/// @throws std::invalid_argument naming file, line and what is wrong, which is also the first
+/// triangle
+///   or position too many, or the mesh defects by index
 ClothMesh loadObj(const std::string& path);
 
 /// Triangles of each group ("g"), ascending.

@@ -14,10 +14,12 @@ namespace haptex::serial {
 class PseudoTerminal {
  public:
   /// Makes a raw pseudo-terminal and, if `link` is not empty, a symbolic link of that name to its
-  /// other end; an existing symbolic link is replaced, anything else is not.
-  /// @throws std::runtime_error naming what failed
+  /// other end; an existing symbolic link is replaced, anything else is not. Beside the link lies
+  /// LINK.lock, locked as long as this object lives.
+  /// @throws std::runtime_error naming what failed; also if another object, of this or another
+  ///   process, has the link
   explicit PseudoTerminal(const std::string& link = "");
-  /// Removes the link, unless it has come to lead elsewhere.
+  /// Removes the lock, and the link unless it has come to lead elsewhere.
   ~PseudoTerminal();
   PseudoTerminal(const PseudoTerminal&) = delete;
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
@@ -36,6 +38,20 @@ class PseudoTerminal {
   int descriptor() const { return line_.get(); }
 
  private:
+  /// LINK.lock, open and locked, which is removed with it. Nothing without a link.
+  class LinkLock {
+   public:
+    explicit LinkLock(const std::string& link);
+    ~LinkLock();
+    LinkLock(const LinkLock&) = delete;
+    LinkLock& operator=(const LinkLock&) = delete;
+
+   private:
+    std::string path_;
+    LineDescriptor file_;
+  };
+
+  LinkLock lock_;
   LineDescriptor line_;
   std::string path_;
   std::string link_;

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::cloth {
 namespace {
 
@@ -17,8 +19,8 @@ std::uint64_t nextRevision() {
 void requireDensity(const material::Fabric& fabric) {
   if (!std::isfinite(fabric.areal_density) || fabric.areal_density <= 0.0) {
     std::ostringstream message;
-    message << "areal density of fabric '" << fabric.name << "' is " << fabric.areal_density
-            << " kg/m2; it must be finite and greater than 0";
+    message << "areal density of fabric " << base::quoted(fabric.name) << " is "
+            << fabric.areal_density << " kg/m2; it must be finite and greater than 0";
     throw std::invalid_argument(message.str());
   }
 }
@@ -62,6 +64,12 @@ Cloth::Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
       effects_(effects),
       attachments_(mesh_.rest_coordinates.size()) {
   requireSound(mesh_);
+  ties_ = std::make_unique<Ties>(mesh_);
+  if (effects.self_collision && !ties_->empty()) {
+    throw std::invalid_argument(
+        "self_collision is modelled, and " + std::to_string(ties_->resolved().size()) +
+        " particles are tied: allowed is one of both; edges that are merged need no ties");
+  }
   takeFabrics(std::move(fabrics));
   if (!effects.contacts) return;
   contacts_.reserve(particleCount());
@@ -72,9 +80,11 @@ Cloth::Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
 void Cloth::takeFabrics(std::vector<material::Fabric> fabrics) {
   for (const material::Fabric& fabric : fabrics) requireDensity(fabric);
   auto forces = std::make_unique<ForceSum>();
+  if (!ties_->empty()) forces->setTies(*ties_);
   ForceSum of_fabrics;
   addFabricForces(mesh_, fabrics, effects_, of_fabrics);
   std::vector<double> masses = lumpedMasses(mesh_, fabrics);
+  ties_->gather(masses);
   auto constant = std::make_unique<ConstantForces>(masses, effects_.gravity);
   if (constant_ != nullptr) constant->copyUserForces(*constant_);
   ConstantForces& added = forces->add(std::move(constant));
@@ -85,6 +95,7 @@ void Cloth::takeFabrics(std::vector<material::Fabric> fabrics) {
   const linear::SymmetricBlockMatrix matrix(static_cast<int>(masses.size()), mesh_.triangles,
                                             forces->pairs());
   forces->bind(matrix);
+  ties_->bind(matrix);
   // Nothing throws from here on.
   pattern_size_ = matrix.lowerCount();
   fabrics_ = std::move(fabrics);
@@ -103,6 +114,7 @@ linear::SymmetricBlockMatrix Cloth::pattern() const {
 ClothState Cloth::initialState() const {
   ClothState state;
   state.positions = mesh_.initial_positions;
+  ties_->place(state.time, state.positions);
   state.velocities.assign(particleCount(), Eigen::Vector3d::Zero());
   forget(state);
   return state;
@@ -255,8 +267,24 @@ void Cloth::moveObstacles(double begin, double end) {
   if (obstacles_ && !obstacles_->move(begin, end)) revision_ = nextRevision();
 }
 
-void Cloth::attach(int particle, const AttachmentPath& path) {
+void Cloth::closeSeams(const ClothState& state, double speed) {
+  requireParticles(state);
+  ties_->closeFrom(state.positions, state.time, speed);
+}
+
+void Cloth::requireAttachable(int particle) const {
   requireParticle(particle);
+  for (const mesh::Tie& tie : mesh_.ties) {
+    if (tie.particle != particle) continue;
+    throw std::invalid_argument("particle " + std::to_string(particle) +
+                                " is sewn to the edge from particle " +
+                                std::to_string(tie.ends[0]) + " to " + std::to_string(tie.ends[1]) +
+                                " and goes with it: allowed is to attach those");
+  }
+}
+
+void Cloth::attach(int particle, const AttachmentPath& path) {
+  requireAttachable(particle);
   const bool finite = path.start.allFinite() && path.displacement.allFinite() &&
                       std::isfinite(path.start_time) && std::isfinite(path.duration);
   if (!finite || path.duration < 0.0) {

@@ -87,6 +87,11 @@ std::vector<int> trianglesAround(const Cloth& whole, const std::vector<char>& in
   if (std::all_of(included.begin(), included.end(), [](char one) { return one == 0; })) {
     throw std::invalid_argument("no particle is included: allowed is at least one");
   }
+  if (!whole.ties().empty()) {
+    throw std::invalid_argument(std::to_string(whole.ties().resolved().size()) +
+                                " particles are tied, and a part would lose what they are tied "
+                                "to: allowed is a cloth whose edges are merged");
+  }
   if (whole.effects().self_collision) {
     throw std::invalid_argument(
         "self_collision is modelled, and the cloth would pass through what is excluded: allowed is "
@@ -107,7 +112,8 @@ std::vector<int> particlesOf(const mesh::ClothMesh& mesh, const std::vector<int>
 }
 
 mesh::ClothMesh meshOf(const mesh::ClothMesh& whole, const std::vector<int>& triangles,
-                       const std::vector<int>& particles, const std::vector<int>& particle_place) {
+                       const std::vector<int>& particles, const std::vector<int>& particle_place,
+                       const std::vector<int>& triangle_place) {
   mesh::ClothMesh part;
   part.panels = whole.panels;
   for (const int particle : particles) {
@@ -124,6 +130,10 @@ mesh::ClothMesh meshOf(const mesh::ClothMesh& whole, const std::vector<int>& tri
     if (!whole.corner_coordinates.empty()) {
       part.corner_coordinates.push_back(whole.corner_coordinates[t]);
     }
+  }
+  for (mesh::SeamHinge hinge : whole.seam_hinges) {
+    for (int& triangle : hinge.triangles) triangle = triangle_place[triangle];
+    if (std::min(hinge.triangles[0], hinge.triangles[1]) >= 0) part.seam_hinges.push_back(hinge);
   }
   return part;
 }
@@ -175,8 +185,8 @@ ClothPart::ClothPart(const Cloth& whole, const std::vector<char>& included,
     : particles_(particlesOf(whole.mesh(), triangles)),
       triangle_place_(inverse(triangles, whole.mesh().triangles.size())),
       particle_place_(inverse(particles_, whole.particleCount())),
-      cloth_(meshOf(whole.mesh(), triangles, particles_, particle_place_), whole.fabrics(),
-             effectsOf(whole)),
+      cloth_(meshOf(whole.mesh(), triangles, particles_, particle_place_, triangle_place_),
+             whole.fabrics(), effectsOf(whole)),
       state_(cloth_.initialState()),
       memory_(memoryPlaces(whole, cloth_, particles_)) {
   for (std::size_t i = 0; i < particles_.size(); ++i) {

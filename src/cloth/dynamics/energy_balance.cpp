@@ -92,6 +92,7 @@ double EnergyBalance::growth(const Cloth& cloth, const ClothState& begin, const 
   growth -= std::max(0.0, attachmentWork(cloth, begin, end));
   const double h = end.time - begin.time;
   growth -= std::max(0.0, contactWork(cloth, reactions, begin.positions, h));
+  if (cloth.seamGap(begin.time) > 0.0) growth -= closingWork(cloth, begin, end);
   if (const SelfContact* self = cloth.selfContact()) {
     growth -= std::max(0.0, self->obstacleWork(end.ofForces()));
   }
@@ -124,6 +125,7 @@ double EnergyBalance::attachmentWork(const Cloth& cloth, const ClothState& begin
     moved = moved || end.positions[i] != begin.positions[i];
     jumped_.positions[i] = end.positions[i];
   }
+  cloth.ties().place(begin.time, jumped_.positions);
   if (!moved) return 0.0;
   const double h = end.time - begin.time;
   computeForces(cloth, end, StrainPast::since(begin.positions, h));
@@ -136,6 +138,25 @@ double EnergyBalance::attachmentWork(const Cloth& cloth, const ClothState& begin
   const double of_jump = cloth.potentialEnergy(jumped_) - potential_begin_;
   return std::min(std::max(at_end, 0.5 * (at_begin + at_end)),
                   2.0 * std::max(0.0, of_jump) + kinetic_begin_);
+}
+
+/// Of what closes seams (J), of the forces at the beginning or the end of the step, whichever is
+/// more; at least 0.
+double EnergyBalance::closingWork(const Cloth& cloth, const ClothState& begin,
+                                  const ClothState& end) {
+  const Ties& ties = cloth.ties();
+  double most = 0.0;
+  for (const ClothState* at : {&begin, &end}) {
+    std::fill(forces_.begin(), forces_.end(), Vector3d::Zero());
+    cloth.forces().addUntiedForces(at->ofForces(), forces_);
+    double work = 0.0;
+    for (std::size_t t = 0; t < ties.resolved().size(); ++t) {
+      const Vector3d way = ties.gap(t, end.time) - ties.gap(t, begin.time);
+      work -= forces_[ties.resolved()[t].particle].dot(way);
+    }
+    most = std::max(most, work);
+  }
+  return most;
 }
 
 /// Into forces_. @param past what rates are taken from, if they are not the velocities'

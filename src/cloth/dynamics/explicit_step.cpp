@@ -28,6 +28,9 @@ void followPaths(const Cloth& cloth, double time, ClothState& state) {
     state.positions[i] = attachment->position(time);
     state.velocities[i] = attachment->velocity(time);
   }
+  // Tied particles have no mass: what was computed for them is not a number.
+  cloth.ties().place(time, state.positions);
+  cloth.ties().carry(time, state.velocities);
 }
 
 }  // namespace

@@ -123,6 +123,7 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
   advance(cloth, state, time_step, report);
   settle(end_.velocities);
   if (balance_) keepEnergy(cloth, state, time_step, report);
+  followTies(cloth);
   report.accepted = std::isfinite(report.linear_residual) && std::isfinite(end_.time) &&
                     allFinite(end_.positions) && allFinite(end_.velocities);
   if (report.accepted) {
@@ -139,6 +140,12 @@ StepReport Integrator::step(const Cloth& cloth, ClothState& state, double time_s
   }
   report.total_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return report;
+}
+
+/// At the end of the step, what changes velocities or attached particles does not know of ties.
+void Integrator::followTies(const Cloth& cloth) {
+  cloth.ties().place(end_.time, end_.positions);
+  cloth.ties().carry(end_.time, end_.velocities);
 }
 
 void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double h,
@@ -187,11 +194,7 @@ void Integrator::slowDown(const Cloth& cloth, double energy, StepReport& report)
   const double factor = std::sqrt(1.0 - report.energy_taken / kinetic);
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
     if (cloth.attachments()[i]) continue;
-    if (bodies_ > 0) {
-      end_.velocities[i] = mean + factor * (end_.velocities[i] - mean);
-    } else {
-      end_.velocities[i] *= factor;
-    }
+    end_.velocities[i] = mean + factor * (end_.velocities[i] - mean);  // without bodies it is 0
   }
   settle(end_.velocities);
 }
@@ -330,6 +333,7 @@ void Integrator::extrapolate(const Cloth& cloth, const ClothState& begin, double
     end_.positions[i] = begin.positions[i] + (end_.positions[i] - begin.positions[i]) / theta;
     end_.velocities[i] = begin.velocities[i] + (end_.velocities[i] - begin.velocities[i]) / theta;
   }
+  followTies(cloth);
 }
 
 /// The trapezoidal rule over gamma h, then BDF-2 over its beginning and end; with
@@ -353,6 +357,7 @@ void Integrator::runTrBdf2(const Cloth& cloth, const ClothState& begin, double h
     base_.positions[i] = begin.positions[i] + a * begin.velocities[i];
     base_.velocities[i] = begin.velocities[i] + a / cloth.masses()[i] * forces_[i];
   }
+  cloth.ties().carry(begin.time, base_.velocities);  // they have no mass
   const Positions* predicted =
       goes_on && predicts() ? motion_->predictAfter(begin, first) : nullptr;
   stages_->solve(cloth, {base_, a, begin.time + first, 1.0, stage_strains},

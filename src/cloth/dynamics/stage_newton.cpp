@@ -102,6 +102,7 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
       trial_.velocities[i] = result.velocities[i] + change;
       trial_.positions[i] = result.positions[i] + stage.a * change;
     }
+    sew(cloth, stage, trial_);
     const MotionCut cut = keepApart(cloth, stage, result.positions, trial_);
     if (touching()) contacts_->moveBodies(step);
     const double trial = incrementalPotential(cloth, stage, trial_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "haptex/base/constants.h"
@@ -40,6 +41,25 @@ double restArea(const mesh::ClothMesh& mesh) {
   return area;
 }
 
+/// Of a particle that is not tied (kg).
+double leastMass(const Cloth& cloth) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    if (!cloth.ties().isTied(static_cast<int>(i))) least = std::min(least, cloth.masses()[i]);
+  }
+  return least;
+}
+
+/// How far a tied particle is from its place at the beginning and at the end of a stage (m).
+struct StageGaps {
+  StageGaps(const Ties& ties, const Stage& stage, std::size_t tie) {
+    const Positions& base = stage.base.positions;
+    begin = base[ties.resolved()[tie].particle] - ties.mean(tie, base);
+    end = (1.0 - stage.share) * begin + stage.share * ties.gap(tie, stage.end);
+  }
+  Vector3d begin, end;
+};
+
 }  // namespace
 
 StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
@@ -60,12 +80,13 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
     motion_.emplace(cloth.particleCount(), self->law().margin());
     response_ = solution_;
   }
+  if (!cloth.ties().empty()) sewn_velocities_.resize(cloth.particleCount());
   trial_ = cloth.initialState();
   held_.assign(cloth.forces().heldSize(), Vector3d::Zero());
   if (settings.newton_error > 0.0) {
     const double weight =
         base::kStandardGravity * std::accumulate(cloth.masses().begin(), cloth.masses().end(), 0.0);
-    least_mass_ = *std::min_element(cloth.masses().begin(), cloth.masses().end());
+    least_mass_ = leastMass(cloth);
     force_error_ = settings.newton_error * weight;
     energy_error_ = settings.newton_error * force_error_ * std::sqrt(restArea(cloth.mesh()));
   }
@@ -97,6 +118,7 @@ void StageSolver::startFrom(const Cloth& cloth, const Stage& stage, const StageG
     result.positions[i] = attachment ? placeIn(stage, *attachment, i) : (*guess.predicted)[i];
     result.velocities[i] = (result.positions[i] - stage.base.positions[i]) / stage.a;
   }
+  sew(cloth, stage, result);
 }
 
 bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
@@ -113,9 +135,10 @@ bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
                        enough, result, report);
 }
 
-void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& given,
                                   ClothState& result, StepReport& report) {
   const Clock::time_point start = Clock::now();
+  const StageGuess guess = sewn(cloth, stage, given);
   moveObstacles(cloth, guess, report);
   linearise(cloth, stage, guess);
   report.assembly_seconds += seconds(Clock::now() - start);
@@ -126,7 +149,33 @@ void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const 
     result.positions[i] = attachment ? placeIn(stage, *attachment, i)
                                      : stage.base.positions[i] + stage.a * result.velocities[i];
   }
+  sew(cloth, stage, result);
   report.self_cut = keepApart(cloth, stage, start_, result);
+}
+
+/// The guess with velocities that take tied particles to their places, so that the solution changes
+/// them as the particles that they are tied to.
+StageGuess StageSolver::sewn(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
+  const Ties& ties = cloth.ties();
+  if (ties.empty()) return guess;
+  sewn_velocities_ = guess.velocities;
+  for (std::size_t t = 0; t < ties.resolved().size(); ++t) {
+    const StageGaps gaps(ties, stage, t);
+    sewn_velocities_[ties.resolved()[t].particle] =
+        ties.mean(t, sewn_velocities_) + (gaps.end - gaps.begin) / stage.a;
+  }
+  return {guess.positions, sewn_velocities_, guess.ahead, guess.predicted};
+}
+
+/// Tied particles go where they are sewn.
+void StageSolver::sew(const Cloth& cloth, const Stage& stage, ClothState& at) const {
+  const Ties& ties = cloth.ties();
+  for (std::size_t t = 0; t < ties.resolved().size(); ++t) {
+    const StageGaps gaps(ties, stage, t);
+    const int particle = ties.resolved()[t].particle;
+    at.positions[particle] = ties.mean(t, at.positions) + gaps.end;
+    at.velocities[particle] = ties.mean(t, at.velocities) + (gaps.end - gaps.begin) / stage.a;
+  }
 }
 
 /// Finds start_. The guess has been reached; the base of a method of several instants is a sum of
@@ -177,6 +226,7 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
       trial_.positions[i] = fixed_[i] ? result.positions[i]
                                       : stage.base.positions[i] + stage.a * trial_.velocities[i];
     }
+    sew(cloth, stage, trial_);
     report.self_cut = keepApart(cloth, stage, start_, trial_);
     return incrementalPotential(cloth, stage, trial_);
   };
@@ -218,6 +268,11 @@ void StageSolver::prescribe(const Cloth& cloth, const Stage& stage, const StageG
     any_fixed_ = true;
     const Vector3d place = placeIn(stage, *attachment, i);
     prescribed_.col(i) = (place - stage.base.positions[i]) / stage.a - guess.velocities[i];
+  }
+  for (const mesh::ResolvedTie& tie : cloth.ties().resolved()) {
+    any_fixed_ = true;
+    fixed_[tie.particle] = 1;
+    prescribed_.col(tie.particle).setZero();
   }
 }
 

@@ -26,6 +26,9 @@ std::vector<std::array<int, 2>> ForceSum::pairs() const {
     const std::vector<std::array<int, 2>> pairs = force->pairs();
     all.insert(all.end(), pairs.begin(), pairs.end());
   }
+  if (ties_ == nullptr) return all;
+  const std::vector<std::array<int, 2>> of_ties = ties_->pairs(all);
+  all.insert(all.end(), of_ties.begin(), of_ties.end());
   return all;
 }
 
@@ -62,6 +65,12 @@ void ForceSum::remember(const Positions& positions, double* memory) const {
 }
 
 void ForceSum::addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const {
+  addUntiedForces(state, forces);
+  if (ties_ != nullptr) ties_->gather(forces);
+}
+
+void ForceSum::addUntiedForces(const ForceState& state,
+                               std::vector<Eigen::Vector3d>& forces) const {
   forEach(state, [&](const Force& force, const ForceState& its) { force.addForces(its, forces); });
 }
 
@@ -70,6 +79,7 @@ void ForceSum::addDrivenForces(const ForceState& state,
   forEach(state, [&](const Force& force, const ForceState& its) {
     if (force.isDriven()) force.addForces(its, forces);
   });
+  if (ties_ != nullptr) ties_->gather(forces);
 }
 
 double ForceSum::energy(const ForceState& state) const {
@@ -79,7 +89,13 @@ double ForceSum::energy(const ForceState& state) const {
 }
 
 void ForceSum::addJacobian(const ForceState& state, JacobianRows& rows) const {
-  forEach(state, [&](const Force& force, const ForceState& its) { force.addJacobian(its, rows); });
+  const auto add_to = [&](JacobianRows& sum) {
+    forEach(state, [&](const Force& force, const ForceState& its) { force.addJacobian(its, sum); });
+  };
+  if (ties_ == nullptr) return add_to(rows);
+  JacobianRows untied(ties_->rowsBehind(rows));
+  add_to(untied);
+  ties_->gather(untied.blocks(), rows);
 }
 
 bool ForceSum::isDriven() const {
@@ -105,6 +121,7 @@ void ForceSum::assembleLinearised(const ForceState& state, const StageTimes& tim
   forEach(state, [&](const Force& force, const ForceState& its) {
     force.assembleLinearised(its, times, matrix, rhs);
   });
+  if (ties_ != nullptr) ties_->gather(matrix, rhs);
 }
 
 std::size_t ForceSum::heldSize() const {
@@ -127,6 +144,7 @@ void ForceSum::assembleNewton(const ForceState& state, const Eigen::Vector3d* he
     force.assembleNewton(its, held, a, hessian, matrix, rhs);
     held += force.heldSize();
   });
+  if (ties_ != nullptr) ties_->gather(matrix, rhs);
 }
 
 double ForceSum::incrementalPotential(const ForceState& state, const Eigen::Vector3d* held,

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/cloth/forces/bending/bending_friction.h"
+#include "haptex/cloth/forces/bending/seam_bending.h"
 #include "haptex/cloth/forces/corotational.h"
 #include "haptex/cloth/forces/membrane.h"
 #include "haptex/cloth/forces/membrane_friction.h"
@@ -20,8 +22,8 @@ void requireMembraneHysteresis(const material::Fabric& fabric, const ModelledEff
   }
   const auto require = [&](bool stated, const char* key) {
     if (stated) return;
-    throw std::invalid_argument("hysteresis of stretch and shear is modelled and fabric '" +
-                                fabric.name + "' lacks it: add the key " + key);
+    throw std::invalid_argument("hysteresis of stretch and shear is modelled and fabric " +
+                                base::quoted(fabric.name) + " lacks it: add the key " + key);
   };
   require(fabric.resilience.has_value(), "resilience");
   require(fabric.shear_hysteresis.has_value(), "hysteresis to shear");
@@ -36,8 +38,9 @@ void requireHysteresis(const material::Fabric& fabric, const ModelledEffects& ef
         "hysteresis of bending is modelled, which bend springs do not know");
   }
   if (!fabric.bending_hysteresis) {
-    throw std::invalid_argument("hysteresis of bending is modelled and fabric '" + fabric.name +
-                                "' has none: add the key hysteresis to bending");
+    throw std::invalid_argument("hysteresis of bending is modelled and fabric " +
+                                base::quoted(fabric.name) +
+                                " has none: add the key hysteresis to bending");
   }
 }
 
@@ -49,12 +52,12 @@ void requireModelled(const material::Fabric& fabric, const ModelledEffects& effe
   if (effects.membrane_hysteresis) requireMembraneHysteresis(fabric, effects);
   if (effects.bending_hysteresis) requireHysteresis(fabric, effects);
   if (effects.bending && !fabric.bending) {
-    throw std::invalid_argument("bending is modelled and fabric '" + fabric.name +
-                                "' has no bending rigidity: add the key bending");
+    throw std::invalid_argument("bending is modelled and fabric " + base::quoted(fabric.name) +
+                                " has no bending rigidity: add the key bending");
   }
   if (effects.contraction && !fabric.contraction) {
-    throw std::invalid_argument("contraction is modelled and fabric '" + fabric.name +
-                                "' has none: add the key contraction");
+    throw std::invalid_argument("contraction is modelled and fabric " + base::quoted(fabric.name) +
+                                " has none: add the key contraction");
   }
 }
 
@@ -174,6 +177,8 @@ void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fa
   for (int p = 0; p < mesh.panelCount(); ++p) {
     addBending(mesh::cutPanel(mesh, p), fabrics, effects, forces);
   }
+  if (mesh.seam_hinges.empty()) return;
+  forces.add(std::make_unique<SeamBending>(mesh, rigiditiesOf(fabrics)));
 }
 
 }  // namespace haptex::cloth

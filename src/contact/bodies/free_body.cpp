@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 
 namespace haptex::contact {
@@ -16,7 +17,7 @@ using Eigen::Vector3d;
 namespace {
 
 const mesh::ObstacleBody& requireSound(const mesh::Obstacle& obstacle) {
-  const std::string of = "obstacle '" + obstacle.name + "': ";
+  const std::string of = "obstacle " + base::quoted(obstacle.name) + ": ";
   if (!obstacle.body) base::refuse(of, "has no mass");
   const mesh::ObstacleBody& body = *obstacle.body;
   const bool known = std::holds_alternative<mesh::ObstacleSphere>(obstacle.shape) ||

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/cloth/forces/element_assembly.h"
 #include "haptex/contact/bodies/obstacle_path.h"
@@ -27,8 +28,13 @@ void requireApart(const mesh::ClothMesh& mesh, const std::string& name,
   const int triangle = firstTouching(mesh.triangles, mesh.initial_positions, shape);
   if (triangle < 0) return;
   throw std::invalid_argument("self_collision is modelled and triangle " +
-                              std::to_string(triangle) + " of the cloth touches obstacle '" + name +
-                              "' at the start: it has to be outside");
+                              std::to_string(triangle) + " of the cloth touches obstacle " +
+                              base::quoted(name) + " at the start: it has to be outside");
+}
+
+/// Neither attached nor tied to others.
+bool goesByItself(const cloth::Cloth& cloth, int particle) {
+  return !cloth.attachments()[particle] && !cloth.ties().isTied(particle);
 }
 
 }  // namespace
@@ -185,7 +191,9 @@ void ObstacleCollision::findContacts(const cloth::Cloth& cloth, const cloth::Clo
                                      double h) {
   contacts_.clear();
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (!cloth.attachments()[i]) findContact(state, static_cast<int>(i), h);
+    const int particle = static_cast<int>(i);
+    if (!goesByItself(cloth, particle)) continue;
+    findContact(state, particle, h);
   }
 }
 
@@ -258,7 +266,7 @@ void ObstacleCollision::moveBodies(const Vector3d& gravity,
 void ObstacleCollision::resolve(const cloth::Cloth& cloth, cloth::ClothState& state, double h) {
   constexpr int kRounds = 3;  // what leaves one obstacle may enter another
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (cloth.attachments()[i]) continue;
+    if (!goesByItself(cloth, static_cast<int>(i))) continue;
     bool moved = true;
     for (int round = 0; moved && round < kRounds; ++round) {
       moved = false;
@@ -269,6 +277,8 @@ void ObstacleCollision::resolve(const cloth::Cloth& cloth, cloth::ClothState& st
       }
     }
   }
+  cloth.ties().place(state.time, state.positions);
+  cloth.ties().carry(state.time, state.velocities);
 }
 
 /// @param from m, where the particle has been
@@ -326,7 +336,7 @@ void ObstacleCollision::pushOut(const cloth::Cloth& cloth, cloth::ClothState& st
   std::copy(state.velocities.begin(), state.velocities.end(), before_.begin());
   bodies_before_ = bodies_;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    if (cloth.attachments()[i]) continue;
+    if (!goesByItself(cloth, static_cast<int>(i))) continue;
     for (const PlacedObstacle& obstacle : placed_) {
       const Vector3d place = obstacle.begin.inverse(Eigen::Isometry) * state.positions[i];
       if (place.norm() > obstacle.reach) continue;
@@ -341,6 +351,7 @@ void ObstacleCollision::pushOut(const cloth::Cloth& cloth, cloth::ClothState& st
       bodies_[obstacle.body].push(-impulse * normal, obstacle.begin.linear() * place);
     }
   }
+  cloth.ties().carry(state.time, state.velocities);
 }
 
 /// What pushOut() did, as the step was not taken.

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <variant>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::contact {
 namespace {
 
@@ -35,8 +37,9 @@ RigidObstacle makeObstacle(const mesh::Obstacle& obstacle, double time) {
 double frictionOn(const mesh::Obstacle& obstacle, const material::Fabric& fabric) {
   if (obstacle.friction) return *obstacle.friction;
   if (fabric.friction) return *fabric.friction;
-  throw std::invalid_argument("obstacle '" + obstacle.name + "' has no friction and fabric '" +
-                              fabric.name + "' has none: add the key friction to one of them");
+  throw std::invalid_argument("obstacle " + base::quoted(obstacle.name) +
+                              " has no friction and fabric " + base::quoted(fabric.name) +
+                              " has none: add the key friction to one of them");
 }
 
 int firstTouching(const std::vector<std::array<int, 3>>& triangles,

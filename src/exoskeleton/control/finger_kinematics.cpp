@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::exoskeleton {
 namespace {
 
@@ -63,14 +65,14 @@ std::vector<JointPointer> jointsToTip(const urdf::ModelInterface& model, Finger 
 void requireLimits(const urdf::Joint& joint, Finger finger) {
   const double lower = joint.limits->lower, upper = joint.limits->upper;
   if (lower >= upper) {
-    refuse(finger, "limits of " + joint.name + " are " + std::to_string(lower) + " to " +
-                       std::to_string(upper) + " rad, must increase");
+    refuse(finger, "limits of " + base::shortened(joint.name) + " are " + std::to_string(lower) +
+                       " to " + std::to_string(upper) + " rad, must increase");
   }
 }
 
 void requireMimic(const urdf::Joint& last, const urdf::Joint& before, Finger finger) {
   if (!last.mimic || last.mimic->joint_name != before.name) {
-    refuse(finger, last.name + " does not mimic " + before.name);
+    refuse(finger, base::shortened(last.name) + " does not mimic " + base::shortened(before.name));
   }
 }
 
@@ -79,8 +81,8 @@ KDL::RigidBodyInertia weightOf(const urdf::Link& link, const KDL::Frame& pose, F
   KDL::RigidBodyInertia weight;
   if (link.inertial) {
     if (!(link.inertial->mass >= 0.0)) {
-      refuse(finger, "the mass of " + link.name + " is " + std::to_string(link.inertial->mass) +
-                         " kg, must be at least 0");
+      refuse(finger, "the mass of " + base::shortened(link.name) + " is " +
+                         std::to_string(link.inertial->mass) + " kg, must be at least 0");
     }
     weight = KDL::RigidBodyInertia(link.inertial->mass, pose * toKdl(link.inertial->origin).p);
   }
@@ -97,7 +99,8 @@ KDL::RigidBodyInertia weightOf(const urdf::Link& link, const KDL::Frame& pose, F
 KDL::Segment turningSegment(const urdf::Joint& joint, const urdf::Link& child, Finger finger) {
   const KDL::Frame origin = toKdl(joint.parent_to_joint_origin_transform);
   const KDL::Vector axis = toKdl(joint.axis);
-  if (axis.Norm() < 1e-9) refuse(finger, "the axis of " + joint.name + " has no direction");
+  if (axis.Norm() < 1e-9)
+    refuse(finger, "the axis of " + base::shortened(joint.name) + " has no direction");
   return KDL::Segment(KDL::Joint(origin.p, origin.M * axis, KDL::Joint::RotAxis), origin,
                       weightOf(child, KDL::Frame::Identity(), finger));
 }
@@ -110,7 +113,7 @@ void appendJoint(Description& made, const urdf::Joint& joint, const urdf::Link& 
     return;
   }
   if (joint.type != urdf::Joint::REVOLUTE) {
-    refuse(finger, joint.name + " must be revolute or fixed");
+    refuse(finger, base::shortened(joint.name) + " must be revolute or fixed");
   }
   requireLimits(joint, finger);
   if (turning < kJoints) {

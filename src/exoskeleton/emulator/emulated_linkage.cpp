@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::exoskeleton {
 namespace {
 
@@ -83,7 +85,8 @@ EmulatedLinkage::EmulatedLinkage(const std::string& urdf, Finger finger) {
     since_joint = since_joint * toEigen(joint->parent_to_joint_origin_transform);
     if (joint->type == urdf::Joint::FIXED) continue;
     if (joint->type != urdf::Joint::REVOLUTE || count == bodies_.size()) {
-      throw std::invalid_argument(std::string(name(finger)) + ": joint " + joint->name +
+      throw std::invalid_argument(std::string(name(finger)) + ": joint " +
+                                  base::shortened(joint->name) +
                                   ": the chain must have four revolute joints");
     }
     Body& body = bodies_[count++];
@@ -93,8 +96,8 @@ EmulatedLinkage::EmulatedLinkage(const std::string& urdf, Finger finger) {
     Lump lump;
     addRigidly(*model->getLink(joint->child_link_name), Isometry3d::Identity(), lump);
     if (!(lump.mass > 0.0)) {
-      throw std::invalid_argument(std::string(name(finger)) + ": link " + joint->child_link_name +
-                                  ": needs a mass > 0");
+      throw std::invalid_argument(std::string(name(finger)) + ": link " +
+                                  base::shortened(joint->child_link_name) + ": needs a mass > 0");
     }
     body.mass = lump.mass;
     body.centre = lump.moment / lump.mass;

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/nodes/cloth_simulation/cloth_node.h"
@@ -37,14 +38,14 @@ ClothConfig withChanges(const SetProperties::Request& request, ClothConfig prope
   for (std::size_t i = 0; i < request.names.size(); ++i) {
     const std::string& name = request.names[i];
     if (std::count(request.names.begin(), request.names.end(), name) > 1) {
-      refuse("names has '", name, "' twice: allowed is each once");
+      refuse("names has ", base::quoted(name), " twice: allowed is each once");
     }
     const auto property = std::find_if(kProperties.begin(), kProperties.end(),
                                        [&](const Property& it) { return it.name == name; });
     if (property == kProperties.end()) {
       std::string allowed;
       for (const Property& it : kProperties) allowed += std::string(" ") + it.name;
-      refuse("names[", i, "] = '", name, "' is no property: allowed are", allowed);
+      refuse("names[", i, "] = ", base::quoted(name), " is no property: allowed are", allowed);
     }
     properties.*property->value = request.values[i];
   }
@@ -69,7 +70,8 @@ scene::SheetChange changeOf(const SetSheet::Request& request) {
   } else if (request.diagonals == "alternating") {
     change.diagonals = mesh::Triangulation::kAlternating;
   } else if (!request.diagonals.empty()) {
-    refuse("diagonals is '", request.diagonals, "': allowed are one_way and alternating");
+    refuse("diagonals is ", base::quoted(request.diagonals),
+           ": allowed are one_way and alternating");
   }
   return change;
 }
@@ -129,14 +131,14 @@ bool ClothNode::setFabric(SetFabric::Request& request, SetFabric::Response& resp
     // Read here: the loop does not wait for files.
     material::Fabric fabric = material::loadFabric(findConfigFile("fabrics", request.fabric));
     const Lock lock(changing_);
-    std::string message = "the fabric is " + fabric.name;
+    std::string message = "the fabric is " + base::shortened(fabric.name);
     loop_.execute([&](simulation::SimulatedCloth& simulation) {
       simulation.setFabric(material::scaledBy(factorsOf(properties_), fabric));
       publishMesh(simulation.cloth());
       publishQuality(simulation);
       const std::vector<material::Fabric>& fabrics = simulation.cloth().fabrics();
       for (std::size_t f = 1; f < fabrics.size(); ++f) {
-        message += (f == 1 ? "; regions stay of " : ", ") + fabrics[f].name;
+        message += (f == 1 ? "; regions stay of " : ", ") + base::shortened(fabrics[f].name);
       }
     });
     fabrics_.front() = std::move(fabric);

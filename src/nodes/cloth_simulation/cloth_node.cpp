@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/cloth_simulation/cloth_properties.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/diagnostics_timer.h"
@@ -42,8 +43,8 @@ ClothColours readColours(const ros::NodeHandle& private_node) {
   const std::string what = readText(private_node, "colour_by", "strain or fabric");
   if (what == "strain") return ClothColours::kStrain;
   if (what == "fabric") return ClothColours::kFabric;
-  throw std::invalid_argument("parameter " + private_node.resolveName("colour_by") + " is '" +
-                              what + "': allowed are strain or fabric");
+  throw std::invalid_argument("parameter " + private_node.resolveName("colour_by") + " is " +
+                              base::quoted(what) + ": allowed are strain or fabric");
 }
 
 simulation::SimulatedCloth simulate(const ClothNodeParameters& parameters,

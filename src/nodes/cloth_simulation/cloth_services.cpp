@@ -9,6 +9,8 @@
 #include "haptex/nodes/cloth_simulation/cloth_node.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/service_answer.h"
+#include "haptex/nodes/wire/checked_topics.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/scene/cloth_state_file.h"
 #include "haptex/simulation/particle_requests.h"
 
@@ -37,14 +39,14 @@ void ClothNode::advertiseServices() {
                node_.advertiseService("cloth/step", &ClothNode::step, this),
                node_.advertiseService("cloth/set_fabric", &ClothNode::setFabric, this),
                node_.advertiseService("cloth/set_sheet", &ClothNode::setSheet, this),
-               node_.advertiseService("cloth/set_properties", &ClothNode::setProperties, this),
-               node_.advertiseService("cloth/attach", &ClothNode::attach, this),
-               node_.advertiseService("cloth/move", &ClothNode::move, this),
-               node_.advertiseService("cloth/release", &ClothNode::release, this),
-               node_.advertiseService("cloth/exclude", &ClothNode::exclude, this),
-               node_.advertiseService("cloth/include", &ClothNode::include, this),
-               node_.advertiseService("cloth/get_jacobian", &ClothNode::getJacobian, this),
-               node_.advertiseService("cloth/set_state", &ClothNode::setState, this),
+               advertiseChecked(node_, "cloth/set_properties", &ClothNode::setProperties, this),
+               advertiseChecked(node_, "cloth/attach", &ClothNode::attach, this),
+               advertiseChecked(node_, "cloth/move", &ClothNode::move, this),
+               advertiseChecked(node_, "cloth/release", &ClothNode::release, this),
+               advertiseChecked(node_, "cloth/exclude", &ClothNode::exclude, this),
+               advertiseChecked(node_, "cloth/include", &ClothNode::include, this),
+               advertiseChecked(node_, "cloth/get_jacobian", &ClothNode::getJacobian, this),
+               advertiseChecked(node_, "cloth/set_state", &ClothNode::setState, this),
                node_.advertiseService("cloth/save_state", &ClothNode::saveState, this),
                node_.advertiseService("cloth/query_budget", &ClothNode::queryBudget, this)};
 }
@@ -151,7 +153,7 @@ bool ClothNode::getJacobian(GetJacobian::Request& request, GetJacobian::Response
     loop_.execute([&](simulation::SimulatedCloth& simulation) {
       fillJacobianResponse(simulation.jacobian(request.particles), response);
       response.header.stamp = state_stamp_;
-      response.header.frame_id = kFixedFrame;
+      response.header.frame_id = fixedFrame();
       response.simulated_time = simulation.state().time;
     });
     return counted(response.rows.size(), "block");

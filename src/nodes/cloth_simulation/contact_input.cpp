@@ -4,6 +4,7 @@
 #include <string>
 
 #include "haptex/nodes/cloth_simulation/point_load_messages.h"
+#include "haptex/nodes/wire/checked_topics.h"
 #include "haptex/realtime/steady_clock.h"
 
 namespace haptex::nodes {
@@ -16,8 +17,8 @@ ContactInput::ContactInput(const ros::NodeHandle& node, std::size_t triangle_cou
       };
   ros::NodeHandle subscribing = node;
   subscribing.setCallbackQueue(&queue_);
-  subscriber_ = subscribing.subscribe<haptex::ContactForces>(
-      "cloth/contact_forces", 1, callback, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+  subscriber_ = subscribeChecked(subscribing, "cloth/contact_forces", 1, callback,
+                                 ros::TransportHints().tcpNoDelay());
 }
 
 void ContactInput::setMesh(std::uint32_t mesh, std::size_t triangle_count) {

@@ -1,6 +1,7 @@
 #include "haptex/nodes/cloth_simulation/external_force_input.h"
 
 #include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/wire/checked_topics.h"
 
 namespace haptex::nodes {
 
@@ -18,9 +19,9 @@ ExternalForceInput::ExternalForceInput(const ros::NodeHandle& node, std::size_t 
       };
   ros::NodeHandle subscribing = node;
   subscribing.setCallbackQueue(&queue_);
-  subscriber_ = subscribing.subscribe<haptex::ExternalForces>(
-      "cloth/external_forces", simulation::ForceSources::kMax, callback, ros::VoidConstPtr(),
-      ros::TransportHints().tcpNoDelay());
+  subscriber_ =
+      subscribeChecked(subscribing, "cloth/external_forces", simulation::ForceSources::kMax,
+                       callback, ros::TransportHints().tcpNoDelay());
 }
 
 }  // namespace haptex::nodes

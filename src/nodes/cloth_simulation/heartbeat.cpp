@@ -1,6 +1,7 @@
 #include "haptex/nodes/cloth_simulation/heartbeat.h"
 
 #include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 
@@ -10,7 +11,7 @@ Heartbeat::Heartbeat(const ros::NodeHandle& node, const std::string& topic)
 
 void Heartbeat::beat() {
   if (publisher_.getNumSubscribers() == 0) return;
-  message_.frame_id = kFixedFrame;
+  message_.frame_id = fixedFrame();
   message_.stamp = ros::Time::now();
   ++message_.seq;
   publisher_.publish(message_);

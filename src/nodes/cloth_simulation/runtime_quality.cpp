@@ -8,10 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/config_files.h"
 #include "haptex/nodes/common/node_parameters.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/scene/quality_file.h"
 #include "haptex/scene/scene_fabric.h"
 #include "haptex/simulation/quality_calibration.h"
@@ -41,8 +43,8 @@ scene::Quality presetFor(const material::Fabric& fabric, const std::string& path
   const std::vector<scene::Quality> qualities = qualitiesFor(fabric, of_file, studied);
   if (qualities.size() != 1) {
     throw std::invalid_argument(path + ": has " + std::to_string(qualities.size()) +
-                                " qualities for '" + fabric.name +
-                                "': allowed is a file with one for every fabric");
+                                " qualities for " + base::quoted(fabric.name) +
+                                ": allowed is a file with one for every fabric");
   }
   return qualities.front();
 }
@@ -105,8 +107,8 @@ RuntimeQuality::RuntimeQuality(const std::string& scene_path, const QualityReque
     rungs_.front().quality = simulation::knownTo(scene_, rungs_.front().quality);
   }
   if (!std::isfinite(rungs_[first_].seconds)) {
-    throw std::invalid_argument("quality '" + rungs_[first_].quality.name +
-                                "' cannot compute this scene: its steps are not finite");
+    throw std::invalid_argument("quality " + base::quoted(rungs_[first_].quality.name) +
+                                " cannot compute this scene: its steps are not finite");
   }
   cell_size_ = rungs_[first_].quality.cell_size;
   if (scene_.any_cells && !request.of_scene) scene_ = scene::loadScene(scene_path, cell_size_);
@@ -232,7 +234,7 @@ haptex::ClothQuality RuntimeQuality::message(const simulation::SimulatedCloth& s
   const simulation::CycleTimes times = controller.times();
   haptex::ClothQuality message;
   message.header.stamp = stamp;
-  message.header.frame_id = kFixedFrame;
+  message.header.frame_id = fixedFrame();
   const simulation::Candidate& running = rungs_[simulation.plan()];
   message.quality = pointMessage(running, simulation.cloth().fabric());
   message.quality.cells_as_measured = scene_.any_cells && !running.quality.measured.empty() &&

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/material/fabric_factors.h"
 #include "haptex/material/fabric_file.h"
 
@@ -52,10 +53,12 @@ material::Fabric fabricOfCloth(const haptex::ClothMesh& message, std::size_t ind
   const std::string place = "[" + std::to_string(index) + "]";
   requireAtMost("fabrics" + place, name.size(), kLongestFabricName);
   requireAtMost("fabric_files" + place, file.size(), kLongestFabricFile);
-  material::Fabric fabric = material::parseFabric(file, "fabric '" + name + "' in cloth/mesh");
+  material::Fabric fabric =
+      material::parseFabric(file, "fabric " + base::quoted(name) + " in cloth/mesh");
   if (fabric.name != name) {
-    throw std::invalid_argument("fabric '" + name + "' in cloth/mesh: its file is of the fabric '" +
-                                fabric.name + "'");
+    throw std::invalid_argument("fabric " + base::quoted(name) +
+                                " in cloth/mesh: its file is of the fabric " +
+                                base::quoted(fabric.name));
   }
   return material::scaledBy(factorsOf(message), std::move(fabric));
 }

@@ -2,8 +2,10 @@
 
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -34,7 +36,7 @@ haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
                               const material::FabricFactors& factors, const ros::Time& stamp) {
   haptex::ClothMesh message;
   message.header.stamp = stamp;
-  message.header.frame_id = kFixedFrame;
+  message.header.frame_id = fixedFrame();
   message.mesh = mesh;
   for (const material::Fabric& fabric : cloth.fabrics()) {
     message.fabrics.push_back(fabric.name);
@@ -60,7 +62,7 @@ void fillStateMessage(const simulation::SimulatedCloth& simulation, const ros::T
   const cloth::ClothState& state = simulation.state();
   simulation.cloth().computeForces(state, forces);
   restampStateMessage(simulation, stamp, message);
-  message.header.frame_id = kFixedFrame;
+  message.header.frame_id = fixedFrame();
   fillVectors(state.positions, message.positions);
   fillVectors(state.velocities, message.velocities);
   fillVectors(forces, message.forces);
@@ -98,9 +100,9 @@ void fillJacobianResponse(const std::vector<cloth::JacobianBlock>& blocks,
 }
 
 void requireFixedFrame(const std_msgs::Header& header) {
-  if (header.frame_id != kFixedFrame) {
-    throw std::invalid_argument("header.frame_id = '" + header.frame_id + "': allowed is '" +
-                                kFixedFrame + "'");
+  if (header.frame_id != fixedFrame()) {
+    throw std::invalid_argument("header.frame_id = " + base::quoted(header.frame_id) +
+                                ": allowed is '" + fixedFrame() + "'");
   }
 }
 

@@ -6,6 +6,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::nodes {
 
 std::string findConfigFile(const std::string& directory, const std::string& name) {
@@ -15,13 +17,13 @@ std::string findConfigFile(const std::string& directory, const std::string& name
   const fs::path path = is_path ? fs::path(name) : folder / (name + ".yaml");
   std::error_code ignored;
   if (fs::is_regular_file(path, ignored)) return path.string();
-  if (is_path) throw std::invalid_argument("there is no file '" + name + "'");
+  if (is_path) throw std::invalid_argument("there is no file " + base::quoted(name));
 
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
   }
-  std::string message = "there is no '" + name + "' in " + folder.string() +
+  std::string message = "there is no " + base::quoted(name) + " in " + folder.string() +
                         ": allowed is the path of a file, or a name of";
   for (const std::string& known : names) message += " " + known;
   throw std::invalid_argument(message);

@@ -4,6 +4,7 @@
 
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -14,7 +15,7 @@ using exoskeleton::JointVector;
 std_msgs::Header header(const ros::Time& stamp) {
   std_msgs::Header header;
   header.stamp = stamp;
-  header.frame_id = kHandFrame;
+  header.frame_id = handFrame();
   return header;
 }
 
@@ -65,7 +66,7 @@ void fillFingertips(base::PerFinger<exoskeleton::FingerKinematics>& kinematics,
                     const base::PerFinger<FingerMeasurement>& measured, const ros::Time& stamp,
                     haptex::Fingertips& message) {
   message.header.stamp = stamp;
-  if (message.header.frame_id != kHandFrame) message.header.frame_id = kHandFrame;
+  if (message.header.frame_id != handFrame()) message.header.frame_id = handFrame();
   for (const base::Finger finger : base::kFingers) {
     const FingerMeasurement& of = measured[finger];
     const auto i = static_cast<std::size_t>(finger);

@@ -42,6 +42,23 @@ std::string readText(const ros::NodeHandle& private_node, const std::string& nam
   return text;
 }
 
+std::string portOf(const std::string& text, const std::string& space) {
+  if (text.find('/') != std::string::npos) return text;
+  std::string name = text;
+  // From the outermost part on, without the last one, which every graph has.
+  for (std::size_t end = space.rfind('/'); end != std::string::npos && end > 0;) {
+    const std::size_t begin = space.rfind('/', end - 1);
+    name = space.substr(begin + 1, end - begin - 1) + "_" + name;
+    end = begin;
+  }
+  return name;
+}
+
+std::string readPort(const ros::NodeHandle& private_node, const std::string& name,
+                     const std::string& allowed) {
+  return portOf(readText(private_node, name, allowed), ros::this_node::getNamespace());
+}
+
 RobotDescription readRobotDescription(const ros::NodeHandle& private_node) {
   RobotDescription description;
   if (!private_node.searchParam("robot_description", description.parameter)) {

@@ -2,12 +2,18 @@
 
 #include <ros/ros.h>
 #include <ros/xmlrpc_manager.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <csignal>
 #include <exception>
+#include <stdexcept>
+#include <string>
 
+#include "haptex/base/quoted.h"
+#include "haptex/base/workload.h"
 #include "haptex/nodes/common/socket_thread.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/realtime/scheduling.h"
 #include "haptex/realtime/semaphore.h"
 
@@ -43,7 +49,7 @@ std::string reasonOf(XmlRpc::XmlRpcValue& parameters) {
 /// What the master calls for `rosnode kill` and when another node takes the name. Whatever is wrong
 /// with the request, the node ends: that is the safe answer.
 void handleShutdown(XmlRpc::XmlRpcValue& parameters, XmlRpc::XmlRpcValue& result) {
-  ROS_WARN("Asked to end: %s", reasonOf(parameters).c_str());
+  ROS_WARN("Asked to end: %s", base::shortened(reasonOf(parameters)).c_str());
   askToEnd();
   result = ros::xmlrpc::responseInt(1, "", 0);
 }
@@ -55,6 +61,29 @@ void takeOverEnding() {
   ros::XMLRPCManager::instance()->bind("shutdown", handleShutdown);
 }
 
+/// So that roscpp's own services and tf refuse an array that claims to be long instead of taking
+/// all memory for it. The largest cloth that a scene may have took 1.0 GiB. A limit of the user's
+/// that is lower stays.
+void limitMemory() {
+  constexpr rlim_t kMost = rlim_t{4} << 30;  // bytes of data, without code and shared memory
+  rlimit limit{};
+  if (base::kSanitized || getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur <= kMost) return;
+  limit.rlim_cur = kMost;
+  setrlimit(RLIMIT_DATA, &limit);
+}
+
+/// The parameter tf_prefix of the node or of the nearest namespace, as robot_state_publisher reads
+/// it.
+void takeFramePrefix() {
+  const ros::NodeHandle private_node("~");
+  std::string parameter, prefix;
+  if (!private_node.searchParam("tf_prefix", parameter)) return;
+  if (!private_node.getParam(parameter, prefix)) {
+    throw std::invalid_argument("parameter " + parameter + " is not a string");
+  }
+  setFramePrefix(prefix);
+}
+
 }  // namespace
 
 bool isEnding() { return ending || !ros::ok(); }
@@ -64,10 +93,12 @@ int runNode(int argc, char** argv, const ProcessTraits& traits,
   ros::init(argc, argv, traits.name, ros::init_options::NoSigintHandler);
   const ros::NodeHandle started;  // without a node ROS_FATAL prints nothing
   takeOverEnding();
+  limitMemory();
   preferMessages(traits.on_force_path);
   if (traits.on_force_path) realtime::lockMemory();
   int status = 0;
   try {
+    takeFramePrefix();
     RunningNode running = make();
     ros::AsyncSpinner spinner(traits.spinners);
     spinner.start();

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/vector_messages.h"
 
@@ -148,8 +149,8 @@ void requireValid(const Request& request) {
   const Shape shape = shapeOf(request);
   requireCounts(request, shape);
   if (request.shape != Request::OBSTACLE && !request.obstacle.empty()) {
-    throw std::invalid_argument("obstacle = '" + request.obstacle + "' with shape " + shape.name +
-                                ": leave it empty, or set the shape to OBSTACLE = 4");
+    throw std::invalid_argument("obstacle = " + base::quoted(request.obstacle) + " with shape " +
+                                shape.name + ": leave it empty, or set the shape to OBSTACLE = 4");
   }
   requirePlaces("points", request.points);
   for (std::size_t i = 0; i < request.radii.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/vector_messages.h"
 
 namespace haptex::nodes {
@@ -58,7 +59,7 @@ geometry_msgs::Pose poseMessage(const Eigen::Isometry3d& pose) {
 
 Eigen::Isometry3d transformFrom(const std_msgs::Header& header, const std::string& target,
                                 const tf2_ros::Buffer& transforms) {
-  const std::string what = "header.frame_id = '" + header.frame_id + "'";
+  const std::string what = "header.frame_id = " + base::quoted(header.frame_id);
   if (header.frame_id.empty()) {
     throw std::invalid_argument(what + ": name the frame of the points, '" + target +
                                 "' or one that tf connects with it");
@@ -69,11 +70,11 @@ Eigen::Isometry3d transformFrom(const std_msgs::Header& header, const std::strin
     throw std::invalid_argument(what + ": tf has no transform to '" + target +
                                 "' at the time header.stamp; stamp 0 takes the latest, and a later "
                                 "one can be asked for again when it is there (" +
-                                error.what() + ")");
+                                base::shortened(error.what()) + ")");
   } catch (const tf2::TransformException& error) {
     throw std::invalid_argument(what + ": tf does not connect it with '" + target +
                                 "'; publish that transform, or give the points in '" + target +
-                                "' (" + error.what() + ")");
+                                "' (" + base::shortened(error.what()) + ")");
   }
 }
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/exoskeleton/driver/driver_announcement.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
@@ -65,7 +66,7 @@ void announce(const exoskeleton::DriverSnapshot& snapshot) {
 
 DriverNodeParameters DriverNodeParameters::read(const ros::NodeHandle& private_node) {
   const std::string port =
-      readText(private_node, "port", "the path of a serial port, for example /dev/ttyUSB0");
+      readPort(private_node, "port", "the path of a serial port, for example /dev/ttyUSB0");
   const RobotDescription description = readRobotDescription(private_node);
   return {port, description.urdf, kinematicsOf(description),
           readSwitch(private_node, "auto_recover")};
@@ -164,8 +165,8 @@ void DriverNode::subscriberGone(const ros::SingleSubscriberPublisher& subscriber
       fingers_[finger].filter.commanderDied(ros::Time::now(), realtime::steadyNow());
     }
     ++commander_deaths_;
-    ROS_WARN("%s, which commanded the %s, has gone: its force goes to zero", node.c_str(),
-             name(finger));
+    ROS_WARN("%s, which commanded the %s, has gone: its force goes to zero",
+             base::shortened(node).c_str(), name(finger));
   }
 }
 

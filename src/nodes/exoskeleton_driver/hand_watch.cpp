@@ -8,6 +8,7 @@
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/realtime/steady_clock.h"
 
 namespace haptex::nodes {
@@ -20,7 +21,7 @@ using exoskeleton::HandGravity;
 constexpr double kLookPeriod = 0.01;  // s
 
 std::string noTransform() {
-  return std::string("tf does not connect ") + kHandFrame + " with " + kFixedFrame;
+  return std::string("tf does not connect ") + handFrame() + " with " + fixedFrame();
 }
 
 }  // namespace
@@ -38,9 +39,9 @@ void HandWatch::look() {
   std::optional<Eigen::Isometry3d> hand;
   std::string trouble = noTransform();
   const std::lock_guard<std::mutex> lock(mutex_);  // one thread at a time tells the loop
-  if (transforms_.canTransform(kFixedFrame, kHandFrame, ros::Time(0))) {
+  if (transforms_.canTransform(fixedFrame(), handFrame(), ros::Time(0))) {
     try {
-      const auto transform = transforms_.lookupTransform(kFixedFrame, kHandFrame, ros::Time(0));
+      const auto transform = transforms_.lookupTransform(fixedFrame(), handFrame(), ros::Time(0));
       const ros::Time& stamp = transform.header.stamp;
       // That of a fixed mounting holds for ever, and one ahead of the clock here holds now.
       const Time age =

@@ -2,9 +2,11 @@
 
 #include <sstream>
 
+#include "haptex/base/quoted.h"
 #include "haptex/exoskeleton/control/command_check.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/ros_time.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -67,7 +69,7 @@ std::optional<ForceCommand> ServoForceFilter::receive(const haptex::ServoForce& 
 std::optional<ServoForceFlaw> ServoForceFilter::findFlaw(const haptex::ServoForce& message,
                                                          const ros::Time& now,
                                                          Time steady_now) const {
-  if (message.header.frame_id != kHandFrame) return ServoForceFlaw::kFrame;
+  if (message.header.frame_id != handFrame()) return ServoForceFlaw::kFrame;
   switch (exoskeleton::findFlaw(commandOf(message))) {
     case CommandFlaw::kNotFinite:
       return ServoForceFlaw::kNotFinite;
@@ -94,8 +96,8 @@ std::string ServoForceFilter::explain(const haptex::ServoForce& message,
   const double age = base::milliseconds(between(message.header.stamp, now));
   switch (last_flaw_) {
     case ServoForceFlaw::kFrame:
-      text << "header.frame_id = '" << message.header.frame_id << "': allowed is '" << kHandFrame
-           << "'";
+      text << "header.frame_id = " << base::quoted(message.header.frame_id) << ": allowed is '"
+           << handFrame() << "'";
       break;
     case ServoForceFlaw::kNotFinite:
     case ServoForceFlaw::kTooLarge:

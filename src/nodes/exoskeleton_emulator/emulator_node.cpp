@@ -17,6 +17,7 @@
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -44,7 +45,7 @@ std::string readPath(const ros::NodeHandle& private_node) {
 geometry_msgs::WrenchStamped forceMessage(const Eigen::Vector3d& force, const ros::Time& stamp) {
   geometry_msgs::WrenchStamped message;
   message.header.stamp = stamp;
-  message.header.frame_id = kHandFrame;
+  message.header.frame_id = handFrame();
   message.wrench.force = vectorMessage(force);
   return message;
 }
@@ -66,7 +67,7 @@ base::PerFinger<TruthTopics> advertiseTruth(ros::NodeHandle& node) {
 
 EmulatorNodeParameters EmulatorNodeParameters::read(const ros::NodeHandle& private_node) {
   const std::string link =
-      readText(private_node, "link", "the path of the symbolic link to the emulator's port");
+      readPort(private_node, "link", "the path of the symbolic link to the emulator's port");
   const RobotDescription description = readRobotDescription(private_node);
   kinematicsOf(description);  // throws what the emulator would, with the parameter's name
   return {link, description.urdf, exoskeleton::loadHandPath(readPath(private_node)),
@@ -152,8 +153,8 @@ void EmulatorNode::publishHand() {
   const exoskeleton::HandPlace& place = places_.value();
   geometry_msgs::TransformStamped message;
   message.header.stamp = ros::Time::now();
-  message.header.frame_id = kFixedFrame;
-  message.child_frame_id = kHandFrame;
+  message.header.frame_id = fixedFrame();
+  message.child_frame_id = handFrame();
   message.transform = transformMessage(place.hand_base);
   broadcaster_.sendTransform(message);
   if (hands_++ % kHandsPerShow == 0) targets_.show(place);

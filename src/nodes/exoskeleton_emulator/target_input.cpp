@@ -6,6 +6,7 @@
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/markers/hand_markers.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -43,8 +44,8 @@ TargetInput::TargetInput(const ros::NodeHandle& node, exoskeleton::HandMotion& m
 void TargetInput::receivePoint(Finger finger, const geometry_msgs::PointStamped& message) {
   count_.count(base::name(finger) + std::string("/target"), [&] {
     Eigen::Vector3d target = vector(message.point);
-    if (target.allFinite() && message.header.frame_id != kHandFrame) {
-      target = transformFrom(message.header, kHandFrame, transforms_) * target;
+    if (target.allFinite() && message.header.frame_id != handFrame()) {
+      target = transformFrom(message.header, handFrame(), transforms_) * target;
     }
     motion_.receive(finger, target);
   });

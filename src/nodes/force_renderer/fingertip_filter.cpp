@@ -3,9 +3,11 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -13,9 +15,9 @@ namespace {
 using base::Time;
 
 void requireHandFrame(const std_msgs::Header& header) {
-  if (header.frame_id == kHandFrame) return;
-  throw std::invalid_argument("header.frame_id = '" + header.frame_id + "': allowed is '" +
-                              kHandFrame + "'");
+  if (header.frame_id == handFrame()) return;
+  throw std::invalid_argument("header.frame_id = " + base::quoted(header.frame_id) +
+                              ": allowed is '" + handFrame() + "'");
 }
 
 void requireNow(const std_msgs::Header& header, const ros::Time& now) {

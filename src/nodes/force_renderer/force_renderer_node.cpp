@@ -8,11 +8,14 @@
 #include <stdexcept>
 #include <thread>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/force_renderer/renderer_messages.h"
+#include "haptex/nodes/wire/checked_topics.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/scene/scene.h"
 
@@ -53,8 +56,8 @@ base::PerFinger<bool> readFingers(const ros::NodeHandle& private_node) {
   base::PerFinger<bool> touches;
   for (const Finger finger : kFingers) touches[finger] = fingers == base::name(finger);
   if (touches[Finger::kIndex] || touches[Finger::kThumb]) return touches;
-  throw std::invalid_argument("parameter " + private_node.resolveName("fingers") + " = '" +
-                              fingers + "': " + allowed);
+  throw std::invalid_argument("parameter " + private_node.resolveName("fingers") + " = " +
+                              base::quoted(fingers) + ": " + allowed);
 }
 
 std::string topic(Finger finger, const char* of_finger) {
@@ -159,23 +162,21 @@ void ForceRendererNode::subscribe() {
       "exoskeleton/fingertips", 1, take_fingertips, ros::VoidConstPtr(), hints);
   const boost::function<void(const haptex::ClothState&)> take_state =
       [this](const haptex::ClothState& message) { receiveState(message); };
-  state_subscriber_ = input_node_.subscribe<haptex::ClothState>("cloth/state", 1, take_state,
-                                                                ros::VoidConstPtr(), hints);
+  state_subscriber_ = subscribeChecked(input_node_, "cloth/state", 1, take_state, hints);
   const boost::function<void(const std_msgs::Header&)> take_heartbeat =
       [this](const std_msgs::Header&) { loop_.receiveHeartbeat(realtime::steadyNow()); };
   heartbeat_subscriber_ = device_node_.subscribe<std_msgs::Header>(
       "cloth/heartbeat", 1, take_heartbeat, ros::VoidConstPtr(), hints);
   const boost::function<void(const haptex::ClothMeshConstPtr&)> take_mesh =
       [this](const haptex::ClothMeshConstPtr& message) { supplier_.setMesh(message); };
-  mesh_subscriber_ =
-      node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh, ros::VoidConstPtr(), hints);
+  mesh_subscriber_ = subscribeChecked(node_, "cloth/mesh", 1, take_mesh, hints);
   // After the listener, which subscribed before on the same thread: the buffer knows them then.
   const boost::function<void(const tf2_msgs::TFMessage&)> take_transforms =
       [this](const tf2_msgs::TFMessage&) { receiveTransforms(); };
-  transform_subscriber_ = input_node_.subscribe<tf2_msgs::TFMessage>(
-      "/tf", kTransformQueue, take_transforms, ros::VoidConstPtr(), hints);
+  transform_subscriber_ =
+      subscribeChecked(input_node_, "/tf", kTransformQueue, take_transforms, hints);
   static_transform_subscriber_ =
-      input_node_.subscribe<tf2_msgs::TFMessage>("/tf_static", kTransformQueue, take_transforms);
+      subscribeChecked(input_node_, "/tf_static", kTransformQueue, take_transforms);
 }
 
 void ForceRendererNode::subscribeToFinger(Finger finger) {
@@ -245,10 +246,10 @@ void ForceRendererNode::receiveTransforms() {
 }
 
 void ForceRendererNode::receiveHandBase() {
-  if (!transforms_.canTransform(kFixedFrame, kHandFrame, ros::Time(0))) return;
+  if (!transforms_.canTransform(fixedFrame(), handFrame(), ros::Time(0))) return;
   try {
     const geometry_msgs::TransformStamped transform =
-        transforms_.lookupTransform(kFixedFrame, kHandFrame, ros::Time(0));
+        transforms_.lookupTransform(fixedFrame(), handFrame(), ros::Time(0));
     const Eigen::Isometry3d pose = fromMessage(transform.transform);
     const Time now = realtime::steadyNow();
     const bool fixed = transform.header.stamp.isZero();
@@ -268,8 +269,8 @@ void ForceRendererNode::receiveHandBase() {
 void ForceRendererNode::receiveArray(Finger finger) {
   FingerTopics& topics = fingers_[finger];
   if (topics.has_array) return;
-  const std::string tip = std::string(base::name(finger)) + "_tip";
-  const std::string array = std::string(base::name(finger)) + "_tactile";
+  const std::string tip = tipFrame(finger);
+  const std::string array = arrayFrame(finger);
   if (!transforms_.canTransform(tip, array, ros::Time(0))) return;
   try {
     const auto transform = transforms_.lookupTransform(tip, array, ros::Time(0));

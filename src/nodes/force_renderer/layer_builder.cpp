@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/cloth_fabric.h"
 #include "haptex/nodes/force_renderer/renderer_messages.h"
 #include "haptex/scene/scene.h"
@@ -25,7 +26,7 @@ std::unique_ptr<contact::HapticLayer> LayerBuilder::build(const haptex::ClothMes
     return std::make_unique<contact::HapticLayer>(std::move(mesh), std::move(fabrics), effects,
                                                   settings_, obstacles_);
   } catch (const std::exception& error) {
-    throw std::invalid_argument("fabric '" + name + "': " + error.what());
+    throw std::invalid_argument("fabric " + base::quoted(name) + ": " + error.what());
   }
 }
 

@@ -9,6 +9,7 @@
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/proximity_messages.h"
 #include "haptex/nodes/common/vector_messages.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -121,7 +122,7 @@ void readState(const haptex::ClothState& message, simulation::LargeScaleState& s
 void fillServoForce(const contact::FingertipContact& contact, double gain,
                     const simulation::FrameMotion& hand, const ros::Time& stamp,
                     haptex::ServoForce& message) {
-  setHeader(stamp, kHandFrame, message.header);
+  setHeader(stamp, handFrame(), message.header);
   const Eigen::Matrix3d to_hand = hand.pose.linear().transpose();
   const Eigen::Vector3d arm = contact.position - hand.pose.translation();
   const Eigen::Vector3d carried = hand.velocity + hand.angular_velocity.cross(arm);
@@ -138,7 +139,7 @@ void fillContact(const contact::FingertipContact& contact,
                  const tactile::PerContactor<double>& contactor_forces,
                  const tactile::ArrayPlacement& array, double gain, const ros::Time& stamp,
                  haptex::Contact& message) {
-  setHeader(stamp, kFixedFrame, message.header);
+  setHeader(stamp, fixedFrame(), message.header);
   static const contact::FingertipContact no_contact;
   const contact::FingertipContact& shown = gain > 0.0 ? contact : no_contact;
   message.touching = shown.touching;
@@ -165,7 +166,7 @@ void fillContact(const contact::FingertipContact& contact,
 
 void fillContactForces(const std::vector<cloth::PointLoad>& loads, const ros::Time& stamp,
                        haptex::ContactForces& message) {
-  setHeader(stamp, kFixedFrame, message.header);
+  setHeader(stamp, fixedFrame(), message.header);
   const std::size_t count = loads.size();
   message.triangles.resize(count);
   message.barycentric.resize(3 * count);
@@ -184,7 +185,7 @@ void fillContactForces(const std::vector<cloth::PointLoad>& loads, const ros::Ti
 
 haptex::QueryProximity::Request volumeQuery(const contact::SearchVolume& volume) {
   haptex::QueryProximity::Request request;
-  request.header.frame_id = kFixedFrame;
+  request.header.frame_id = fixedFrame();
   request.shape = haptex::QueryProximity::Request::CAPSULE;
   request.points = {pointMessage(volume.begin), pointMessage(volume.end)};
   request.radii = {volume.radius};

@@ -9,6 +9,7 @@
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -53,8 +54,8 @@ void HandTrackerNode::receive(const geometry_msgs::PoseStamped& message) {
     const Eigen::Isometry3d hand = filter_.receive(message, transforms_, ros::Time::now());
     geometry_msgs::TransformStamped transform;
     transform.header.stamp = message.header.stamp;
-    transform.header.frame_id = kFixedFrame;
-    transform.child_frame_id = kHandFrame;
+    transform.header.frame_id = fixedFrame();
+    transform.child_frame_id = handFrame();
     transform.transform = transformMessage(hand);
     broadcaster_.sendTransform(transform);
   });

@@ -5,9 +5,11 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -43,7 +45,7 @@ Isometry3d parseMounting(const std::string& text) {
   const bool six = (in >> x >> y >> z >> yaw >> pitch >> roll) && !(in >> rest);
   if (!six || !isNear({x, y, z}) || !Vector3d(yaw, pitch, roll).allFinite()) {
     std::ostringstream message;
-    message << "'" << text << "': allowed are six finite numbers, x y z (m, up to "
+    message << base::quoted(text) << ": allowed are six finite numbers, x y z (m, up to "
             << TrackerFilter::kFarthest << ") yaw pitch roll (rad)";
     throw std::invalid_argument(message.str());
   }
@@ -55,12 +57,12 @@ Isometry3d TrackerFilter::receive(const geometry_msgs::PoseStamped& message,
                                   const tf2_ros::Buffer& transforms, const ros::Time& now) {
   const Isometry3d body = fromMessage(message.pose);
   requireNow(message.header.stamp, now);
-  const Taken next{transformFrom(message.header, kFixedFrame, transforms) * body * mounting_,
+  const Taken next{transformFrom(message.header, fixedFrame(), transforms) * body * mounting_,
                    message.header.stamp};
   if (!isNear(next.hand.translation())) {
     std::ostringstream text;
     text << "the hand would be at (" << next.hand.translation().transpose() << ") in "
-         << kFixedFrame << ": allowed are coordinates up to " << kFarthest << " m";
+         << fixedFrame() << ": allowed are coordinates up to " << kFarthest << " m";
     throw std::invalid_argument(text.str());
   }
   requireReachable(next);

@@ -5,6 +5,7 @@
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/marker_shapes.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -70,7 +71,7 @@ visualization_msgs::MarkerArray targetMarkers(const exoskeleton::HandPlace& plac
   visualization_msgs::MarkerArray markers;
   for (const Finger finger : base::kFingers) {
     Marker marker = sphere(colour(finger), kSphereSize, 1.0F);
-    marker.header.frame_id = kHandFrame;
+    marker.header.frame_id = handFrame();
     marker.frame_locked = true;
     marker.ns = base::name(finger);
     marker.pose.position = pointMessage(place.fingertips[finger]);
@@ -84,7 +85,7 @@ visualization_msgs::MarkerArray forceMarkers(
   visualization_msgs::MarkerArray markers;
   for (const Finger finger : base::kFingers) {
     Marker marker = makeMarker(base::name(finger), 0, Marker::ARROW);
-    marker.header.frame_id = kHandFrame;
+    marker.header.frame_id = handFrame();
     marker.header.stamp = stamp;
     marker.color = colourMessage(colour(finger));
     marker.scale.x = kArrowShaft;
@@ -105,7 +106,7 @@ visualization_msgs::MarkerArray forceMarkers(
 visualization_msgs::MarkerArray stateMarker(const std::string& text, exoskeleton::Mode mode,
                                             const ros::Time& stamp) {
   Marker marker = makeMarker("state", 0, Marker::TEXT_VIEW_FACING);
-  marker.header.frame_id = kHandFrame;
+  marker.header.frame_id = handFrame();
   marker.header.stamp = stamp;
   marker.frame_locked = true;
   marker.pose.position.z = kTextAbove;
@@ -122,7 +123,7 @@ visualization_msgs::MarkerArray stateMarker(const std::string& text, exoskeleton
 }
 
 InteractiveMarker fingertipMarker(Finger finger, const exoskeleton::HandPlace& place) {
-  InteractiveMarker marker = interactive(base::name(finger), kHandFrame, kFingertipSize);
+  InteractiveMarker marker = interactive(base::name(finger), handFrame(), kFingertipSize);
   marker.pose.position = pointMessage(place.fingertips[finger]);
   marker.pose.orientation.w = 1.0;
   InteractiveMarkerControl handle;
@@ -138,7 +139,7 @@ InteractiveMarker fingertipMarker(Finger finger, const exoskeleton::HandPlace& p
 }
 
 InteractiveMarker handMarker(const exoskeleton::HandPlace& place) {
-  InteractiveMarker marker = interactive(kHandMarker, kFixedFrame, kHandSize);
+  InteractiveMarker marker = interactive(kHandMarker, fixedFrame(), kHandSize);
   marker.pose = poseMessage(place.hand_base);
   for (int axis = 0; axis < 3; ++axis) {
     marker.controls.push_back(control(axis, InteractiveMarkerControl::ROTATE_AXIS));

@@ -6,6 +6,7 @@
 
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/vector_messages.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -58,7 +59,7 @@ std::vector<Ring> ringsOf(const proximity::TaperedCapsule& capsule, const Eigen:
 
 visualization_msgs::Marker makeMarker(const std::string& name, int id, int type) {
   visualization_msgs::Marker marker;
-  marker.header.frame_id = kFixedFrame;
+  marker.header.frame_id = fixedFrame();
   marker.ns = name;
   marker.id = id;
   marker.type = type;

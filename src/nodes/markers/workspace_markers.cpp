@@ -4,6 +4,7 @@
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/marker_shapes.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -38,7 +39,7 @@ Marker cubeMarker() {
 Marker reachMarker(const std::string& urdf, Finger finger) {
   Marker marker =
       makeMarker(std::string("reach of the ") + base::name(finger), 0, Marker::TRIANGLE_LIST);
-  marker.header.frame_id = kHandFrame;
+  marker.header.frame_id = handFrame();
   marker.frame_locked = true;
   for (const Vector3d& corner : exoskeleton::ReachRim(urdf, finger).surface(kReachCells)) {
     marker.points.push_back(pointMessage(corner));

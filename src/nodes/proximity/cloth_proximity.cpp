@@ -9,8 +9,10 @@
 #include <string>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -157,7 +159,7 @@ proximity::RigidObstacle ClothProximity::requireObstacle(const std::string& name
   if (found != obstacles_.end()) return found->second;
   std::string known;
   for (const auto& [known_name, obstacle] : obstacles_) known += " " + known_name;
-  throw std::invalid_argument("obstacle = '" + name + "': " +
+  throw std::invalid_argument("obstacle = " + base::quoted(name) + ": " +
                               (known.empty() ? "there is none in the scene; parameter ~scene names "
                                                "the scene file that lists them"
                                              : "those of the scene are" + known));
@@ -172,7 +174,8 @@ void ClothProximity::moveObstacle(const std::string& name, const haptex::ClothSt
   const auto body = bodies_.find(name);
   if (body == bodies_.end()) return;
   if (body->second >= state.bodies.size()) {
-    throw std::invalid_argument("obstacle = '" + name + "': it has mass, and cloth/state has " +
+    throw std::invalid_argument("obstacle = " + base::quoted(name) +
+                                ": it has mass, and cloth/state has " +
                                 std::to_string(state.bodies.size()) + " of the " +
                                 std::to_string(bodies_.size()) + " bodies of the scene");
   }
@@ -223,7 +226,7 @@ haptex::QueryProximity::Response ClothProximity::compute(const Request& request,
     response.header.stamp = view.state.header.stamp;
     response.step = view.state.step;
   }
-  response.header.frame_id = kFixedFrame;
+  response.header.frame_id = fixedFrame();
   fillResponse(found, request.distance, response);
   return response;
 }

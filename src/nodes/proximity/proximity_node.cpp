@@ -9,6 +9,8 @@
 #include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/wire/checked_topics.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/scene/scene.h"
 
 namespace haptex::nodes {
@@ -88,13 +90,15 @@ ProximityNode::ProximityNode(const ros::NodeHandle& node, const ros::NodeHandle&
   marker_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("proximity/markers", 2);
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   ros::NodeHandle input_node = input_thread_.handle(node_);
-  mesh_subscriber_ =
-      input_node.subscribe("cloth/mesh", 1, &ProximityNode::receiveMesh, this, hints);
+  const boost::function<void(const haptex::ClothMeshConstPtr&)> take_mesh =
+      [this](const haptex::ClothMeshConstPtr& message) { receiveMesh(message); };
+  mesh_subscriber_ = subscribeChecked(input_node, "cloth/mesh", 1, take_mesh, hints);
   // Only the latest state counts.
-  state_subscriber_ =
-      input_node.subscribe("cloth/state", 1, &ProximityNode::receiveState, this, hints);
-  query_service_ = service_threads_.handle(node_).advertiseService("proximity/query",
-                                                                   &ProximityNode::query, this);
+  const boost::function<void(const haptex::ClothStateConstPtr&)> take_state =
+      [this](const haptex::ClothStateConstPtr& message) { receiveState(message); };
+  state_subscriber_ = subscribeChecked(input_node, "cloth/state", 1, take_state, hints);
+  query_service_ = advertiseChecked(service_threads_.handle(node_), "proximity/query",
+                                    &ProximityNode::query, this);
   marker_timer_ = node_.createSteadyTimer(
       ros::WallDuration(kMarkerPeriod), [this](const ros::SteadyTimerEvent&) { publishMarkers(); });
   diagnostics_timer_ = publishOnceASecond(node_, diagnostics_);
@@ -115,7 +119,9 @@ bool ProximityNode::query(haptex::QueryProximity::Request& request,
   std::optional<Eigen::Isometry3d> world_from_frame;
   response = proximity_.answer(
       request,
-      [&] { return *(world_from_frame = transformFrom(request.header, kFixedFrame, transforms_)); },
+      [&] {
+        return *(world_from_frame = transformFrom(request.header, fixedFrame(), transforms_));
+      },
       ClothProximity::Clock::now());
   if (!response.success) {
     ROS_WARN_THROTTLE(1.0, "proximity/query refused: %s", response.message.c_str());

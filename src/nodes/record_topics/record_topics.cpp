@@ -1,6 +1,7 @@
 // record_topics BAG [--exclude REGEX]... REGEX...: see haptex/nodes/record_topics/bag_recorder.h.
 #include <ros/ros.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <regex>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/record_topics/bag_recorder.h"
 
 namespace {
@@ -16,7 +18,8 @@ std::regex expressionOf(const std::string& text) {
   try {
     return std::regex(text);
   } catch (const std::regex_error& error) {
-    throw std::invalid_argument("'" + text + "' is no regular expression: " + error.what());
+    throw std::invalid_argument(haptex::base::quoted(text) +
+                                " is no regular expression: " + error.what());
   }
 }
 
@@ -37,9 +40,11 @@ haptex::nodes::RecordedTopics topicsOf(const std::vector<std::string>& words) {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "record_topics");
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow any more is told like a full disk
   try {
     if (argc < 2) throw std::invalid_argument("no bag is named");
     haptex::nodes::RecordedTopics topics = topicsOf({argv + 2, argv + argc});
+    topics.space = ros::this_node::getNamespace();
     haptex::nodes::BagRecorder(argv[1], std::move(topics)).run();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "record_topics: %s\n", error.what());

@@ -4,6 +4,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "haptex/base/quoted.h"
+#include "haptex/nodes/wire/frame_names.h"
+
 namespace haptex::nodes {
 namespace {
 
@@ -19,10 +22,10 @@ double displacementIn(const char* field, int contactor, double micrometres) {
 }  // namespace
 
 tactile::ArrayAmplitudes amplitudesIn(base::Finger finger, const haptex::Tactile& message) {
-  const std::string frame = std::string(base::name(finger)) + "_tactile";
+  const std::string frame = arrayFrame(finger);
   if (message.header.frame_id != frame) {
-    throw std::invalid_argument("frame_id = '" + message.header.frame_id + "': allowed is " +
-                                frame);
+    throw std::invalid_argument("frame_id = " + base::quoted(message.header.frame_id) +
+                                ": allowed is " + frame);
   }
   tactile::ArrayAmplitudes amplitudes;
   for (int i = 0; i < tactile::kContactors; ++i) {

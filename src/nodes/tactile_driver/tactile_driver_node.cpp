@@ -2,10 +2,12 @@
 
 #include <memory>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/config_files.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/tactile_driver/array_messages.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/serial/port_keeper.h"
 
@@ -30,7 +32,7 @@ tactile::Calibration readCalibration(const ros::NodeHandle& private_node) {
 }
 
 TactileDriverParameters TactileDriverParameters::read(const ros::NodeHandle& private_node) {
-  return {readText(private_node, "port", "the path of a serial port, for example /dev/ttyUSB1"),
+  return {readPort(private_node, "port", "the path of a serial port, for example /dev/ttyUSB1"),
           readCalibration(private_node)};
 }
 
@@ -86,8 +88,8 @@ void TactileDriverNode::subscriberGone(const ros::SingleSubscriberPublisher& sub
     if (!sources_.hasDied(finger, node)) continue;
     driver_.sourceDied(finger);
     ++source_deaths_;
-    ROS_WARN("%s, which drove the contactors of the %s, has gone: they rest", node.c_str(),
-             base::name(finger));
+    ROS_WARN("%s, which drove the contactors of the %s, has gone: they rest",
+             base::shortened(node).c_str(), base::name(finger));
   }
 }
 
@@ -113,7 +115,7 @@ void TactileDriverNode::publishState() {
   state_due_ = now + kStatePeriod;
   haptex::ArrayState state;
   state.header.stamp = ros::Time::now();
-  state.header.frame_id = kHandFrame;
+  state.header.frame_id = handFrame();
   state.connected = static_cast<std::uint8_t>(connected);
   state.message = message;
   state_publisher_.publish(state);

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/service_answer.h"
@@ -29,8 +30,8 @@ Finger readFinger(const ros::NodeHandle& private_node, const std::string& parame
   for (const Finger finger : kFingers) {
     if (text == base::name(finger)) return finger;
   }
-  throw std::invalid_argument("parameter " + private_node.resolveName(parameter) + " = '" + text +
-                              "': allowed are index and thumb");
+  throw std::invalid_argument("parameter " + private_node.resolveName(parameter) + " = " +
+                              base::quoted(text) + ": allowed are index and thumb");
 }
 
 int readContactor(const ros::NodeHandle& private_node, const std::string& parameter) {
@@ -62,7 +63,7 @@ std::optional<tactile::PlayedContactor> readPlayed(const ros::NodeHandle& privat
 }  // namespace
 
 TactileEmulatorParameters TactileEmulatorParameters::read(const ros::NodeHandle& private_node) {
-  return {readText(private_node, "link", "the path of the symbolic link to the emulator's port"),
+  return {readPort(private_node, "link", "the path of the symbolic link to the emulator's port"),
           readCalibration(private_node), readPlayed(private_node)};
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/nodes/common/cloth_fabric.h"
 #include "haptex/nodes/common/config_files.h"
@@ -11,7 +12,7 @@
 namespace haptex::nodes {
 
 std::string SurfaceChoice::withoutSurface(const FabricOfFile& read) {
-  return "the fabric '" + read.fabric.name + "' has no surface: " + read.path +
+  return "the fabric " + base::quoted(read.fabric.name) + " has no surface: " + read.path +
          " needs the key surface";
 }
 

@@ -7,6 +7,7 @@
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/realtime/rate_meter.h"
 #include "haptex/tactile/contactor_array.h"
 
@@ -68,7 +69,7 @@ void paintRectangle(int index, const Eigen::Vector3f& colour, Marker& marker) {
 /// Per contactor a rectangle for each channel.
 Marker makePad(Finger finger) {
   Marker marker = makeMarker("tactile_pads", static_cast<int>(finger), Marker::TRIANGLE_LIST);
-  marker.header.frame_id = std::string(base::name(finger)) + "_tactile";
+  marker.header.frame_id = arrayFrame(finger);
   marker.frame_locked = true;  // and its stamp 0: it stays in this frame
   const double cell = tactile::kContactorSpacing;
   for (int i = 0; i < tactile::kContactors; ++i) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "haptex/nodes/common/cloth_messages.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
 namespace {
@@ -76,7 +77,7 @@ std::optional<tactile::TouchedFabric> touchedFabric(const haptex::Contact& messa
 
 haptex::Tactile tactileMessage(base::Finger finger) {
   haptex::Tactile message;
-  message.header.frame_id = std::string(base::name(finger)) + "_tactile";
+  message.header.frame_id = arrayFrame(finger);
   for (int i = 0; i < tactile::kContactors; ++i) {
     const Eigen::Vector2d place = tactile::contactorPlace(i);
     message.places[i].x = place.x();

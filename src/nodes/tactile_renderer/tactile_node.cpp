@@ -5,6 +5,7 @@
 
 #include "haptex/nodes/common/node_parameters.h"
 #include "haptex/nodes/common/service_answer.h"
+#include "haptex/nodes/wire/checked_topics.h"
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/scene/scene.h"
 #include "haptex/tactile/drive_waveform.h"
@@ -88,7 +89,7 @@ void TactileNode::subscribe() {
   }
   const boost::function<void(const haptex::ClothMesh&)> take_mesh =
       [this](const haptex::ClothMesh& message) { receiveMesh(message); };
-  mesh_subscriber_ = node_.subscribe<haptex::ClothMesh>("cloth/mesh", 1, take_mesh);
+  mesh_subscriber_ = subscribeChecked(node_, "cloth/mesh", 1, take_mesh);
   const boost::function<void(const haptex::ArrayState&)> take_array =
       [this](const haptex::ArrayState& message) { array_message_ = message.message; };
   array_subscriber_ = node_.subscribe<haptex::ArrayState>("tactile/array_state", 1, take_array);

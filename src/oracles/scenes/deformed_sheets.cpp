@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::oracles {
 namespace {
 
@@ -125,7 +127,7 @@ std::vector<Vector3d> deformedSheet(const mesh::ClothMesh& mesh, const std::stri
   for (DeformedSheet& sheet : deformedSheets(mesh)) {
     if (sheet.name == name) return std::move(sheet.positions);
   }
-  throw std::invalid_argument("there is no deformed sheet '" + name + "'");
+  throw std::invalid_argument("there is no deformed sheet " + base::quoted(name));
 }
 
 }  // namespace haptex::oracles

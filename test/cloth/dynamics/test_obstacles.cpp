@@ -195,7 +195,7 @@ TEST_F(ObstacleList, RefusesAMeshOfTooManyTriangles) {
   for (int i = 0; i < 200001; ++i) obj << "f 1 2 3\n";
   obj.close();
   EXPECT_EQ(refusalOf("obstacles: [{name: a, mesh: many, position: [0, 0, 0]}]\n"),
-            path() + ": obstacles[0].mesh: 200001 triangles, at most 200000 are allowed");
+            (root_ / "meshes/many.obj").string() + ": line 200004: more than 200000 triangles");
 }
 
 TEST_F(ObstacleList, AcceptsValuesAtTheirLimits) {
@@ -284,10 +284,11 @@ TEST_F(ObstacleList, NamesFileAndLineOfABadSurface) {
   EXPECT_EQ(refusal(kSurface + "f 1 2 3 4\n"),
             mesh + ": line 9: a face has 4 corners, must be a triangle");
   EXPECT_EQ(refusal(kSurface + "f 1 2 5\n"),
-            mesh + ": line 9: position '5' does not exist, 4 are defined before this line");
+            mesh + ": line 9: position 5 does not exist, 4 are defined before this line");
   EXPECT_EQ(refusal(kSurface + "f 1 2 b/1\n"),
-            mesh + ": line 9: position 'b' does not exist, 4 are defined before this line");
-  EXPECT_EQ(refusal(kSurface + "v 1 2 up\n"), mesh + ": line 9: 'up' must be a finite number");
+            mesh + ": line 9: position of a corner must be a whole number");
+  EXPECT_EQ(refusal(kSurface + "v 1 2 up\n"),
+            mesh + ": line 9: number 3 of 'v' must be a finite number");
 }
 
 TEST_F(ObstacleList, NamesTheSurfaceThatCannotBeRead) {

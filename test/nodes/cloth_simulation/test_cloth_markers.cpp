@@ -9,6 +9,7 @@
 #include "haptex/nodes/cloth_simulation/cloth_markers.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes::test_cloth_markers {
 namespace {
@@ -133,7 +134,7 @@ TEST(ClothMarkers, AreAllStampedAndInTheFixedFrame) {
   ClothMarkers markers(simulation.cloth().mesh(), 0.01);
   int labels = 0;
   for (const Marker& marker : markers.update(simulation, ros::Time(7)).markers) {
-    EXPECT_EQ(marker.header.frame_id, kFixedFrame);
+    EXPECT_EQ(marker.header.frame_id, fixedFrame());
     EXPECT_EQ(marker.header.stamp, ros::Time(7));
     if (marker.text.find('%') != std::string::npos) ++labels;
   }

@@ -9,6 +9,7 @@
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
 #include "haptex/nodes/proximity/proximity_markers.h"
+#include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes::test_proximity_markers {
 namespace {
@@ -258,7 +259,7 @@ TEST(ProximityMarkers, AreAllStampedInTheFixedFrameAndNamedOnce) {
   ProximityMarkers markers(oneOfEachKind());
   std::set<std::pair<std::string, int>> names;
   for (const Marker& marker : markers.update(someScene(), {}).markers) {
-    EXPECT_EQ(marker.header.frame_id, kFixedFrame);
+    EXPECT_EQ(marker.header.frame_id, fixedFrame());
     EXPECT_EQ(marker.header.stamp, ros::Time(7));
     EXPECT_TRUE(names.insert({marker.ns, marker.id}).second);
   }

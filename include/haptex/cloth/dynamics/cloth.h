@@ -14,6 +14,7 @@
 #include "haptex/cloth/forces/modelled_effects.h"
 #include "haptex/cloth/forces/point_loads.h"
 #include "haptex/cloth/forces/self_contact/self_contact.h"
+#include "haptex/cloth/forces/ties.h"
 #include "haptex/linear/block_matrix.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
@@ -48,7 +49,8 @@ struct AttachmentPath {
 class Cloth {
  public:
   /// @throws std::invalid_argument if the mesh has defects, the density is not finite and > 0,
-  ///   gravity is not finite, or as addFabricForces()
+  ///   gravity is not finite, particles are tied and the cloth collides with itself, or as
+  ///   addFabricForces() and mesh::resolveTies()
   Cloth(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
         const ModelledEffects& effects);
   /// Of one fabric.
@@ -61,19 +63,24 @@ class Cloth {
   const std::vector<material::Fabric>& fabrics() const { return fabrics_; }
   const ModelledEffects& effects() const { return effects_; }
   std::size_t particleCount() const { return masses_.size(); }
-  /// Lumped particle masses (kg): a third of each adjacent triangle.
+  /// Lumped particle masses (kg): a third of each adjacent triangle. Those of tied particles are
+  /// with the particles that they are tied to, and theirs are 0.
   const std::vector<double>& masses() const { return masses_; }
   /// All that act, but for contacts: gravity and user-defined forces, the fabric's, the air's, and
   /// point loads.
   const ForceSum& forces() const { return *forces_; }
   /// That of the cloth with itself among them; null if it is not modelled.
   const SelfContact* selfContact() const { return self_contact_; }
+  /// Which particles are sewn to others. They go with them in every step, act by them, and have no
+  /// contacts of their own.
+  const Ties& ties() const { return *ties_; }
   /// A matrix with the pattern that the forces are bound to.
   linear::SymmetricBlockMatrix pattern() const;
   /// Of its blocks below the diagonal.
   int patternSize() const { return pattern_size_; }
 
-  /// The state at rest in the initial positions at time 0, without friction in what is bent there.
+  /// The state at rest in the initial positions at time 0, tied particles in their places, without
+  /// friction in what is bent there.
   ClothState initialState() const;
 
   /// Changes the first fabric from the next step on: masses and curves, not positions or
@@ -131,10 +138,22 @@ class Cloth {
   /// @param begin, end s, simulated
   void moveObstacles(double begin, double end);
 
+  /// Lets open seams close: from this state on each tied particle goes straight to its place beside
+  /// the particles that it is tied to, at a speed relative to them, and is sewn once it is there.
+  /// Until it is, it is held at what is left of the gap.
+  /// @param state that the next step starts from @param speed m/s
+  /// @throws std::invalid_argument if the speed is not finite and > 0, or the state's size is not
+  ///   the cloth's
+  void closeSeams(const ClothState& state, double speed);
+  /// The largest distance (m) of a tied particle from its place that is left at a time (s).
+  double seamGap(double time) const { return ties_->gapAt(time); }
+
   /// Attaches a particle to a place, or gives an attached one a new path.
-  /// @throws std::invalid_argument if the particle does not exist, a number is not finite, or the
-  ///   duration is negative
+  /// @throws std::invalid_argument if the particle does not exist or is tied, a number is not
+  ///   finite, or the duration is negative
   void attach(int particle, const AttachmentPath& path);
+  /// @throws std::invalid_argument if attach() would refuse the particle
+  void requireAttachable(int particle) const;
   /// @throws std::invalid_argument if the particle does not exist or is not attached
   void release(int particle);
   void releaseAll();
@@ -145,7 +164,8 @@ class Cloth {
   // The functions below throw std::invalid_argument if the state's size is not the cloth's.
 
   /// All forces() (N) on every particle, not the reaction of an attachment. At rest the reaction at
-  /// an attached particle is the negative.
+  /// an attached particle is the negative. Those on tied particles are with the particles that they
+  /// are tied to.
   /// @param forces resized to particleCount()
   void computeForces(const ClothState& state, std::vector<Eigen::Vector3d>& forces) const;
 
@@ -159,7 +179,7 @@ class Cloth {
   std::uint64_t revision() const { return revision_; }
 
   /// All blocks of the exact (not projected) Jacobian in the rows of the given particles,
-  /// sorted by row in the order given, then by column.
+  /// sorted by row in the order given, then by column. Tied particles have none, and no column.
   /// @throws std::invalid_argument if a particle does not exist
   std::vector<JacobianBlock> jacobian(const ClothState& state,
                                       const std::vector<int>& particles) const;
@@ -175,6 +195,7 @@ class Cloth {
   std::vector<material::Fabric> fabrics_;
   ModelledEffects effects_;
   std::vector<double> masses_;
+  std::unique_ptr<Ties> ties_;  // not null
   std::unique_ptr<ForceSum> forces_;
   ConstantForces* constant_ = nullptr;           // of forces_
   PointLoads* point_loads_ = nullptr;            // of forces_; null if they are not modelled

@@ -15,8 +15,8 @@ class ClothPart {
   /// Makes it with the whole's user-defined forces, point loads and number of rigid bodies.
   /// @param included per particle of the whole, nonzero where it moves; at least one is
   /// @throws std::invalid_argument if there is not one per particle or none moves, the cloth
-  ///   collides with itself (what stands still would not be met), or its panels bend by different
-  ///   kinds of hinges (Bending::model())
+  ///   collides with itself (what stands still would not be met), has ties, or its panels bend by
+  ///   different kinds of hinges (Bending::model())
   ClothPart(const Cloth& whole, const std::vector<char>& included);
 
   Cloth& cloth() { return cloth_; }

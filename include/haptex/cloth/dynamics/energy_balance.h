@@ -38,7 +38,8 @@ class EnergyBalance {
   /// but no more than that of a jump at the beginning of the step. That of the air is its power at
   /// the beginning or the end, whichever is more. That of contacts is of their forces over the ways
   /// of the bodies and out of what they had penetrated, that of obstacles of a cloth that collides
-  /// with itself what SelfContact::obstacleWork() says.
+  /// with itself what SelfContact::obstacleWork() says. That of closing seams is of the forces on
+  /// the tied particles at the beginning or the end, whichever is more, over the way of the gaps.
   /// @param begin as for begin()
   /// @param end   its time included
   /// @param reactions in the order of Cloth::contacts(); empty: none acted
@@ -61,6 +62,7 @@ class EnergyBalance {
   double reserve() const;
   void forget();
   double attachmentWork(const Cloth& cloth, const ClothState& begin, const ClothState& end);
+  double closingWork(const Cloth& cloth, const ClothState& begin, const ClothState& end);
   void computeForces(const Cloth& cloth, const ClothState& at, const StrainPast& past);
   double drivenPower(const Cloth& cloth, const ClothState& state);
 

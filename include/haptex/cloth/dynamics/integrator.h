@@ -71,6 +71,7 @@ class Integrator {
 
   void keepEnergy(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   void slowDown(const Cloth& cloth, double energy, StepReport& report);
+  void followTies(const Cloth& cloth);
   void advance(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   void runMidpoint(const Cloth& cloth, const ClothState& begin, double h, StepReport& report);
   double outerWork(const Cloth& cloth, const ClothState& begin, double h, double theta);

@@ -99,6 +99,8 @@ class StageSolver {
                             StepReport& report);
   void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
   void prescribe(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
+  StageGuess sewn(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
+  void sew(const Cloth& cloth, const Stage& stage, ClothState& at) const;
   void eliminate();
   bool solveFirst(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                   StepReport& report);
@@ -132,10 +134,11 @@ class StageSolver {
   linear::BlockVector prescribed_;  // velocity changes of the attached particles
   double linearised_norm_ = 0.0;    // N s, of the right-hand side of the linearised stage
   double round_norm_ = 0.0;         // N s, likewise of the last round of contacts
-  std::vector<char> fixed_;
+  std::vector<char> fixed_;         // attached or tied
   bool any_fixed_ = false;
   std::optional<ActiveSetContactSolver> contacts_;
   std::optional<SafeMotion> motion_;   // if the cloth collides with itself
+  Velocities sewn_velocities_;         // m/s, of sewn(); empty without ties
   Positions start_;                    // m, likewise: that of the step beside moved obstacles
   linear::BlockVector response_;       // m, of respond()
   linear::BlockVector load_change_;    // of the solution, by other loads of friction

@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "haptex/cloth/forces/force.h"
+#include "haptex/cloth/forces/ties.h"
 
 namespace haptex::cloth {
 
 /// Adds up what its forces do, in their order. Their memories, and what they hold fixed, stand one
-/// after the other.
+/// after the other. Where particles are tied, what forces do to them is done to the particles that
+/// they are tied to: forces, Jacobians and systems are those of the free particles (Ties).
 class ForceSum final : public Force {
  public:
   ForceSum() = default;
@@ -24,6 +26,9 @@ class ForceSum final : public Force {
     forces_.push_back(std::move(force));
     return added;
   }
+
+  /// @param ties not empty; has to outlive this and to be bound to the same matrix
+  void setTies(const Ties& ties) { ties_ = &ties; }
 
   /// Takes all forces of another sum.
   void addAll(ForceSum&& other);
@@ -58,6 +63,8 @@ class ForceSum final : public Force {
   void forget(const Positions& positions, double* memory) const override;
   void remember(const Positions& positions, double* memory) const override;
   void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;
+  /// The same, with what acts on tied particles left there.
+  void addUntiedForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const;
   /// Adds the forces (N) of those that are driven.
   void addDrivenForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const;
   double energy(const ForceState& state) const override;
@@ -81,6 +88,7 @@ class ForceSum final : public Force {
   void forEach(const ForceState& state, Call&& call) const;
 
   std::vector<std::unique_ptr<Force>> forces_;
+  const Ties* ties_ = nullptr;  // null: nothing is tied
 };
 
 }  // namespace haptex::cloth

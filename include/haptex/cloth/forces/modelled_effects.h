@@ -37,7 +37,7 @@ struct ModelledEffects {
 };
 
 /// Adds the forces that fabrics and the air have on a cloth; a new kind of force is added here.
-/// Each panel bends by itself: a seam resists no bending.
+/// Each panel bends by itself; seams resist it where the mesh has hinges for them.
 /// @param mesh    without defects
 /// @param fabrics that the triangles name
 /// @throws std::invalid_argument if a panel's fabric is not there, the mesh is not what the

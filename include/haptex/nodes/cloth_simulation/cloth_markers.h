@@ -18,7 +18,7 @@ namespace haptex::nodes {
 /// What the colours of a cloth tell.
 enum class ClothColours { kStrain, kFabric };
 
-/// Markers of a cloth in the frame kFixedFrame, in namespaces that rviz can switch off singly:
+/// Markers of a cloth in the frame fixedFrame(), in namespaces that rviz can switch off singly:
 /// "cloth": triangles coloured by the largest principal Green-Lagrange strain, averaged at the
 ///   particles with the rest areas of the triangles around. rviz does not light triangles that
 ///   have colours of their own, so the shading of a fixed light is part of the colours. Particles

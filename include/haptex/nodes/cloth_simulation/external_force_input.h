@@ -12,7 +12,7 @@
 
 namespace haptex::nodes {
 
-/// @throws std::invalid_argument if the frame is not kFixedFrame; what else is wrong is for
+/// @throws std::invalid_argument if the frame is not fixedFrame(); what else is wrong is for
 ///   ForceSources::set()
 simulation::ParticleForces particleForces(const haptex::ExternalForces& message);
 

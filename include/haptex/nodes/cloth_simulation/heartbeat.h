@@ -10,7 +10,7 @@
 
 namespace haptex::nodes {
 
-/// Publishes a std_msgs/Header with the time and kFixedFrame every kPeriod from a thread of its
+/// Publishes a std_msgs/Header with the time and fixedFrame() every kPeriod from a thread of its
 /// own, whatever the rest of the process does, as long as someone subscribes.
 class Heartbeat {
  public:

@@ -18,7 +18,7 @@ constexpr double kFarthestPoint = 100.0;    ///< m, norm, from the origin of the
 constexpr double kMaxWeights = 100.0;       ///< no unit, norm
 
 /// @param triangle_count of the cloth
-/// @throws std::invalid_argument naming what is wrong: the frame is not kFixedFrame, the arrays
+/// @throws std::invalid_argument naming what is wrong: the frame is not fixedFrame(), the arrays
 ///   differ in length, there are more points than PointLoads::kMax, a number is beyond the
 ///   bounds above, or what Cloth::setPointLoads() refuses
 std::vector<cloth::PointLoad> pointLoads(const haptex::ContactForces& message,

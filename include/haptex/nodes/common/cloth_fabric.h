@@ -6,13 +6,14 @@
 #include <cstddef>
 #include <vector>
 
+#include "haptex/base/yaml_reader.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::nodes {
 
-constexpr std::size_t kLongestFabricFile = 1000000;  ///< bytes
-constexpr std::size_t kLongestFabricName = 200;      ///< bytes
+constexpr std::size_t kLongestFabricFile = base::kLargestYaml;  ///< bytes
+constexpr std::size_t kLongestFabricName = 200;                 ///< bytes
 
 /// Reads the fabrics from the texts in the message, and no file.
 /// @throws std::exception naming the fabric and what is wrong with it: no text for each name, none

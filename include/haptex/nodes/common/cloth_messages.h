@@ -19,9 +19,6 @@
 
 namespace haptex::nodes {
 
-/// The one frame of everything this package sends and takes; its origin is that of the scene.
-constexpr char kFixedFrame[] = "world";
-
 /// @param mesh  the number of the mesh @param factors that the fabrics have on their files
 /// @param stamp when all of it became so
 haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
@@ -43,7 +40,7 @@ void restampStateMessage(const simulation::SimulatedCloth& simulation, const ros
 void fillJacobianResponse(const std::vector<cloth::JacobianBlock>& blocks,
                           haptex::GetJacobian::Response& response);
 
-/// @throws std::invalid_argument unless frame_id is kFixedFrame
+/// @throws std::invalid_argument unless frame_id is fixedFrame()
 void requireFixedFrame(const std_msgs::Header& header);
 
 std::vector<Eigen::Vector3d> fromMessage(const std::vector<geometry_msgs::Point>& points);

@@ -18,9 +18,6 @@
 
 namespace haptex::nodes {
 
-/// The frame of everything that the exoskeleton measures and is commanded; its root in the URDF.
-inline const std::string kHandFrame = "hand_base";
-
 /// Pose of <finger>_tip (m).
 geometry_msgs::PoseStamped poseMessage(const exoskeleton::FingerMeasurement& measured,
                                        const ros::Time& stamp);

@@ -25,6 +25,16 @@ bool readSwitch(const ros::NodeHandle& private_node, const std::string& name);
 std::string readText(const ros::NodeHandle& private_node, const std::string& name,
                      const std::string& allowed);
 
+/// Of a serial port or of the link that an emulator makes to its own. What has no slash is a name
+/// in the working directory, and two graphs have different ones: what comes in the node's namespace
+/// before its last part is put before it. @param space the namespace, as in
+/// portOf("haptex_exoskeleton", "/left/haptex") == "left_haptex_exoskeleton"
+std::string portOf(const std::string& text, const std::string& space);
+
+/// The same of a parameter. @throws as readText()
+std::string readPort(const ros::NodeHandle& private_node, const std::string& name,
+                     const std::string& allowed);
+
 /// A robot's URDF from the parameter robot_description of the nearest namespace that has one.
 struct RobotDescription {
   std::string parameter;  ///< its full name

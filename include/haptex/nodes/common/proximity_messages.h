@@ -34,7 +34,7 @@ struct RestMesh {
 ///   proximity::kMaxLength
 RestMesh restMesh(const haptex::ClothMesh& message);
 
-/// @throws std::invalid_argument likewise: another frame than kFixedFrame, a position that is not
+/// @throws std::invalid_argument likewise: another frame than fixedFrame(), a position that is not
 ///   finite or beyond proximity::kMaxLength
 void requireValid(const haptex::ClothState& message);
 

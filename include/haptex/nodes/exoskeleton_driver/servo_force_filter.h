@@ -18,7 +18,7 @@ namespace haptex::nodes {
 
 /// Why a commanded force is dropped, in the order in which it is looked for.
 enum class ServoForceFlaw {
-  kFrame,      ///< frame_id is not kHandFrame
+  kFrame,      ///< frame_id is not handFrame()
   kNotFinite,  ///< a number is NaN or infinite
   kTooLarge,   ///< a number is beyond the bounds of exoskeleton/command_check.h
   kActive,     ///< stiffness or damping is not symmetric and positive semidefinite

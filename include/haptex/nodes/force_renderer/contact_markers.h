@@ -33,7 +33,7 @@ double contactForceFraction(double force);
 std::string rateText(const LoopRates& rates, const base::PerFinger<double>& forces,
                      const base::PerFinger<std::string>& why);
 
-/// Markers in the frame kFixedFrame, in namespaces that rviz can switch off singly:
+/// Markers in the frame fixedFrame(), in namespaces that rviz can switch off singly:
 /// "contact_points": where the fingertips touch, coloured by contact force.
 /// "contact_force": per finger an arrow of the rendered force, from the skin of the fingertip.
 /// "patch": the small-scale cloth, coloured by contact force, a little off the cloth on both sides.

@@ -19,7 +19,7 @@
 
 namespace haptex::nodes {
 
-/// Takes exoskeleton/fingertips, measured_cp and measured_cv of one finger, in kHandFrame. Drops
+/// Takes exoskeleton/fingertips, measured_cp and measured_cv of one finger, in handFrame(). Drops
 /// and counts those that are in another frame, not finite or beyond what a hand does, stamped more
 /// than kStampTolerance before or after ROS's clock, or not later than the one before of their
 /// kind.

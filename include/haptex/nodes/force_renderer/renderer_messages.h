@@ -31,7 +31,7 @@ Eigen::Vector3d readGravity(const haptex::ClothMesh& message);
 
 /// Allocates nothing once the vectors have their size.
 /// @throws std::invalid_argument naming field, value and what is allowed: another frame than
-///   kFixedFrame, arrays that do not fit together, an attached particle that does not exist, a
+///   fixedFrame(), arrays that do not fit together, an attached particle that does not exist, a
 ///   number that is not finite or beyond proximity::kMaxLength, a next step that is due before the
 ///   message or an hour after it; `state` is then undefined
 void readState(const haptex::ClothState& message, simulation::LargeScaleState& state);

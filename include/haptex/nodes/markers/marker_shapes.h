@@ -13,7 +13,7 @@
 
 namespace haptex::nodes {
 
-/// A marker to be added in the frame kFixedFrame, at its origin, of scale 1, opaque.
+/// A marker to be added in the frame fixedFrame(), at its origin, of scale 1, opaque.
 visualization_msgs::Marker makeMarker(const std::string& name, int id, int type);
 
 /// @param colour red, green and blue from 0 to 1 @param opacity from 0 to 1

@@ -15,7 +15,7 @@
 
 namespace haptex::nodes {
 
-/// Markers in the frame kFixedFrame, in namespaces that rviz can switch off singly:
+/// Markers in the frame fixedFrame(), in namespaces that rviz can switch off singly:
 /// "near_elements": the elements of an answer in red, on both sides of the cloth and a little off
 ///   it, so that they are seen through neither of two coincident surfaces.
 /// "cursor": the volume that was asked about, translucent; a point as a small ball.

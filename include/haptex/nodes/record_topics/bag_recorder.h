@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <regex>
 #include <string>
 #include <thread>
@@ -18,10 +19,12 @@
 
 namespace haptex::nodes {
 
-/// Which topics are recorded: regular expressions (ECMAScript) that whole names have to match.
+/// Which topics are recorded: regular expressions (ECMAScript) that have to match whole names, or
+/// what of a name follows the node's namespace and its slash.
 struct RecordedTopics {
   std::vector<std::regex> wanted;
   std::vector<std::regex> excluded;
+  std::string space = "/";  ///< of the node
 
   bool match(const std::string& topic) const;
 };
@@ -61,7 +64,7 @@ class BagRecorder {
   const RecordedTopics topics_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_;
   std::map<std::string, ros::Subscriber> subscribers_;  // of the searching thread
   std::atomic<bool> has_space_{true};
   std::thread searching_;

@@ -27,7 +27,7 @@ std::string panelCaption(base::Finger finger, tactile::Channel channel, double a
 /// Heat maps of both channels of every contactor, in namespaces that rviz can switch off singly:
 /// "tactile_pads": at true size on the fingertips, in the frames <finger>_tactile; of each
 ///   contactor the proximal half is the channel of 40 Hz and the distal half that of 320 Hz.
-/// "tactile_panels": enlarged, in the frame kFixedFrame beside the sample, turned to the viewer of
+/// "tactile_panels": enlarged, in the frame fixedFrame() beside the sample, turned to the viewer of
 ///   rviz/haptex.rviz. A panel shows the pad with the fingertip upwards, as its owner would see
 ///   it who looks at it.
 /// "tactile_captions": what the panels are, and the rate of the renderer.

@@ -23,7 +23,7 @@ constexpr double kMaxStretch = 1000.0;     ///< of weft or warp per length of th
 /// how the array lies (array_x and array_y all zero), its axes are weft and warp, and its origin is
 /// fabric_position.
 /// @throws std::invalid_argument naming field, value and what is allowed: another frame than
-///   kFixedFrame, a number that is not finite or beyond the limits above, a negative normal force
+///   fixedFrame(), a number that is not finite or beyond the limits above, a negative normal force
 std::optional<tactile::TouchedFabric> touchedFabric(const haptex::Contact& message);
 
 /// What does not change: the frame and the places of the contactors. All else is zero.

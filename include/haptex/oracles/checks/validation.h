@@ -54,6 +54,10 @@ void validateTable(const std::string& config_directory, const Sink& sink);
 /// rubs across it.
 void validateRegions(const std::string& config_directory, const Sink& sink);
 
+/// Panels that are sewn together: uniform stress across seams, gaps, mass, momentum, cones of discs
+/// with a sector cut out, and strips with a seam.
+void validateGarment(const std::string&, const Sink& sink);
+
 /// Relative, of the force of a press on a woven fabric: 1 %, and 10 % by the coarse patches under
 /// sanitizers.
 double pressTolerance();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
 #include "haptex/material/compression.h"
 
 namespace haptex::cloth {
@@ -11,8 +12,8 @@ namespace {
 
 const material::Compression& requireCompression(const material::Fabric& fabric) {
   if (fabric.compression) return *fabric.compression;
-  throw std::invalid_argument("self_collision is modelled and fabric '" + fabric.name +
-                              "' has no thickness: add the key compression");
+  throw std::invalid_argument("self_collision is modelled and fabric " + base::quoted(fabric.name) +
+                              " has no thickness: add the key compression");
 }
 
 /// The strain of the pressure at which KES measures last, or of a curve that ends before that.

@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "haptex/base/quoted.h"
+
 namespace haptex::cloth {
 namespace {
 
@@ -14,8 +16,8 @@ using Eigen::Vector3d;
 
 double requireFriction(const material::Fabric& fabric) {
   if (fabric.friction) return *fabric.friction;
-  throw std::invalid_argument("self_collision is modelled and fabric '" + fabric.name +
-                              "' has no friction: add the key friction");
+  throw std::invalid_argument("self_collision is modelled and fabric " + base::quoted(fabric.name) +
+                              " has no friction: add the key friction");
 }
 
 /// Friction by slip, as a share of that of what slips, and by what it is the integral of.

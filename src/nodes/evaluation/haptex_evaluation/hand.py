@@ -9,6 +9,8 @@ from geometry_msgs.msg import Point, PointStamped, PoseStamped, Quaternion
 from scipy.spatial.transform import Rotation, Slerp
 
 from . import strict_yaml as strict
+from .frames import frame_name
+from .quoted import quoted
 
 RATE = 100.0  # Hz
 FINGERS = ('index', 'thumb')
@@ -16,7 +18,7 @@ FINGERS = ('index', 'thumb')
 
 def _vector(value, where):
     if not isinstance(value, list) or len(value) != 3:
-        raise ValueError(f'{where}: {value!r} must be a list of 3 numbers')
+        raise ValueError(f'{where}: {quoted(value)} must be a list of 3 numbers')
     return [strict.number(item, f'{where}[{i}]') for i, item in enumerate(value)]
 
 
@@ -25,11 +27,11 @@ class HandPath:
 
     def __init__(self, path):
         """@throws ValueError naming file, key and value"""
-        value = strict.load(path)
+        value = strict.load(path, ['key_frames'])
         strict.require_keys(value, str(path), ['key_frames'], ['repeat'])
         frames = value['key_frames']
         if not isinstance(frames, list) or not frames:
-            raise ValueError(f'{path}: key_frames: {frames!r} must be a list of at least 1')
+            raise ValueError(f'{path}: key_frames: {quoted(frames)} must be a list of at least 1')
         times, places, turns = [], [], []
         for i, frame in enumerate(frames):
             where = f'{path}: key_frames[{i}]'
@@ -72,6 +74,7 @@ class EmulatedHand:
         self._fingers = [rospy.Publisher(f'{finger}/target', PointStamped, queue_size=1)
                          for finger in FINGERS]
         self._base = rospy.Publisher('hand_base/target', PoseStamped, queue_size=1)
+        self._fixed_frame, self._hand_frame = frame_name('world'), frame_name('hand_base')
         self._thread, self._ends = None, threading.Event()
 
     def follow(self, name):
@@ -97,9 +100,9 @@ class EmulatedHand:
         now = rospy.Time.now()
         for publisher, position in zip(self._fingers, positions):
             target = PointStamped(point=Point(*position))
-            target.header.stamp, target.header.frame_id = now, 'hand_base'
+            target.header.stamp, target.header.frame_id = now, self._hand_frame
             publisher.publish(target)
         pose = PoseStamped()
-        pose.header.stamp, pose.header.frame_id = now, 'world'
+        pose.header.stamp, pose.header.frame_id = now, self._fixed_frame
         pose.pose.position, pose.pose.orientation = Point(*positions[2]), Quaternion(*turn)
         self._base.publish(pose)

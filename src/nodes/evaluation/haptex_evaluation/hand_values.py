@@ -11,6 +11,7 @@ from typing import NamedTuple
 from . import programs
 from . import strict_yaml as strict
 from .kes_values import UNITS, FabricValues, find_fabric
+from .quoted import quoted
 
 USAGE = 'usage: hand_values COEFFICIENTS FABRIC...\n'
 LEAST_DEVIATION = 1e-12
@@ -92,7 +93,7 @@ def _population(value, where):
 
 def _primary(value, where, population):
     if not isinstance(value, list) or not value:
-        raise ValueError(f'{where}: {value!r} must be a list of at least 1')
+        raise ValueError(f'{where}: {quoted(value)} must be a list of at least 1')
     primary = []
     for i, each in enumerate(value):
         here = f'{where}[{i}]'
@@ -120,9 +121,10 @@ def _total(value, where, primary):
 
 def read_equations(path):
     """@throws ValueError naming file, key, value and what is allowed"""
-    value = strict.load(path)
+    keys = ['source', 'population', 'primary', 'total']
+    value = strict.load(path, keys)
     where = str(path)
-    strict.require_keys(value, where, ['source', 'population', 'primary', 'total'], ['assumed'])
+    strict.require_keys(value, where, keys, ['assumed'])
     assumed = value.get('assumed', {})
     strict.require_keys(assumed, f'{where}: assumed', [], UNITS)
     population = _population(value['population'], f'{where}: population')

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator, PPoly
 from scipy.optimize import brentq
 
 from . import strict_yaml as strict
+from .quoted import quoted
 
 GF_PER_CM = 0.980665  # N/m
 TENSILE_LOAD = 500 * GF_PER_CM  # N/m
@@ -117,7 +118,7 @@ class FabricValues:
     def __init__(self, path):
         """@throws ValueError if the file cannot be read or lacks what every fabric has"""
         self.path = str(path)
-        fabric = strict.load(path)
+        fabric = strict.load(path, ['name', 'areal_density'])
         try:
             self.name = fabric['name']
             self.parameters, self.properties = {}, {}
@@ -189,5 +190,6 @@ def find_fabric(name, config):
     path = strict.path_of(name, folder)
     if not path.is_file():
         names = ', '.join(sorted(file.stem for file in folder.glob('*.yaml')))
-        raise ValueError(f'there is no fabric {name!r}: allowed is the path of a file, or a name of {names}')
+        raise ValueError(f'there is no fabric {quoted(name)}: allowed is the path of a file, or a name of '
+                         f'{names}')
     return path

@@ -12,10 +12,12 @@ from haptex.srv import AnswerTrial, AnswerTrialResponse
 from std_srvs.srv import Trigger, TriggerResponse
 
 from .cloth import Cloth
+from .frames import frame_name
 from .hand import EmulatedHand
 from .picture import Picture
 from .plan import STANDARD, TRIAL
 from .protocol import VIRTUAL, read_protocol
+from .quoted import quoted
 from .recording import LONGEST_END, TrialRecorder
 from .session import Session
 from .strict_yaml import path_of
@@ -46,7 +48,7 @@ def _parameter(name, kind, default):
     """@throws ValueError naming the parameter, its value and what it must be"""
     value = rospy.get_param('~' + name, default)
     if isinstance(value, bool) or not isinstance(value, kind):
-        raise ValueError(f'{rospy.resolve_name("~" + name)}: {value!r} must be of type {kind.__name__}')
+        raise ValueError(f'{rospy.resolve_name("~" + name)}: {quoted(value)} must be of type {kind.__name__}')
     return value
 
 
@@ -57,7 +59,7 @@ def _make_session(config):
     protocol = read_protocol(path, config)
     directory = _parameter('session', str, '')
     if not os.path.isabs(directory):
-        raise ValueError(f'{rospy.resolve_name("~session")}: {directory!r} must be an absolute path')
+        raise ValueError(f'{rospy.resolve_name("~session")}: {quoted(directory)} must be an absolute path')
     return Session(directory, protocol, path.read_text('utf-8'), _parameter('who', str, ''),
                    _parameter('subject', int, 1), rospy.logwarn)
 
@@ -184,7 +186,7 @@ class EvaluationNode:
         message = EvaluationTrial(state=END, trials=len(session.trials), least_rating=least,
                                   largest_rating=most, with_picture=session.protocol.picture)
         message.header.stamp = rospy.Time.now()
-        message.header.frame_id = 'world'
+        message.header.frame_id = frame_name('world')
         if stage is not None:
             message.state = stage.kind if session.has_begun() else CHANGE
             message.property = stage.property.name

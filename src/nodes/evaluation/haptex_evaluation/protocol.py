@@ -3,6 +3,7 @@ import pathlib
 from typing import NamedTuple
 
 from . import strict_yaml as strict
+from .quoted import quoted
 
 PROPERTIES = ('tensile_stiffness', 'shear_stiffness', 'bending_stiffness', 'roughness', 'friction',
               'compressibility', 'weight', 'drape')
@@ -45,7 +46,7 @@ def _ends(value, where, of):
     strict.require_keys(value, where, ['low', 'high'])
     low, high = (of(value[end], f'{where}.{end}') for end in ('low', 'high'))
     if low == high:
-        raise ValueError(f'{where}: low and high are both {low!r}, they must differ')
+        raise ValueError(f'{where}: low and high are both {quoted(low)}, they must differ')
     return low, high
 
 
@@ -69,7 +70,7 @@ def _known(folder):
         name = strict.text(value, where)
         if not strict.path_of(name, folder).is_file():
             names = sorted(file.stem for file in folder.glob('*.yaml'))
-            raise ValueError(f'{where}: there is no {name!r}: allowed is the path of a file, or a name '
+            raise ValueError(f'{where}: there is no {quoted(name)}: allowed is the path of a file, or a name '
                              f'of {", ".join(names)}')
         return name
     return check
@@ -90,17 +91,17 @@ def _samples(value, where, known_fabric):
 def read_protocol(path, config):
     """@param config the folder with fabrics/ and paths/
     @throws ValueError naming file, key, value and what is allowed"""
-    value = strict.load(path)
+    keys = ['title', 'longest_seconds', 'picture', 'scale', 'change_seconds', 'fabrics', 'properties']
+    value = strict.load(path, keys)
     where = str(path)
-    strict.require_keys(value, where, ['title', 'longest_seconds', 'picture', 'scale', 'change_seconds',
-                                       'fabrics', 'properties'], ['real_fabrics'])
+    strict.require_keys(value, where, keys, ['real_fabrics'])
     strict.require_keys(value['scale'], f'{where}: scale', ['least', 'most'])
     least = strict.number(value['scale']['least'], f'{where}: scale.least')
     most = strict.number(value['scale']['most'], f'{where}: scale.most')
     if not least < most:
         raise ValueError(f'{where}: scale.most: {most} must be greater than scale.least, {least}')
     if not isinstance(value['properties'], list) or not value['properties']:
-        raise ValueError(f'{where}: properties: {value["properties"]!r} must be a list of at least 1')
+        raise ValueError(f'{where}: properties: {quoted(value["properties"])} must be a list of at least 1')
     known_fabric = _known(pathlib.Path(config) / 'fabrics')
     known_path = _known(pathlib.Path(config) / 'paths')
     properties = tuple(_property(each, f'{where}: properties[{i}]', known_fabric, known_path)

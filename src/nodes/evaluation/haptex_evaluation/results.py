@@ -9,6 +9,7 @@ import re
 from typing import NamedTuple
 
 from .protocol import PROPERTIES, REAL, VIRTUAL
+from .quoted import quoted
 
 
 class Result(NamedTuple):
@@ -58,7 +59,7 @@ def _finite(text):
 def _named(*allowed):
     def read(text):
         if text not in allowed:
-            raise ValueError(f'{text!r} is not allowed, allowed are {", ".join(allowed)}')
+            raise ValueError(f'{quoted(text)} is not allowed, allowed are {", ".join(allowed)}')
         return text
     return read
 
@@ -95,7 +96,7 @@ def read_results(path):
     column = lines[0][names.index('rating')]
     scale = re.fullmatch(r'rating \((\S+) to (\S+)\)', column)
     if not scale:
-        raise ValueError(f'{path}: {column!r} must say the scale, as in "rating (1 to 10)"')
+        raise ValueError(f'{path}: {quoted(column)} must say the scale, as in "rating (1 to 10)"')
     scale = tuple(map(float, scale.groups()))
     results = [_result(cells, f'{path}: line {i}') for i, cells in enumerate(lines[1:], 2)]
     for i, result in enumerate(results, 2):
@@ -136,7 +137,7 @@ class ResultFile:
         content = self._file.read()
         end = content.rfind(b'\n') + 1
         if end < len(content):
-            warn(f'{self.path}: its last line is not complete and is dropped: {content[end:]!r}')
+            warn(f'{self.path}: its last line is not complete and is dropped: {quoted(content[end:])}')
             self._file.truncate(end)
             os.fsync(self._file.fileno())
         self._file.seek(0, os.SEEK_END)

@@ -7,6 +7,7 @@ import pathlib
 import threading
 
 from .plan import TRIAL, stages_of, trials_of
+from .quoted import quoted
 from .results import Result, ResultFile
 
 LONGEST_NAME = 80
@@ -41,7 +42,7 @@ class Session:
         @throws ValueError if the directory is of another protocol, person or subject, or in use"""
         who = who.strip()
         if not who or len(who) > LONGEST_NAME or not who.isprintable():
-            raise ValueError(f'who: {who!r} must have 1 to {LONGEST_NAME} printable characters')
+            raise ValueError(f'who: {quoted(who)} must have 1 to {LONGEST_NAME} printable characters')
         self.directory = pathlib.Path(directory)
         self.protocol, self.who, self.subject = protocol, who, subject
         self.trials = trials_of(protocol, subject)

@@ -41,6 +41,8 @@ const std::vector<RandomCheck>& randomChecks() {
       {"table", "fast", randomFastFinger},
       {"regions", "strip", randomRegions},
       {"body", "roll", randomRoll},
+      {"garment", "patch", randomPatch},
+      {"garment", "cone", randomCone},
       {"exoskeleton", "pose", randomPose},
       {"exoskeleton", "static_force", randomStaticForce},
       {"tactile", "grating", randomGrating},

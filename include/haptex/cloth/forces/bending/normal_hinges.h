@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <utility>
 #include <vector>
 
 #include "haptex/cloth/forces/bending/bending_hinge.h"
@@ -27,7 +28,7 @@ class NormalHinges {
     int begin;  ///< of its corners
     int end;
     double stiffness;  ///< N/m, the hinge's
-    double bend;       ///< m, of the sheet with the curvature of the constructor; not 0
+    double bend;       ///< m, of the sheet without forces; not 0
     double length;     ///< m^2, |resists| without the part of twist
   };
   struct Frame {
@@ -44,6 +45,9 @@ class NormalHinges {
   /// The hinges that a sheet with these curvatures (1/m) along weft and warp bends.
   NormalHinges(const mesh::ClothMesh& mesh, const std::vector<Hinge>& hinges,
                const std::vector<HingeCorner>& corners, const Eigen::Vector2d& curvature);
+  /// Of hinges whose bends at rest are known.
+  NormalHinges(std::vector<NormalHinge> hinges, std::vector<Corner> corners)
+      : hinges_(std::move(hinges)), corners_(std::move(corners)) {}
 
   /// Makes them hinges on some particles of a larger mesh, by the numbers there.
   void renumber(const std::vector<int>& particles);

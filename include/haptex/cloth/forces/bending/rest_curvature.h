@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "haptex/cloth/forces/bending/normal_hinges.h"
@@ -19,6 +20,7 @@ class RestCurvature {
   /// @param curvature 1/m: BendingSettings::rest_curvature
   RestCurvature(const mesh::ClothMesh& mesh, const std::vector<Hinge>& hinges,
                 const std::vector<HingeCorner>& corners, const Eigen::Vector2d& curvature);
+  explicit RestCurvature(NormalHinges curved) : curved_(std::move(curved)) {}
 
   /// As Bending::renumber().
   void renumber(const std::vector<int>& particles) { curved_.renumber(particles); }

@@ -1,0 +1,25 @@
+// Names of the tf frames that the nodes know. Two graphs in one master have frames of their own by
+// a prefix, the parameter tf_prefix: robot_state_publisher reads the same one.
+#pragma once
+
+#include <string>
+
+#include "haptex/base/finger.h"
+
+namespace haptex::nodes {
+
+/// For this process: frames are then called PREFIX/name. To be called before the functions below,
+/// and before there are threads. @param prefix empty: none
+/// @throws std::invalid_argument unless it is letters, digits and _, in parts between single
+/// slashes
+void setFramePrefix(const std::string& prefix);
+
+/// The frame of the cloth and of everything that is not said otherwise, z up.
+const std::string& fixedFrame();
+/// The frame of everything that the exoskeleton measures and is commanded; its root in the URDF.
+const std::string& handFrame();
+/// Of the fingertip, and of the array of contactors under it.
+const std::string& tipFrame(base::Finger finger);
+const std::string& arrayFrame(base::Finger finger);
+
+}  // namespace haptex::nodes
