@@ -8,6 +8,7 @@
 //   weft, warp         how far the fingers have come along the fabric, likewise
 //   <rate>/force, ...  the same in two layers with so many large-scale states a second
 //   <rate>/error       largest difference of the force from one layer, in any millisecond
+//   <rate>/error_rms   its root mean square
 // Patches are refined once, not twice as shipped, because the whole cloth is as fine: then
 // all takes a minute or two. In one layer what is lifted and lowered makes the same forces to 5 %.
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include "haptex/exoskeleton/control/minimum_jerk.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/experiments/contact_scenes.h"
+#include "haptex/oracles/experiments/moved_pinch.h"
 #include "tab_lines.h"
 
 namespace {
@@ -28,68 +30,18 @@ using namespace haptex;
 using contact::Fingertips;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using oracles::Felt;
+using oracles::MovedPinch;
 
-constexpr double kStep = 1e-3;    // s
+constexpr double kStep = oracles::kMovedPinchStep;
 constexpr double kPinched = 0.3;  // N, that does not hold the edge
-
-/// After a millisecond.
-struct Felt {
-  Vector3d force = Vector3d::Zero();  // N, on both fingertips together
-  Vector2d place = Vector2d::Zero();  // m, of the index finger on the fabric (weft, warp)
-  double normal_force = 0.0;          // N, on the index finger
-};
-
-struct Motion {
-  const char* name;
-  std::vector<Felt> felt;  // of every millisecond
-};
-
-oracles::Hand handAtTheEdge() {
-  oracles::Hand hand;
-  hand.middle.z() = -0.19;
-  hand.gap = 4e-3;
-  return hand;
-}
-
-/// @param step takes fingertips and returns what they feel
-template <typename Step>
-std::vector<Motion> carry(const Step& step) {
-  oracles::Hand hand = handAtTheEdge();
-  std::vector<Motion> motions;
-  const auto record = [&](const Fingertips& fingertips) {
-    const Felt felt = step(fingertips);
-    if (!motions.empty()) motions.back().felt.push_back(felt);
-  };
-  const auto begin = [&](const char* name) { motions.push_back({name, {}}); };
-  const Vector3d still = Vector3d::Zero(), way(0.05, 0.0, 0.02);
-  oracles::move(hand, still, -8e-3, 0.2, kStep, record);
-  oracles::move(hand, still, 0.0, 0.8, kStep, record);
-  begin("held");
-  oracles::move(hand, still, 0.0, 0.2, kStep, record);
-  begin("lifted");
-  oracles::move(hand, way, 0.0, 0.5, kStep, record);
-  begin("swinging");
-  oracles::move(hand, still, 0.0, 0.5, kStep, record);
-  begin("lowered");
-  oracles::move(hand, -way, 0.0, 0.5, kStep, record);
-  oracles::move(hand, {0.0, 0.0, 0.01}, 0.0, 0.3, kStep, record);
-  begin("shaken");
-  for (int i = 1; i <= 1000; ++i) {
-    const double phase = 4.0 * M_PI * i * kStep;
-    const Vector3d before = hand.middle;
-    hand.middle.x() = 0.01 * std::sin(phase);
-    hand.velocity = (hand.middle - before) / kStep;
-    record(hand.fingertips());
-  }
-  return motions;
-}
 
 /// @param gap  m, between the fingertips; none: closes until they pinch with kPinched
 /// @param step as above
 template <typename Step>
-Motion slide(std::optional<double>& gap, const Step& step) {
-  oracles::Hand hand = handAtTheEdge();
-  Motion motion{"slide", {}};
+MovedPinch slide(std::optional<double>& gap, const Step& step) {
+  oracles::Hand hand = oracles::handAtTheEdge();
+  MovedPinch motion{"slide", {}};
   const Vector3d still = Vector3d::Zero(), begin = hand.middle;
   bool pinched = false;
   const auto close = [&](const Fingertips& fingertips) {
@@ -107,40 +59,27 @@ Motion slide(std::optional<double>& gap, const Step& step) {
   return motion;
 }
 
-std::string nameOf(const Motion& motion, const char* quantity, double rate = 0.0) {
+std::string nameOf(const MovedPinch& motion, const char* quantity, double rate = 0.0) {
   const std::string of_rate = rate > 0.0 ? std::to_string(std::lround(rate)) + "Hz/" : "";
   return std::string("carry/") + motion.name + "/" + of_rate + quantity;
 }
 
-void printLargest(const Motion& motion, double rate = 0.0) {
+void printLargest(const MovedPinch& motion, double rate = 0.0) {
   double most = 0.0;
   for (const Felt& felt : motion.felt) most = std::max(most, felt.force.norm());
   bench::printLine(nameOf(motion, "force", rate), most, "N");
 }
 
-void printWay(const Motion& motion, double rate = 0.0) {
+void printWay(const MovedPinch& motion, double rate = 0.0) {
   const Vector2d way = motion.felt.back().place - motion.felt.front().place;
   bench::printLine(nameOf(motion, "weft", rate), 1e3 * way.x(), "mm");
   bench::printLine(nameOf(motion, "warp", rate), 1e3 * way.y(), "mm");
 }
 
-void printError(const Motion& motion, const Motion& exact, double rate) {
-  double error = 0.0;
-  for (std::size_t k = 0; k < exact.felt.size(); ++k) {
-    error = std::max(error, (motion.felt[k].force - exact.felt[k].force).norm());
-  }
-  bench::printLine(nameOf(motion, "error", rate), error, "N");
-}
-
-Felt feltIn(const oracles::RefinedCloth& cloth) {
-  const Vector3d index = cloth.force(base::Finger::kIndex);
-  return {index + cloth.force(base::Finger::kThumb), cloth.fabricPosition(base::Finger::kIndex),
-          index.x()};
-}
-
-Felt feltIn(const oracles::HapticLoop& loop) {
-  const contact::FingertipContact& index = loop.layer().contacts()[base::Finger::kIndex];
-  return {oracles::forceOnFingertips(loop.layer()), index.fabric_position, index.force.x()};
+void printError(const MovedPinch& motion, const MovedPinch& exact, double rate) {
+  const oracles::ForceDifference error = oracles::differenceOf(motion, exact);
+  bench::printLine(nameOf(motion, "error", rate), error.largest, "N");
+  bench::printLine(nameOf(motion, "error_rms", rate), error.root_mean_square, "N");
 }
 
 }  // namespace
@@ -157,34 +96,34 @@ int main(int argc, char** argv) {
     settings.haptics.refinement = 1;
     return settings;
   };
-  std::vector<Motion> exact;
+  std::vector<MovedPinch> exact;
   std::optional<double> gap;
   for (const bool slides : {false, true}) {
     oracles::RefinedCloth cloth(sample(80.0));
     const auto step = [&](const Fingertips& fingertips) {
       cloth.step(fingertips, kStep);
-      return feltIn(cloth);
+      return oracles::feltIn(cloth);
     };
     if (slides) {
       exact.push_back(slide(gap, step));
     } else {
-      exact = carry(step);
+      exact = oracles::movePinch(step);
     }
   }
-  for (const Motion& motion : exact) printLargest(motion);
+  for (const MovedPinch& motion : exact) printLargest(motion);
   printWay(exact.back());
   for (const double rate : {80.0, 40.0, 25.0}) {
-    std::vector<Motion> felt;
+    std::vector<MovedPinch> felt;
     for (const bool slides : {false, true}) {
       oracles::HapticLoop loop(sample(rate));
       const auto step = [&](const Fingertips& fingertips) {
         loop.step(fingertips);
-        return feltIn(loop);
+        return oracles::feltIn(loop);
       };
       if (slides) {
         felt.push_back(slide(gap, step));
       } else {
-        felt = carry(step);
+        felt = oracles::movePinch(step);
       }
     }
     for (std::size_t i = 0; i < exact.size(); ++i) {

@@ -138,7 +138,11 @@ std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangl
             << " does not exist; the cloth has triangles 0 to " << count - 1;
     throw std::invalid_argument(message.str());
   }
-  RefinedCut refined = cutAndRefine(mesh_, topology_, cut, attached, settings_.refinement);
+  // Layers of cloth that collides with itself would fall through each other.
+  std::vector<int> around;
+  if (!effects_.self_collision) around = elementsAround(mesh_, topology_, cut, settings_);
+  RefinedCut refined = cutAndRefine(mesh_, topology_, std::move(cut), attached,
+                                    settings_.refinement, std::move(around));
   if (refined.free_count == 0) return nullptr;
   return std::make_unique<Patch>(mesh_, std::move(refined), fabrics_, effects_, laws_, &obstacles_);
 }
@@ -292,12 +296,11 @@ void HapticLayer::stepPatch() {
 
 /// How far the fingertip will have taken its contact along when the large-scale layer has made its
 /// next step. A fingertip that withdraws takes no more than its force away, but for what the other
-/// one pushes after it. Cloth that hangs overshoots less where only the period counts; cloth that
-/// slides on an obstacle, which stops it, would be felt to be held by more than friction.
+/// one pushes after it.
 Vector3d HapticLayer::aheadOf(Finger finger, const Matrix3d& stiffness) const {
   if (!settings_.predict) return Vector3d::Zero();
   const FingertipContact& contact = contacts_[finger];
-  const double seconds = motion_.period() + (patch_->touchesObstacle() ? motion_.remaining() : 0.0);
+  const double seconds = motion_.period() + motion_.remaining();
   const Vector3d followed = -seconds * followingSpeed(finger) * contact.normal;
   const Vector3d ahead = seconds * contact.velocity - followed;
   // Friction may pull a fingertip at rest along the mean normal.

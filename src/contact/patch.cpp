@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptex/cloth/forces/bending/bending.h"
-#include "haptex/cloth/forces/membrane.h"
+#include "haptex/cloth/forces/element_assembly.h"
+#include "haptex/contact/patch_forces.h"
 
 namespace haptex::contact {
 namespace {
@@ -21,29 +21,14 @@ constexpr double kTetherTime = 0.005;  // s, to 1/e
 constexpr double kFirstTether = 1e4;   // N/m
 constexpr double kLastTether = 1e-3;   // N/m, then none
 
+// 1/s, of the springs that hold the coarse part of a patch near the large-scale cloth, damped
+// critically. They give way while the hand takes the patch along: Without them the large-scale
+// cloth creeps for tens of seconds to where the patch is, because a patch this wide is softer than
+// the loads are.
+constexpr double kTieRate = 60.0;
+
 // s: the next matrix of longer steps has little in common with the last one.
 constexpr double kLongestKept = 4e-3;
-
-/// Membrane and bending on the particles of a cut.
-cloth::ForceSum forcesOn(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
-                         const cloth::ModelledEffects& effects) {
-  cloth::ForceSum forces;
-  std::vector<material::BendingRigidity> rigidities;
-  for (std::size_t f = 0; f < fabrics.size(); ++f) {
-    rigidities.push_back(*fabrics[f].bending);
-    std::vector<cloth::MembraneElement> elements = cloth::restElements(mesh, static_cast<int>(f));
-    if (elements.empty()) continue;
-    forces.add(std::make_unique<cloth::Membrane>(std::move(elements), fabrics[f], effects.viscosity,
-                                                 effects.contraction));
-  }
-  if (fabrics.size() == 1) {
-    forces.add(
-        std::make_unique<cloth::Bending>(mesh, rigidities.front(), effects.bending_settings));
-  } else {
-    forces.add(std::make_unique<cloth::Bending>(mesh, rigidities, effects.bending_settings));
-  }
-  return forces;
-}
 
 /// A third of each adjacent triangle (m^2), per particle; of one fabric's, if it is given.
 std::vector<double> areasOf(const mesh::ClothMesh& mesh, std::optional<int> fabric = std::nullopt) {
@@ -64,6 +49,17 @@ std::vector<double> massesOf(const mesh::ClothMesh& mesh,
   return masses;
 }
 
+/// N/m, to the large-scale cloth, of the particles of a cut that no refined element has.
+std::vector<double> tiesOf(const RefinedCut& cut, const std::vector<double>& masses) {
+  std::vector<double> ties;
+  for (const double mass : masses) ties.push_back(mass * kTieRate * kTieRate);
+  const std::size_t refined = static_cast<std::size_t>(cut.refined_count) << (2 * cut.refinement);
+  for (std::size_t t = 0; t < refined; ++t) {
+    for (const int particle : cut.mesh.triangles[t]) ties[particle] = 0.0;
+  }
+  return ties;
+}
+
 linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& matrix, int size) {
   std::vector<std::array<int, 2>> pairs;
   for (int i = 0; i < size; ++i) {
@@ -79,12 +75,19 @@ linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& 
 Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut,
              const std::vector<material::Fabric>& fabrics, const cloth::ModelledEffects& effects,
              const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles)
+    : Patch(coarse, cut, fabrics, effects, laws, obstacles,
+            forcesOn(coarse, cut, fabrics, effects)) {}
+
+Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut& cut,
+             const std::vector<material::Fabric>& fabrics, const cloth::ModelledEffects& effects,
+             const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles,
+             PatchForces forces)
     : cut_(std::move(cut)),
       effects_(effects),
-      forces_(forcesOn(cut_.mesh, fabrics, effects)),
+      forces_(std::move(forces.sum)),
       areas_(areasOf(cut_.mesh)),
       masses_(massesOf(cut_.mesh, fabrics)),
-      matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, forces_.pairs()),
+      matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, forces.pairs),
       solver_(leadingPattern(matrix_, cut_.free_count)),
       contacts_{{SphereContact(laws, cut_.fabrics, cut_.free_count),
                  SphereContact(laws, cut_.fabrics, cut_.free_count)}},
@@ -105,6 +108,7 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut,
   predicted_ = state_.positions;
   detours_ = state_.positions;
   tethers_.assign(count, 0.0);
+  ties_ = tiesOf(cut_, masses_);
   contact_forces_.assign(count, 0.0);
   for (auto& touched : linearised_.values) touched.reserve(cut_.free_count);
   for (auto& responses : responses_.values) {
@@ -160,6 +164,7 @@ void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
     const bool shared = theirs != other.cut_.order.end() && other.cut_.supports[*theirs] == support;
     const bool is_free = i < cut_.free_count;
     if (!shared) {
+      if (is_free) placeOn(other, i, motion);
       if (touches && is_free) tethers_[i] = kFirstTether;
       continue;
     }
@@ -182,6 +187,35 @@ void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
   }
 }
 
+/// Where the other patch has the element of a particle that it has not, if it has it: whole, but
+/// refined here.
+void Patch::placeOn(const Patch& other, int particle, const LargeScaleMotion& motion) {
+  Vector3d position = Vector3d::Zero(), velocity = Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const int corner = cornerIn(other.cut_, corners_[particle][k]);
+    if (corner < 0) return;
+    position += cut_.weights[particle][k] * other.state_.positions[corner];
+    velocity += cut_.weights[particle][k] * other.state_.velocities[corner];
+  }
+  state_.positions[particle] = position;
+  state_.velocities[particle] = velocity;
+  detours_[particle] = position - placeOnCloth(particle, motion);
+}
+
+void Patch::tie(int particle, const LargeScaleMotion& motion, double h) {
+  const double stiffness = ties_[particle];
+  const double damping = 2.0 * stiffness / kTieRate;
+  const std::array<int, 3>& corners = corners_[particle];
+  Vector3d velocity = Vector3d::Zero();  // of its place on the cloth
+  for (int k = 0; k < 3; ++k) {
+    velocity += cut_.weights[particle][k] * motion.velocity(corners[k]);
+  }
+  const Vector3d& own = state_.velocities[particle];
+  const Vector3d off = state_.positions[particle] + h * own - placeOnCloth(particle, motion);
+  rhs_.col(particle) -= h * (stiffness * off + damping * (own - velocity));
+  matrix_.diagonal(particle).diagonal().array() += h * h * stiffness + h * damping;
+}
+
 void Patch::assemble(const LargeScaleMotion& motion, double h) {
   const int count = static_cast<int>(particleCount());
   const double detour_left = std::exp(-h / kDetourTime);
@@ -190,6 +224,7 @@ void Patch::assemble(const LargeScaleMotion& motion, double h) {
   for (int i = 0; i < cut_.free_count; ++i) {
     matrix_.diagonal(i).diagonal().setConstant(masses_[i]);
     rhs_.col(i) = h * masses_[i] * effects_.gravity;
+    if (ties_[i] > 0.0) tie(i, motion, h);
     if (tethers_[i] == 0.0) continue;
     detours_[i] *= detour_left;
     const Vector3d end = state_.positions[i] + h * state_.velocities[i];
@@ -238,6 +273,7 @@ bool Patch::solve(double h) {
 
 bool Patch::advance(const LargeScaleMotion& motion,
                     const base::PerFinger<const Fingertip*>& fingertips, double h) {
+  state_.time = motion.time();
   if (layers_) layers_->update(motion, fingertips, h);
   assemble(motion, h);
   addContact(fingertips, h);
@@ -247,7 +283,6 @@ bool Patch::advance(const LargeScaleMotion& motion,
     state_.positions[i] += h * state_.velocities[i];
     contact_forces_[i] = 0.0;
   }
-  state_.time += h;
   if (obstacles_) obstacles_->commit(atObstacles(state_.positions));
   for (const Finger finger : kFingers) {
     if (!fingertips[finger]) {

@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace haptex::contact {
+namespace {
+
+constexpr std::size_t kMostAround = 400;  // what a millisecond leaves time for
+constexpr std::size_t kShareOfMesh = 4;   // one of so many elements
+
+}  // namespace
 
 SearchVolume searchVolume(const Fingertip& fingertip, double seconds,
                           const HapticSettings& settings) {
@@ -42,6 +48,13 @@ bool PatchSelection::finish() {
     if (chosen_[i]) elements_.push_back(static_cast<int>(i));
   }
   return true;
+}
+
+std::vector<int> elementsAround(const mesh::ClothMesh& mesh, const MeshTopology& topology,
+                                const std::vector<int>& elements, const HapticSettings& settings) {
+  if (settings.surround == 0.0) return {};
+  return trianglesAround(mesh, topology, elements, settings.surround,
+                         std::min(kMostAround, mesh.triangles.size() / kShareOfMesh));
 }
 
 }  // namespace haptex::contact

@@ -1,8 +1,11 @@
 #include "haptex/contact/refined_cut.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <map>
 #include <numeric>
+#include <queue>
 #include <utility>
 
 namespace haptex::contact {
@@ -24,13 +27,47 @@ Support supportOf(const std::array<int, 3>& triangle, const std::array<int, 3>& 
   return support;
 }
 
+/// Nonzero for these triangles of a mesh.
+std::vector<char> marked(const std::vector<int>& triangles, const mesh::ClothMesh& mesh) {
+  std::vector<char> marks(mesh.triangles.size(), 0);
+  for (const int triangle : triangles) marks[triangle] = 1;
+  return marks;
+}
+
+/// The corners of a triangle with a marked one beyond the opposite edge.
+std::vector<int> cornersOpposite(const std::vector<char>& marks, const MeshTopology& topology,
+                                 int triangle) {
+  std::vector<int> corners;
+  for (int corner = 0; corner < 3; ++corner) {
+    const int neighbour = topology.neighbour(triangle, corner);
+    if (neighbour >= 0 && marks[neighbour]) corners.push_back(corner);
+  }
+  return corners;
+}
+
+/// Takes out of `around`, into `triangles`, what has edges to two of these.
+void takeCornered(const mesh::ClothMesh& mesh, const MeshTopology& topology,
+                  std::vector<int>& triangles, std::vector<int>& around) {
+  std::vector<char> refined = marked(triangles, mesh);
+  for (bool goes_on = true; goes_on;) {
+    const auto cornered = std::stable_partition(around.begin(), around.end(), [&](int triangle) {
+      return cornersOpposite(refined, topology, triangle).size() < 2;
+    });
+    goes_on = cornered != around.end();
+    for (auto taken = cornered; taken != around.end(); ++taken) {
+      refined[*taken] = 1;
+      triangles.push_back(*taken);
+    }
+    around.erase(cornered, around.end());
+  }
+}
+
 /// Whether the mesh goes on beyond the edge or corner that a support lies on, outside of the cut.
 class Rim {
  public:
   Rim(const mesh::ClothMesh& mesh, const MeshTopology& topology, const std::vector<int>& triangles,
       const std::vector<char>& attached)
-      : topology_(topology), attached_(attached), inside_(mesh.triangles.size(), 0) {
-    for (int triangle : triangles) inside_[triangle] = 1;
+      : topology_(topology), attached_(attached), inside_(marked(triangles, mesh)) {
     for (int triangle : triangles) {
       for (int corner = 0; corner < 3; ++corner) {
         const int neighbour = topology.neighbour(triangle, corner);
@@ -67,9 +104,8 @@ struct Builder {
   std::map<Support, int> index_of;
   RefinedCut cut;
 
-  int particle(int owner, int a, int b) {
+  int particle(int owner, const std::array<int, 3>& shares) {
     const std::array<int, 3>& triangle = mesh.triangles[owner];
-    const std::array<int, 3> shares = {divisions - a - b, a, b};
     const Support support = supportOf(triangle, shares);
     const auto [entry, is_new] = index_of.emplace(support, static_cast<int>(cut.supports.size()));
     if (is_new) {
@@ -84,7 +120,10 @@ struct Builder {
     return entry->second;
   }
 
-  void addFabric(int owner) {
+  int particle(int owner, int a, int b) { return particle(owner, {divisions - a - b, a, b}); }
+
+  void add(int owner, const std::array<int, 3>& triangle) {
+    cut.mesh.triangles.push_back(triangle);
     if (mesh.triangle_fabrics.empty()) return;
     cut.mesh.triangle_fabrics.push_back(mesh.triangle_fabrics[owner]);
   }
@@ -95,16 +134,34 @@ struct Builder {
         const int origin = particle(owner, a, b);
         const int right = particle(owner, a + 1, b);
         const int up = particle(owner, a, b + 1);
-        cut.mesh.triangles.push_back({origin, right, up});
-        addFabric(owner);
-        if (a + b + 1 < divisions) {
-          cut.mesh.triangles.push_back({right, particle(owner, a + 1, b + 1), up});
-          addFabric(owner);
-        }
+        add(owner, {origin, right, up});
+        if (a + b + 1 < divisions) add(owner, {right, particle(owner, a + 1, b + 1), up});
       }
     }
   }
 };
+
+void addWhole(Builder& builder, int owner) {
+  const int all = builder.divisions;
+  builder.add(owner, {builder.particle(owner, {all, 0, 0}), builder.particle(owner, {0, all, 0}),
+                      builder.particle(owner, {0, 0, all})});
+}
+
+/// From a corner to the parts of the edge opposite to it.
+void addFan(Builder& builder, int owner, int corner) {
+  const auto on_edge = [&](int part) {
+    std::array<int, 3> shares{};
+    shares[(corner + 1) % 3] = builder.divisions - part;
+    shares[(corner + 2) % 3] = part;
+    return builder.particle(owner, shares);
+  };
+  std::array<int, 3> shares{};
+  shares[corner] = builder.divisions;
+  const int apex = builder.particle(owner, shares);
+  for (int part = 0; part < builder.divisions; ++part) {
+    builder.add(owner, {apex, on_edge(part), on_edge(part + 1)});
+  }
+}
 
 template <typename T>
 std::vector<T> reordered(const std::vector<T>& values, const std::vector<int>& order) {
@@ -129,6 +186,36 @@ std::uint8_t fabricAt(const mesh::ClothMesh& mesh, const MeshTopology& topology,
   return 0;
 }
 
+/// m, at rest along edges of the mesh, of every particle from the nearest corner of some triangles;
+/// infinite beyond the reach (Dijkstra 1959, A note on two problems in connexion with graphs).
+std::vector<double> distancesFrom(const mesh::ClothMesh& mesh, const MeshTopology& topology,
+                                  const std::vector<int>& triangles, double reach) {
+  std::vector<double> distances(mesh.rest_coordinates.size(),
+                                std::numeric_limits<double>::infinity());
+  using Reached = std::pair<double, int>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
+  const auto arrive = [&](int particle, double distance) {
+    if (distance > reach || distance >= distances[particle]) return;
+    distances[particle] = distance;
+    next.emplace(distance, particle);
+  };
+  for (const int triangle : triangles) {
+    for (const int particle : mesh.triangles[triangle]) arrive(particle, 0.0);
+  }
+  while (!next.empty()) {
+    const auto [distance, from] = next.top();
+    next.pop();
+    if (distance > distances[from]) continue;
+    for (const int triangle : topology.trianglesOf(from)) {
+      for (const int to : mesh.triangles[triangle]) {
+        const double edge = (mesh.rest_coordinates[to] - mesh.rest_coordinates[from]).norm();
+        arrive(to, distance + edge);
+      }
+    }
+  }
+  return distances;
+}
+
 }  // namespace
 
 MeshTopology::MeshTopology(const mesh::ClothMesh& mesh)
@@ -148,15 +235,23 @@ MeshTopology::MeshTopology(const mesh::ClothMesh& mesh)
 }
 
 RefinedCut cutAndRefine(const mesh::ClothMesh& mesh, const MeshTopology& topology,
-                        const std::vector<int>& triangles, const std::vector<char>& attached,
-                        int refinement) {
+                        std::vector<int> triangles, const std::vector<char>& attached,
+                        int refinement, std::vector<int> around) {
+  takeCornered(mesh, topology, triangles, around);
+  const std::vector<char> refined = marked(triangles, mesh);
   Builder builder{mesh, 1 << refinement, {}, {}};
-  for (int triangle : triangles) builder.split(triangle);
+  for (const int triangle : triangles) builder.split(triangle);
+  for (const int triangle : around) {
+    const std::vector<int> corners = cornersOpposite(refined, topology, triangle);
+    corners.empty() ? addWhole(builder, triangle) : addFan(builder, triangle, corners.front());
+  }
   RefinedCut& cut = builder.cut;
   cut.refinement = refinement;
-  cut.elements = triangles;
+  cut.refined_count = static_cast<int>(triangles.size());
+  cut.elements = std::move(triangles);
+  cut.elements.insert(cut.elements.end(), around.begin(), around.end());
 
-  const Rim rim(mesh, topology, triangles, attached);
+  const Rim rim(mesh, topology, cut.elements, attached);
   const int count = static_cast<int>(cut.supports.size());
   std::vector<int> order(count);
   std::iota(order.begin(), order.end(), 0);
@@ -183,6 +278,33 @@ RefinedCut cutAndRefine(const mesh::ClothMesh& mesh, const MeshTopology& topolog
   std::sort(cut.order.begin(), cut.order.end(),
             [&](int a, int b) { return cut.supports[a] < cut.supports[b]; });
   return std::move(builder.cut);
+}
+
+int cornerIn(const RefinedCut& cut, int particle) {
+  const Support support{{-1, -1, particle}, {0, 0, 1 << cut.refinement}};
+  const auto found =
+      std::lower_bound(cut.order.begin(), cut.order.end(), support,
+                       [&](int i, const Support& sought) { return cut.supports[i] < sought; });
+  const bool is_there = found != cut.order.end() && cut.supports[*found] == support;
+  return is_there ? *found : -1;
+}
+
+std::vector<int> trianglesAround(const mesh::ClothMesh& mesh, const MeshTopology& topology,
+                                 const std::vector<int>& triangles, double reach,
+                                 std::size_t most) {
+  const std::vector<char> marks = marked(triangles, mesh);
+  const std::vector<double> distances = distancesFrom(mesh, topology, triangles, reach);
+  std::vector<std::pair<double, int>> near;  // m, triangle
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const double farthest = std::max({distances[a], distances[b], distances[c]});
+    if (!marks[t] && farthest <= reach) near.emplace_back(farthest, t);
+  }
+  std::sort(near.begin(), near.end());
+  near.resize(std::min(near.size(), most));
+  std::vector<int> around;
+  for (const auto& [distance, triangle] : near) around.push_back(triangle);
+  return around;
 }
 
 }  // namespace haptex::contact

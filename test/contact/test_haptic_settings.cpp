@@ -35,6 +35,7 @@ TEST_F(HapticSettingsFile, HasItsDefaultsWhereTheSceneSaysNothing) {
     EXPECT_EQ(settings.layer, Layer::kPatch);
     EXPECT_EQ(settings.refinement, 2);
     EXPECT_EQ(settings.margin, 0.008);
+    EXPECT_EQ(settings.surround, 0.06);
     EXPECT_TRUE(settings.predict);
     EXPECT_EQ(settings.time_step, 1e-3);
   }
@@ -43,11 +44,13 @@ TEST_F(HapticSettingsFile, HasItsDefaultsWhereTheSceneSaysNothing) {
 TEST_F(HapticSettingsFile, ReadsEveryKey) {
   const HapticSettings settings = load(
       "fabric: wool\n"
-      "haptics: {layer: patch, refinement: 0, margin: 0.02, most_elements: 7, predict: false}\n");
+      "haptics: {layer: patch, refinement: 0, margin: 0.02, most_elements: 7, "
+      "surround: 0.03, predict: false}\n");
   EXPECT_EQ(settings.layer, Layer::kPatch);
   EXPECT_EQ(settings.refinement, 0);
   EXPECT_EQ(settings.margin, 0.02);
   EXPECT_EQ(settings.most_elements, 7);
+  EXPECT_EQ(settings.surround, 0.03);
   EXPECT_FALSE(settings.predict);
   EXPECT_EQ(load("haptics: {layer: whole_cloth}\n").layer, Layer::kWholeCloth);
 }
@@ -59,6 +62,7 @@ TEST_F(HapticSettingsFile, LeavesOutWhatIsNotGiven) {
   EXPECT_EQ(settings.margin, 0.008);
   EXPECT_TRUE(load("haptics: {predict: true}\n").predict);
   EXPECT_EQ(load("haptics: {margin: 0.1}\n").margin, 0.1);
+  EXPECT_EQ(load("haptics: {surround: 0}\n").surround, 0.0);
 }
 
 TEST(HapticSettings, OfTheShippedWoolSampleAreAPatchRefinedTwice) {
@@ -92,13 +96,13 @@ INSTANTIATE_TEST_SUITE_P(
     Settings, HapticSettingsRefuse,
     testing::Values(Refusal{"UnknownKey", "haptics: {time_step: 0.001}",
                             "haptics.time_step: unknown key, allowed here: layer, refinement, "
-                            "margin, most_elements, predict"},
+                            "margin, most_elements, surround, predict"},
                     Refusal{"NotAMap", "haptics: patch",
                             "haptics: 'patch' must be a map with the keys layer, refinement, "
-                            "margin, most_elements, predict"},
+                            "margin, most_elements, surround, predict"},
                     Refusal{"Empty", "haptics:",
                             "haptics: nothing must be a map with the keys layer, refinement, "
-                            "margin, most_elements, predict"},
+                            "margin, most_elements, surround, predict"},
                     Refusal{"SceneNotAMap", "- wool", "a list of 1 must be a map"},
                     Refusal{"UnknownLayer", "haptics: {layer: fine}",
                             "haptics.layer: 'fine' must be one of patch, whole_cloth"},
@@ -120,6 +124,10 @@ INSTANTIATE_TEST_SUITE_P(
                             "haptics.margin: '8' must be > 0 and <= 0.1 m"},
                     Refusal{"NanMargin", "haptics: {margin: .nan}",
                             "haptics.margin: '.nan' must be a finite number"},
+                    Refusal{"SurroundBelowZero", "haptics: {surround: -0.01}",
+                            "haptics.surround: '-0.01' must be from 0 to 0.2 m"},
+                    Refusal{"SurroundInMillimetres", "haptics: {surround: 60}",
+                            "haptics.surround: '60' must be from 0 to 0.2 m"},
                     Refusal{"PredictWithANumber", "haptics: {predict: 1}",
                             "haptics.predict: '1' must be one of true, false"}),
     [](const auto& info) { return info.param.name; });

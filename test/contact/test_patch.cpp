@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -184,6 +185,40 @@ TEST_F(PatchTest, AnExchangeUnderContactDoesNotLetTheForceJump) {
     EXPECT_LT((forceOn(there) - last).norm(), 0.02) << "step " << i;
     last = forceOn(there);
   }
+}
+
+TEST_F(PatchTest, WhatIsRefinedInAnExchangeStaysWhereItWas) {
+  const std::vector<int> inner = trianglesAround(mesh_, {0.02, 0.02}, 0.005);
+  const std::vector<int> outer = trianglesAround(mesh_, {0.02, 0.02}, 0.01);
+  const auto patchOf = [&](const std::vector<int>& refined, const std::vector<int>& around) {
+    return Patch(mesh_, cutAndRefine(mesh_, topology_, refined, nothingAttached(mesh_), 2, around),
+                 fabrics_, effects_, laws_);
+  };
+  Patch here = patchOf(inner, trianglesAround(mesh_, topology_, inner, 0.01, 1000));
+  here.start(motion_);
+  const Fingertip fingertip = pressing(laws_.front(), kSmallSampleMiddle, 1e-3);
+  advance(here, &fingertip, 200);
+  Patch there = patchOf(outer, {});
+  there.goOnFrom(here, motion_);
+  double moved = 0.0;
+  for (int i = 0; i < there.freeCount(); ++i) {
+    Vector3d place = Vector3d::Zero();
+    const std::array<int, 3>& corners = mesh_.triangles[there.cut().owners[i]];
+    const int element = there.cut().owners[i];
+    const auto& elements = here.cut().elements;
+    const auto whole =
+        std::find(elements.begin() + here.cut().refined_count, elements.end(), element);
+    if (whole == elements.end()) continue;
+    for (int k = 0; k < 3; ++k) {
+      place += there.cut().weights[i][k] * here.positions()[cornerIn(here.cut(), corners[k])];
+    }
+    const bool shared = std::count(here.cut().supports.begin(), here.cut().supports.end(),
+                                   there.cut().supports[i]) > 0;
+    if (shared) continue;
+    EXPECT_NEAR((there.positions()[i] - place).norm(), 0.0, 1e-12);
+    moved = std::max(moved, (place - there.placeOnCloth(i, motion_)).norm());
+  }
+  EXPECT_GT(moved, 1e-5) << "nothing is off the large-scale cloth";
 }
 
 // Contact comes, slips and goes while the large-scale cloth moves.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "fixtures.h"
@@ -142,6 +143,84 @@ TEST_P(RefinedCutLevel, AnotherCutHasTheSameSupportForTheSamePlace) {
     }
   }
   EXPECT_EQ(shared, (divisions() + 1) * (2 * divisions() + 1));
+}
+
+/// The 2 x 2 cells in the middle refined, and all elements within 10 mm around them.
+class CutWithSurroundings : public RefinedCutLevel {
+ protected:
+  const std::vector<int> around_ = trianglesAround(mesh_, topology_, triangles_, 0.01, 1000);
+  const RefinedCut cut_ =
+      cutAndRefine(mesh_, topology_, triangles_, nothingAttached(mesh_), GetParam(), around_);
+};
+
+INSTANTIATE_TEST_SUITE_P(Refinement, CutWithSurroundings, testing::Range(0, 5));
+
+TEST_P(CutWithSurroundings, HasTheAreaOfItsElementsAndNoLooseEdge) {
+  EXPECT_TRUE(findDefects(cut_.mesh).none());
+  ASSERT_EQ(cut_.elements.size(), triangles_.size() + around_.size());
+  double elements = 0.0, triangles = 0.0;
+  for (const int element : cut_.elements) elements += signedArea(mesh_, element);
+  std::map<std::pair<int, int>, int> edges;
+  for (int t = 0; t < static_cast<int>(cut_.mesh.triangles.size()); ++t) {
+    triangles += signedArea(cut_.mesh, t);
+    EXPECT_GT(signedArea(cut_.mesh, t), 0.0);
+    const auto& corners = cut_.mesh.triangles[t];
+    for (int k = 0; k < 3; ++k) ++edges[std::minmax(corners[k], corners[(k + 1) % 3])];
+  }
+  EXPECT_NEAR(triangles, elements, 1e-12 * elements);
+  int border = 0;
+  for (const auto& [edge, count] : edges) border += count == 1;
+  std::map<std::pair<int, int>, int> coarse_edges;
+  for (const int element : cut_.elements) {
+    const auto& corners = mesh_.triangles[element];
+    for (int k = 0; k < 3; ++k) ++coarse_edges[std::minmax(corners[k], corners[(k + 1) % 3])];
+  }
+  int coarse_border = 0;
+  for (const auto& [edge, count] : coarse_edges) coarse_border += count == 1;
+  EXPECT_EQ(border, coarse_border) << "a triangle's corner lies on another one's edge";
+}
+
+TEST_P(CutWithSurroundings, RefinesTheElementsBeforeTheOthers) {
+  const auto count = static_cast<std::size_t>(cut_.refined_count) * divisions() * divisions();
+  ASSERT_GE(cut_.refined_count, static_cast<int>(triangles_.size()));
+  ASSERT_LE(count, cut_.mesh.triangles.size());
+  for (std::size_t t = 0; t < count; ++t) {
+    const int element = cut_.elements[t / (divisions() * divisions())];
+    EXPECT_NEAR(signedArea(cut_.mesh, static_cast<int>(t)),
+                signedArea(mesh_, element) / (divisions() * divisions()), 1e-18);
+  }
+}
+
+TEST_P(CutWithSurroundings, FindsTheParticlesOfTheMesh) {
+  for (const int element : cut_.elements) {
+    for (const int corner : mesh_.triangles[element]) {
+      const int particle = cornerIn(cut_, corner);
+      ASSERT_GE(particle, 0);
+      EXPECT_EQ(cut_.mesh.rest_coordinates[particle], mesh_.rest_coordinates[corner]);
+    }
+  }
+  EXPECT_EQ(cornerIn(cut_, 0), -1);
+}
+
+TEST(TrianglesAround, ComeNearestFirstWithinTheReachAndWithoutThoseInside) {
+  const mesh::ClothMesh mesh = smallSample();
+  const MeshTopology topology(mesh);
+  const std::vector<int> inside = trianglesAround(mesh, {0.02, 0.02}, 0.005);
+  const std::vector<int> ring = trianglesAround(mesh, topology, inside, 0.0051, 1000);
+  // The 4 x 4 cells but the inner four; no corner of the square is a diagonal away.
+  for (const int triangle : ring) {
+    EXPECT_EQ(std::count(inside.begin(), inside.end(), triangle), 0);
+    for (const int p : mesh.triangles[triangle]) {
+      const Eigen::Vector2d from_middle = mesh.rest_coordinates[p] - Eigen::Vector2d(0.02, 0.02);
+      EXPECT_LT(from_middle.lpNorm<Eigen::Infinity>(), 0.01 + 1e-9);
+    }
+  }
+  EXPECT_GE(ring.size(), 16u);
+  EXPECT_TRUE(trianglesAround(mesh, topology, inside, 0.0, 1000).empty());
+  const std::vector<int> first = trianglesAround(mesh, topology, inside, 0.0051, 5);
+  EXPECT_EQ(first, std::vector<int>(ring.begin(), ring.begin() + 5));
+  EXPECT_EQ(trianglesAround(mesh, topology, inside, 1.0, 1000).size(),
+            mesh.triangles.size() - inside.size());
 }
 
 TEST(MeshTopology, NeighboursAreMutualAndTheBorderHasNone) {

@@ -85,7 +85,7 @@ TEST_F(SceneFabric, IsRefusedWithAWrongKeyHaptics) {
   EXPECT_EQ(refusal(kConfig + "/fabrics/wool.yaml", "fingers", "haptics: {depth: 3}\n"),
             scenePath() +
                 ": haptics.depth: unknown key, allowed here: layer, refinement, margin, "
-                "most_elements, predict");
+                "most_elements, surround, predict");
 }
 
 TEST(ShippedScenes, HaveFabricsWithWhatTheyList) {

@@ -12,6 +12,7 @@
 #include "haptex/contact/large_scale_motion.h"
 #include "haptex/contact/layers_between.h"
 #include "haptex/contact/obstacles/obstacle_contact.h"
+#include "haptex/contact/patch_forces.h"
 #include "haptex/contact/patch_solver.h"
 #include "haptex/contact/refined_cut.h"
 #include "haptex/contact/sphere_contact.h"
@@ -92,8 +93,13 @@ class Patch {
   bool stepWasShort() const { return solver_.wasShort(); }
 
  private:
+  Patch(const mesh::ClothMesh& coarse, RefinedCut& cut,
+        const std::vector<material::Fabric>& fabrics, const cloth::ModelledEffects& effects,
+        const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles, PatchForces forces);
   Particles particlesAt(const std::vector<Eigen::Vector3d>& positions, base::Finger finger) const;
   Particles atObstacles(const std::vector<Eigen::Vector3d>& positions) const;
+  void placeOn(const Patch& other, int particle, const LargeScaleMotion& motion);
+  void tie(int particle, const LargeScaleMotion& motion, double h);
   void assemble(const LargeScaleMotion& motion, double h);
   bool solve(double h);
   void add(const TouchedParticle& touched, double h);
@@ -113,6 +119,7 @@ class Patch {
   cloth::ClothState state_;
   std::vector<Eigen::Vector3d> predicted_;  // m
   std::vector<Eigen::Vector3d> detours_;    // m, from the place on the cloth; fade
+  std::vector<double> ties_;                // N/m, likewise, of what stays coarse
   std::vector<double> tethers_;             // N/m, to that place; fade
   base::PerFinger<SphereContact> contacts_;
   base::PerFinger<std::vector<TouchedParticle>> linearised_;

@@ -5,6 +5,7 @@
 
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/haptic_settings.h"
+#include "haptex/contact/refined_cut.h"
 
 namespace haptex::contact {
 
@@ -60,5 +61,11 @@ class PatchSelection {
   std::vector<int> apart_;  // rounds since an element touched, kRests at most
   std::vector<int> elements_;
 };
+
+/// What a patch has around its refined elements, nearest first: as far as settings.surround, at
+/// most 400, and at most a quarter of the mesh, so that the large-scale cloth holds the patch.
+/// @param elements each once
+std::vector<int> elementsAround(const mesh::ClothMesh& mesh, const MeshTopology& topology,
+                                const std::vector<int>& elements, const HapticSettings& settings);
 
 }  // namespace haptex::contact

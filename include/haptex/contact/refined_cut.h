@@ -39,13 +39,16 @@ struct Support {
   }
 };
 
-/// Some triangles of a mesh, each split into 4^refinement. The particles that are free to move come
+/// Some triangles of a mesh, each split into 4^refinement, and around them others that stay whole,
+/// but for those with an edge to a split one, which fan out from the corner opposite to it, so that
+/// every corner lies on corners. The particles that are free to move come
 /// first, then those of the rim, which follow the mesh: they lie on an edge or corner that the cut
 /// shares with triangles outside of it, or are attached.
 struct RefinedCut {
   mesh::ClothMesh mesh;  ///< initial positions are zero
   int free_count = 0;    ///< particles before the rim
   int refinement = 0;
+  int refined_count = 0;                 ///< elements before those that stay coarse
   std::vector<int> elements;             ///< of the original mesh, that were cut
   std::vector<Support> supports;         ///< per particle
   std::vector<int> owners;               ///< per particle, a triangle of the original mesh
@@ -59,8 +62,21 @@ struct RefinedCut {
 /// @param triangles of the mesh, at least one, each once
 /// @param attached  per particle of the mesh, nonzero where it is held
 /// @param refinement 0 to 4
+/// @param around    other triangles of the mesh, each once, that are cut out and stay coarse; one
+///   with edges to two of the refined ones is refined, too
 RefinedCut cutAndRefine(const mesh::ClothMesh& mesh, const MeshTopology& topology,
-                        const std::vector<int>& triangles, const std::vector<char>& attached,
-                        int refinement);
+                        std::vector<int> triangles, const std::vector<char>& attached,
+                        int refinement, std::vector<int> around = {});
+
+/// The particle of a cut at a particle of the mesh that was cut; -1: none.
+int cornerIn(const RefinedCut& cut, int particle);
+
+/// The triangles around some of a mesh, nearest first, without these.
+/// @param triangles each once
+/// @param reach m, >= 0, along the edges of the mesh at rest, from the triangles to the farthest
+///   corner
+/// @param most  how many at most
+std::vector<int> trianglesAround(const mesh::ClothMesh& mesh, const MeshTopology& topology,
+                                 const std::vector<int>& triangles, double reach, std::size_t most);
 
 }  // namespace haptex::contact

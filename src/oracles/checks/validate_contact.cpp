@@ -11,6 +11,7 @@ void validateContact(const std::string& config_directory, const Sink& sink) {
   validateContactFriction(wool, sink);
   validateContactEquilibrium(wool, sink);
   validateContactFeel(wool, sink);
+  validateMovedPinch(wool, sink);
 }
 
 }  // namespace haptex::oracles

@@ -18,6 +18,8 @@ void validateContactTouch(const material::Fabric& fabric, const Sink& sink);
 void validateContactFriction(const material::Fabric& fabric, const Sink& sink);
 /// Ripple, steps when the patch moves on, energy at the fingertip, the whole cloth at 1 kHz.
 void validateContactFeel(const material::Fabric& fabric, const Sink& sink);
+/// Force of a pinch that carries the hanging sample, against the whole cloth in one layer.
+void validateMovedPinch(const material::Fabric& fabric, const Sink& sink);
 
 /// The large-scale cloth among rigid obstacles.
 void validateContactObstacles(const Sink& sink);
