@@ -71,9 +71,10 @@ struct ClothMesh {
 /// fabric of every triangle.
 struct CutPanel {
   ClothMesh sheet;
-  std::vector<int> particles;  ///< of the mesh, for every one of the sheet, ascending: twice
-};                             ///< where it has two rest coordinates in the panel, as in a dart
-                               ///< that was merged
+  /// Of the mesh, for every one of the sheet, ascending. One that has two rest coordinates in the
+  /// panel, as where a dart was merged, stands twice.
+  std::vector<int> particles;
+};
 /// @param mesh sound @param panel of it
 CutPanel cutPanel(const ClothMesh& mesh, int panel);
 
