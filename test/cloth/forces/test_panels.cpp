@@ -231,6 +231,10 @@ mesh::ClothMesh slitSquare(mesh::Seam& seam) {
       std::replace(triangle.begin(), triangle.end(), left, right);
     }
   }
+  for (std::size_t i = 0; i < seam.first.size(); ++i) {
+    seam.first_places.push_back(static_cast<double>(i) / (kCells / 2));
+  }
+  seam.second_places = seam.first_places;
   return mesh;
 }
 
