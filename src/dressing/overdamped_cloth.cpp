@@ -11,6 +11,7 @@ namespace {
 cloth::StepSettings settingsOf(const OverdampedMotion& motion) {
   cloth::StepSettings settings;
   settings.newton_iterations = 2;
+  settings.tolerance = 1e-4;  // what is left over goes into the next step
   settings.threads = motion.threads;
   return settings;
 }

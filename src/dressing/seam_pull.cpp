@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Where a particle that is farther away than that part of the farthest way in a step comes nearer
-// by less than that part, it is pulled harder from step to step, up to kMost times.
+// Where a particle comes nearer by less than that part of the farthest way in a step, it is pulled
+// harder from step to step, up to kMost times.
 constexpr double kStuck = 0.1, kGrowth = 1.05, kMost = 20.0;
 
 /// Half of the pieces of an edge beside each of its particles (m, at rest).
@@ -104,11 +104,12 @@ const std::vector<cloth::PointLoad>& SeamPull::loads(const std::vector<Vector3d>
     const Vector3d& place = positions[member.particle];
     Vector3d way = targets[member.group] - place;
     const double length = way.norm();
-    const bool stuck = length > farthest * kStuck && length > member.length - kStuck * farthest;
+    const bool stuck = length > kStuck * farthest && length > member.length - kStuck * farthest;
     if (stuck) member.force = std::min(kGrowth * member.force, member.most);
     member.length = length;
     if (length > farthest) way *= farthest / length;
-    // Where it is as far away as it may be pulled, the force is the most; nearer it falls with it.
+    // From the farthest way on the force is all; below it falls with the distance. Stiffer ones
+    // would hold back what is closed already.
     const double stiffness = member.force / farthest;
     loads_.push_back({member.triangle, Vector3d::Unit(member.corner), place + way, Vector3d::Zero(),
                       stiffness * Eigen::Matrix3d::Identity()});

@@ -3,12 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <sstream>
 #include <stdexcept>
-
-#include "haptex/base/require.h"
 
 namespace haptex::mesh {
 namespace {
@@ -69,19 +66,16 @@ void findPanelDefects(const ClothMesh& mesh, MeshDefects& defects) {
   }
 }
 
-const Eigen::Vector2d kUnknownPlace =
-    Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-
-/// @param place of the particle in the panel so far
-void putCorner(int panel, int particle, const Eigen::Vector2d& corner, Eigen::Vector2d& place) {
+/// The one of a particle's places in a panel that a corner has, which is added if it is new.
+std::size_t placeOf(const Eigen::Vector2d& corner, std::vector<Eigen::Vector2d>& places) {
   constexpr double kSame = 1e-9;  // of the coordinates
-  if ((corner - place).norm() > kSame * (corner.norm() + place.norm())) {
-    base::refuse("particle ", particle, " has two places in panel ", panel, ", (",
-                 place.transpose(), ") m and (", corner.transpose(),
-                 ") m, as that of a dart that was merged; a panel by itself has one of each: "
-                 "allowed is to sew darts by ties");
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if ((corner - places[i]).norm() > kSame * (corner.norm() + places[i].norm())) continue;
+    places[i] = corner;
+    return i;
   }
-  place = corner;
+  places.push_back(corner);
+  return places.size() - 1;
 }
 
 }  // namespace
@@ -100,29 +94,33 @@ std::array<Eigen::Vector2d, 3> ClothMesh::restCorners(std::size_t triangle) cons
 }
 
 CutPanel cutPanel(const ClothMesh& mesh, int panel) {
-  CutPanel cut;
-  std::vector<int> place(mesh.rest_coordinates.size(), -1);
+  std::vector<std::vector<Eigen::Vector2d>> places(mesh.rest_coordinates.size());
   std::vector<std::size_t> triangles;
+  std::vector<std::array<std::size_t, 3>> place_of;  // of the corners of `triangles`
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (mesh.panelOf(t) != panel) continue;
     triangles.push_back(t);
-    for (const int particle : mesh.triangles[t]) place[particle] = 0;
-  }
-  for (std::size_t i = 0; i < place.size(); ++i) {
-    if (place[i] < 0) continue;
-    place[i] = static_cast<int>(cut.particles.size());
-    cut.particles.push_back(static_cast<int>(i));
-    cut.sheet.initial_positions.push_back(mesh.initial_positions[i]);
-  }
-  cut.sheet.rest_coordinates.assign(cut.particles.size(), kUnknownPlace);
-  for (const std::size_t t : triangles) {
-    cut.sheet.triangle_fabrics.push_back(mesh.fabricOf(t));
     const std::array<Eigen::Vector2d, 3> corners = mesh.restCorners(t);
-    std::array<int, 3>& triangle = cut.sheet.triangles.emplace_back(mesh.triangles[t]);
+    std::array<std::size_t, 3>& of_corners = place_of.emplace_back();
     for (int i = 0; i < 3; ++i) {
-      const int particle = triangle[i];
-      triangle[i] = place[particle];
-      putCorner(panel, particle, corners[i], cut.sheet.rest_coordinates[triangle[i]]);
+      of_corners[i] = placeOf(corners[i], places[mesh.triangles[t][i]]);
+    }
+  }
+  CutPanel cut;
+  std::vector<int> first(places.size());  // of the sheet's particles
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    first[i] = static_cast<int>(cut.particles.size());
+    for (const Eigen::Vector2d& place : places[i]) {
+      cut.particles.push_back(static_cast<int>(i));
+      cut.sheet.initial_positions.push_back(mesh.initial_positions[i]);
+      cut.sheet.rest_coordinates.push_back(place);
+    }
+  }
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    cut.sheet.triangle_fabrics.push_back(mesh.fabricOf(triangles[k]));
+    std::array<int, 3>& triangle = cut.sheet.triangles.emplace_back();
+    for (int i = 0; i < 3; ++i) {
+      triangle[i] = first[mesh.triangles[triangles[k]][i]] + static_cast<int>(place_of[k][i]);
     }
   }
   return cut;

@@ -108,8 +108,8 @@ TEST(Drape, RefusesSettingsThatAreNoNumbers) {
   for (double DrapeSettings::*number :
        {&DrapeSettings::time_step, &DrapeSettings::damping, &DrapeSettings::closing_speed,
         &DrapeSettings::tension, &DrapeSettings::lift, &DrapeSettings::thickness,
-        &DrapeSettings::sewn_gap, &DrapeSettings::rest_speed, &DrapeSettings::rest_time,
-        &DrapeSettings::most_time}) {
+        &DrapeSettings::patience, &DrapeSettings::sewn_gap, &DrapeSettings::rest_speed,
+        &DrapeSettings::rest_time, &DrapeSettings::most_time}) {
     for (const double value : {-1.0, std::numeric_limits<double>::quiet_NaN(),
                                std::numeric_limits<double>::infinity()}) {
       DrapeSettings settings;

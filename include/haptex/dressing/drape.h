@@ -24,8 +24,10 @@ struct DrapeSettings {
   /// m: fabric is at least so thick then, but half of the shortest altitude of its triangles at
   /// most. It keeps a distance from the body and from itself that sewing can do without.
   double thickness = 4e-3;
-  /// m: nearer to the middle of its seam than that a particle is sewn.
-  double sewn_gap = 8e-3;
+  double sewn_gap = 8e-3;  ///< m, of particles from the middle of their seam, that sewing closes
+  /// s: so long such a state that would intersect itself when sewn waits for a better one. Then it
+  /// is sewn, and pulled apart (cloth::Untangling).
+  double patience = 1.0;
   // Rest:
   double rest_speed = 2e-3;  ///< m/s: the fastest particle has been slower than that for
   double rest_time = 0.2;    ///< s
@@ -43,7 +45,7 @@ struct DrapeOutcome {
   double settling_time = 0.0;  ///< s
   double fastest = 0.0;        ///< m/s, at the end
   int steps = 0;
-  double computing_seconds = 0.0;  ///< wall clock
+  double computing_seconds = 0.0;  ///< of the processor, all threads
   int intersecting_states = 0;     ///< that intersected themselves, of all after a step
   std::size_t with_itself = 0;     ///< pairs of triangles that intersect at the end
   std::size_t with_body = 0;       ///< likewise, of the garment and of the body
@@ -54,17 +56,15 @@ struct DrapeOutcome {
 
 /// Sews a garment on a body that stands still, and lets it come to rest under gravity.
 ///
-/// 1. The sides of seams are pulled together, held up a little instead of their weight, and without
-/// friction. Panels touch the body
-///    and each other and pass through neither.
+/// 1. The sides of seams are pulled together without friction, and with a lift instead of weight.
+///    Panels touch the body and each other and pass through neither.
 /// 2. As soon as all are near, and what is sewn together there intersects neither itself nor the
 ///    body, they become one mesh.
 /// 3. That comes to rest with weight, thickness and friction as they are.
 /// @param fabrics those that the garment names, in its order; contact knows one
 /// @param body closed surface, m, world frame
-/// @throws std::invalid_argument if a number of the settings is not finite and > 0, there are not
-/// as
-///   many fabrics as the garment names, one lacks bending, compression or friction, a panel touches
+/// @throws std::invalid_argument if a number of the settings is not finite and > 0, the garment
+///   names another number of fabrics, one lacks bending, compression or friction, a panel touches
 ///   the body at the start, or what cloth::Cloth and mesh::merge() say
 /// @throws std::runtime_error if a seam does not close within most_time, naming its panels and what
 ///   is in the way, or a step is not finite

@@ -71,11 +71,11 @@ struct ClothMesh {
 /// fabric of every triangle.
 struct CutPanel {
   ClothMesh sheet;
-  std::vector<int> particles;  ///< of the mesh, for every one of the sheet, ascending
+  /// Of the mesh, for every one of the sheet, ascending. One that has two rest coordinates in the
+  /// panel, as where a dart was merged, stands twice.
+  std::vector<int> particles;
 };
 /// @param mesh sound @param panel of it
-/// @throws std::invalid_argument if a particle has two rest coordinates in the panel, as where a
-///   dart was merged
 CutPanel cutPanel(const ClothMesh& mesh, int panel);
 
 /// How makeRectangle() splits its cells into two triangles.

@@ -141,6 +141,19 @@ std::vector<material::BendingRigidity> rigiditiesOf(const std::vector<material::
   return rigidities;
 }
 
+/// Whether darts of the panel were merged, so that a particle has two places in it.
+bool hasMergedDarts(const mesh::CutPanel& cut) {
+  return std::adjacent_find(cut.particles.begin(), cut.particles.end()) != cut.particles.end();
+}
+
+void requireNoMergedDarts(const mesh::CutPanel& cut, const ModelledEffects& effects) {
+  const bool curved = !effects.bending_settings.rest_curvature.isZero(0.0);
+  if ((!effects.bending_hysteresis && !curved) || !hasMergedDarts(cut)) return;
+  throw std::invalid_argument(std::string(curved ? "curvature at rest" : "hysteresis of bending") +
+                              " is modelled, and a panel has a dart that was merged: allowed is to "
+                              "sew darts by ties");
+}
+
 /// Of a panel with regions of other fabrics.
 void addBendingOfRegions(const mesh::CutPanel& cut, const std::vector<material::Fabric>& fabrics,
                          const ModelledEffects& effects, ForceSum& forces) {
@@ -158,6 +171,7 @@ void addBending(const mesh::CutPanel& cut, const std::vector<material::Fabric>& 
                 const ModelledEffects& effects, ForceSum& forces) {
   const std::vector<int>& named = cut.sheet.triangle_fabrics;
   if (named.empty()) return;  // of a part of a cloth that has nothing of this panel
+  requireNoMergedDarts(cut, effects);
   if (std::any_of(named.begin(), named.end(), [&](int f) { return f != named.front(); })) {
     return addBendingOfRegions(cut, fabrics, effects, forces);
   }

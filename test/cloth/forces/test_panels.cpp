@@ -1,11 +1,13 @@
 // Panels that are sewn together, against sheets in one piece.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "derivatives.h"
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/mesh/seam.h"
 #include "self_contact_fixtures.h"
 
 namespace haptex::cloth::test_panels {
@@ -205,6 +207,72 @@ TEST(Panels, ThatCollideHaveTrianglesLargerThanTheirThickness) {
         << refusal.what();
     EXPECT_NE(std::string(refusal.what()).find("allowed are longer edges"), std::string::npos);
   }
+}
+
+/// A square with a slit from the middle of its top to its middle, and the seam that closes it. The
+/// right side of the slit lies a little to the right on the fabric.
+mesh::ClothMesh slitSquare(mesh::Seam& seam) {
+  constexpr int kCells = 6;
+  mesh::ClothMesh mesh = square(kCells);
+  const auto particle = [](int column, int row) { return row * (kCells + 1) + column; };
+  seam.first = seam.second = {particle(kCells / 2, kCells / 2)};
+  for (int row = kCells / 2 + 1; row <= kCells; ++row) {
+    const int left = particle(kCells / 2, row);
+    const int right = static_cast<int>(mesh.rest_coordinates.size());
+    mesh.rest_coordinates.push_back(mesh.rest_coordinates[left] + Vector2d(0.001, 0.0));
+    mesh.initial_positions.push_back(mesh.initial_positions[left]);
+    seam.first.push_back(left);
+    seam.second.push_back(right);
+    for (std::array<int, 3>& triangle : mesh.triangles) {
+      double column = 0.0;
+      for (const int corner : triangle) {
+        column += corner < (kCells + 1) * (kCells + 1) ? corner % (kCells + 1) : 0.5 * kCells;
+      }
+      if (column / 3.0 <= kCells / 2) continue;
+      std::replace(triangle.begin(), triangle.end(), left, right);
+    }
+  }
+  for (std::size_t i = 0; i < seam.first.size(); ++i) {
+    seam.first_places.push_back(static_cast<double>(i) / (kCells / 2));
+  }
+  seam.second_places = seam.first_places;
+  return mesh;
+}
+
+TEST(Panels, WithAMergedDartBendAsTheyDoUnsewn) {
+  material::Fabric fabric = linearFabric();
+  fabric.bending = {1e-5, 2e-5};
+  ModelledEffects effects;
+  effects.bending = true;
+  mesh::Seam seam;
+  const mesh::ClothMesh open = slitSquare(seam);
+  const mesh::MergedMesh merged = mesh::merge(open, {seam});
+  mesh::ClothMesh without_hinges = merged.mesh;
+  without_hinges.seam_hinges.clear();
+  const Cloth sewn(without_hinges, fabric, effects), unsewn(open, fabric, effects);
+  const ClothState state = randomState(sewn, 0.003, 1.0, 3);
+  ClothState apart = unsewn.initialState();
+  for (std::size_t i = 0; i < apart.positions.size(); ++i) {
+    apart.positions[i] = state.positions[merged.particles[i]];
+    apart.velocities[i] = state.velocities[merged.particles[i]];
+  }
+  std::vector<Vector3d> forces, parts, sums(sewn.particleCount(), Vector3d::Zero());
+  sewn.computeForces(state, forces);
+  unsewn.computeForces(apart, parts);
+  for (std::size_t i = 0; i < parts.size(); ++i) sums[merged.particles[i]] += parts[i];
+  double scale = 0.0;
+  for (const Vector3d& force : forces) scale = std::max(scale, force.norm());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    EXPECT_LT((sums[i] - forces[i]).norm(), 1e-12 * scale);
+  }
+  EXPECT_NEAR(sewn.potentialEnergy(state), unsewn.potentialEnergy(apart),
+              1e-12 * sewn.potentialEnergy(state));
+  StepSettings settings;
+  settings.tolerance = 1e-12;
+  Cloth stepped(without_hinges, fabric, effects);
+  ClothState end = state;
+  Integrator integrator(stepped, settings);
+  EXPECT_TRUE(integrator.step(stepped, end, 1e-3).accepted);
 }
 
 }  // namespace

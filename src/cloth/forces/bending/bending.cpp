@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 #include "haptex/cloth/forces/bending/bending_moments.h"
 
@@ -139,13 +140,26 @@ void Bending::couple(const mesh::ClothMesh& mesh) {
 
 void Bending::renumber(const std::vector<int>& particles) {
   for (HingeCorner& corner : corners_) corner.particle = particles[corner.particle];
-  for (Coupling& coupling : couplings_) {
-    coupling.row = particles[coupling.row];
-    coupling.column = particles[coupling.column];
-  }
-  for (std::array<int, 2>& pair : pairs_) pair = {particles[pair[0]], particles[pair[1]]};
   std::vector<double> diagonal(particles.back() + 1, 0.0);
-  for (std::size_t i = 0; i < particles.size(); ++i) diagonal[particles[i]] = diagonal_[i];
+  for (std::size_t i = 0; i < particles.size(); ++i) diagonal[particles[i]] += diagonal_[i];
+  std::vector<Coupling> couplings;
+  for (Coupling coupling : couplings_) {
+    // Particles of the sheet that were sewn together are in no order, or one.
+    std::tie(coupling.column, coupling.row) =
+        std::minmax({particles[coupling.row], particles[coupling.column]});
+    if (coupling.row != coupling.column) {
+      couplings.push_back(coupling);
+    } else {
+      diagonal[coupling.row] += 2.0 * coupling.stiffness;
+    }
+  }
+  couplings_ = std::move(couplings);
+  std::vector<std::array<int, 2>> pairs;
+  for (const auto& [a, b] : pairs_) {
+    const auto [first, second] = std::minmax({particles[a], particles[b]});
+    if (first != second) pairs.push_back({first, second});
+  }
+  pairs_ = std::move(pairs);
   diagonal_ = std::move(diagonal);
   if (rest_) rest_->renumber(particles);
 }
