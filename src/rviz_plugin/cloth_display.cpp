@@ -79,8 +79,8 @@ void ClothDisplay::subscribe() {
     refuse("Topics", topics.empty() ? "no name is given: by default it is cloth" : error);
     return;
   }
-  setStatus(rviz::StatusProperty::Warn, "Mesh",
-            QString::fromStdString(ros::names::resolve(topics + "/mesh") + " has not come yet"));
+  say("Mesh", rviz::StatusProperty::Warn,
+      ros::names::resolve(topics + "/mesh") + " has not come yet");
   subscriptions_.add<haptex::ClothMesh>(
       topics + "/mesh", 1, [this](const haptex::ClothMeshConstPtr& mesh) { receive(mesh); });
   subscriptions_.add<haptex::ClothState>(topics + "/state", 1,
@@ -97,6 +97,7 @@ void ClothDisplay::subscribe() {
 
 void ClothDisplay::forget() {
   clearStatuses();
+  said_.clear();
   object_.reset();
   surface_.reset();
   mesh_.reset();
@@ -105,7 +106,16 @@ void ClothDisplay::forget() {
 }
 
 void ClothDisplay::refuse(const std::string& what, const std::string& why) {
-  setStatusStd(rviz::StatusProperty::Error, what, why);
+  say(what, rviz::StatusProperty::Error, why);
+}
+
+/// Only what is new: rviz makes an event of every status.
+void ClothDisplay::say(const std::string& what, rviz::StatusProperty::Level level,
+                       const std::string& text) {
+  const std::pair<int, std::string> said(level, text);
+  if (said_[what] == said) return;
+  said_[what] = said;
+  setStatusStd(level, what, text);
 }
 
 ColourBy ClothDisplay::colourBy() const {
@@ -165,8 +175,7 @@ void ClothDisplay::draw() {
   try {
     surface_->take(*state_);
     object_->update(*surface_, surface_->attached(*state_));
-    setStatus(rviz::StatusProperty::Ok, "State",
-              QString("at %1 s of simulated time").arg(state_->simulated_time, 0, 'f', 1));
+    say("State", rviz::StatusProperty::Ok, "drawn");
     queueRender();
   } catch (const std::exception& error) {
     refuse("State", error.what());
@@ -183,7 +192,7 @@ void ClothDisplay::place(const std_msgs::Header& header) {
            "none from " + header.frame_id.substr(0, 200) + " to " + fixed_frame_.toStdString());
     return;
   }
-  deleteStatus("Transform");
+  say("Transform", rviz::StatusProperty::Ok, "there");
   scene_node_->setPosition(position);
   scene_node_->setOrientation(orientation);
 }

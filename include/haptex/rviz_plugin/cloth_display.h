@@ -5,8 +5,10 @@
 #include <haptex/ClothState.h>
 #include <rviz/display.h>
 
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "haptex/rviz_plugin/background_subscriptions.h"
 #include "haptex/rviz_plugin/cloth_surface.h"
@@ -50,6 +52,7 @@ class ClothDisplay : public rviz::Display {
   void showLegend();
   ColourBy colourBy() const;
   void refuse(const std::string& what, const std::string& why);
+  void say(const std::string& what, rviz::StatusProperty::Level level, const std::string& text);
 
   rviz::StringProperty* topics_;
   rviz::EnumProperty* colour_by_;
@@ -62,7 +65,8 @@ class ClothDisplay : public rviz::Display {
   haptex::ClothMeshConstPtr mesh_;    // the last that was not refused, or none
   haptex::ClothStateConstPtr state_;  // the newest, or none
   bool state_is_new_ = false;
-  std::unique_ptr<ClothSurface> surface_;  // of mesh_
+  std::map<std::string, std::pair<int, std::string>> said_;  // level and text of each status
+  std::unique_ptr<ClothSurface> surface_;                    // of mesh_
   std::unique_ptr<SurfaceObject> object_;
   std::unique_ptr<OverlayPicture> legend_;
   BackgroundSubscriptions subscriptions_;  // last: its callbacks use the members above

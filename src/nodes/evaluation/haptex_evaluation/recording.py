@@ -30,6 +30,7 @@ class TrialRecorder:
         self._command = [program[0]]
         self._topics = ['--exclude', place + '/((tactile_)?emulator/.*/.*|exoskeleton/servo_cf)',
                         '--exclude', place + '/.*markers',
+                        '--exclude', place + '/evaluation/(cloth|index|thumb)_.*',
                         place + '/.*', '/tf', '/tf_static', '/diagnostics']
         self._process, self._path = None, None
 
