@@ -7,6 +7,7 @@
 
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
+#include "haptex/contact/fabric_directions.h"
 
 namespace haptex::contact {
 namespace {
@@ -59,33 +60,9 @@ bool allFinite(const std::vector<Vector3d>& vectors) {
                      [](const Vector3d& vector) { return vector.allFinite(); });
 }
 
-/// What takes a displacement to the fabric's own directions: dx = U du + V dv has the least-squares
-/// solution (du, dv) for the deformed directions U, V of the element. Zero if those are parallel.
-Eigen::Matrix<double, 2, 3> toFabric(const Vector3d& weft, const Vector3d& warp) {
-  Eigen::Matrix<double, 2, 3> directions;
-  directions << weft.transpose(), warp.transpose();
-  const Eigen::Matrix2d metric = directions * directions.transpose();
-  if (!(std::abs(metric.determinant()) > 1e-12)) return Eigen::Matrix<double, 2, 3>::Zero();
-  return metric.inverse() * directions;
-}
-
 /// The part of a contact's normal force on a point; without force all points are alike.
 double shareOf(const TouchedParticle& point, const FingertipContact& contact, std::size_t points) {
   return contact.normal_force > 0.0 ? point.normal_force / contact.normal_force : 1.0 / points;
-}
-
-/// Images of the unit vectors along weft and warp of a triangle.
-std::pair<Vector3d, Vector3d> fabricDirections(const mesh::ClothMesh& mesh, int triangle,
-                                               const LargeScaleMotion& motion) {
-  const std::array<int, 3>& corners = mesh.triangles[triangle];
-  Eigen::Matrix2d rest;
-  rest << mesh.rest_coordinates[corners[1]] - mesh.rest_coordinates[corners[0]],
-      mesh.rest_coordinates[corners[2]] - mesh.rest_coordinates[corners[0]];
-  Eigen::Matrix<double, 3, 2> deformed;
-  deformed << motion.position(corners[1]) - motion.position(corners[0]),
-      motion.position(corners[2]) - motion.position(corners[0]);
-  const Eigen::Matrix<double, 3, 2> directions = deformed * rest.inverse();
-  return {directions.col(0), directions.col(1)};
 }
 
 }  // namespace
@@ -120,7 +97,8 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fab
 }
 
 std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangles,
-                                                 const std::vector<char>& attached) const {
+                                                 const std::vector<char>& attached,
+                                                 double surround) const {
   if (attached.size() != mesh_.rest_coordinates.size()) {
     std::ostringstream message;
     message << "attached has " << attached.size() << " entries; the cloth has "
@@ -140,7 +118,7 @@ std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangl
   }
   // Layers of cloth that collides with itself would fall through each other.
   std::vector<int> around;
-  if (!effects_.self_collision) around = elementsAround(mesh_, topology_, cut, settings_);
+  if (!effects_.self_collision) around = elementsAround(mesh_, topology_, cut, surround);
   RefinedCut refined = cutAndRefine(mesh_, topology_, std::move(cut), attached,
                                     settings_.refinement, std::move(around));
   if (refined.free_count == 0) return nullptr;
@@ -312,12 +290,18 @@ Vector3d HapticLayer::aheadOf(Finger finger, const Matrix3d& stiffness) const {
 /// How fast (m/s) the fingertip withdraws and the other one, on the other side of the cloth,
 /// follows it: the cloth between the fingers of a pinch goes along with them.
 double HapticLayer::followingSpeed(Finger finger) const {
+  if (!isPinched()) return 0.0;
   const FingertipContact& contact = contacts_[finger];
   const FingertipContact& other =
       contacts_[finger == Finger::kIndex ? Finger::kThumb : Finger::kIndex];
-  if (!other.touching || contact.normal.dot(other.normal) >= 0.0) return 0.0;
   return std::max(
       0.0, std::min(-contact.normal.dot(contact.velocity), -contact.normal.dot(other.velocity)));
+}
+
+bool HapticLayer::isPinched() const {
+  const FingertipContact& index = contacts_[Finger::kIndex];
+  const FingertipContact& thumb = contacts_[Finger::kThumb];
+  return index.touching && thumb.touching && index.normal.dot(thumb.normal) < 0.0;
 }
 
 void HapticLayer::stepWholeCloth() {
@@ -346,18 +330,15 @@ void HapticLayer::stepWholeCloth() {
 template <typename RestOf, typename LoadOf>
 void HapticLayer::sendBack(FingertipContact& contact, const std::vector<TouchedParticle>& touched,
                            const RestOf& rest_of, const LoadOf& load_of) {
-  Vector3d weft = Vector3d::Zero();
-  Vector3d warp = Vector3d::Zero();
+  Eigen::Matrix<double, 3, 2> directions = Eigen::Matrix<double, 3, 2>::Zero();
   for (const TouchedParticle& point : touched) {
     const double share = shareOf(point, contact, touched.size());
     const cloth::PointLoad load = load_of(point);
-    const auto directions = fabricDirections(mesh_, load.triangle, motion_);
     contact.fabric_position += share * rest_of(point.particle);
-    weft += share * directions.first;
-    warp += share * directions.second;
+    directions += share * fabricDirections(mesh_, load.triangle, motion_);
     if (loads_.size() < loads_.capacity()) loads_.push_back(load);
   }
-  contact.to_fabric = toFabric(weft, warp);
+  contact.to_fabric = toFabric(directions);
   contact.fabric_velocity = contact.to_fabric * contact.sliding_velocity;
 }
 

@@ -1,5 +1,7 @@
 #include "haptex/simulation/patch_supply.h"
 
+#include <algorithm>
+
 namespace haptex::simulation {
 
 bool PatchSupply::ask(const LoopView& view, const Search& search) {
@@ -12,6 +14,9 @@ bool PatchSupply::ask(const LoopView& view, const Search& search) {
     if (!search(volume, selection_)) return false;
   }
   if (selection_.finish()) outdated_ = true;
+  const bool was_wide = isWide();
+  rounds_of_pinch_ = view.is_pinched ? kRests : std::max(0, rounds_of_pinch_ - 1);
+  if (isWide() != was_wide) outdated_ = true;
   return true;
 }
 
@@ -23,7 +28,7 @@ void PatchSupply::setAttached(const std::vector<char>& attached) {
 
 std::unique_ptr<contact::Patch> PatchSupply::prepare(const contact::HapticLayer& layer) {
   outdated_ = false;
-  return layer.preparePatch(triangles(), attached_);
+  return layer.preparePatch(triangles(), attached_, isWide() ? settings_.surround : 0.0);
 }
 
 }  // namespace haptex::simulation
