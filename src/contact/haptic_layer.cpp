@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -55,6 +56,19 @@ std::vector<ContactLaw> lawsOf(const std::vector<material::Fabric>& fabrics, int
   return laws;
 }
 
+/// Ascending, each once.
+/// @throws std::invalid_argument if one does not exist
+std::vector<int> sortedTriangles(std::vector<int> triangles, const mesh::ClothMesh& mesh) {
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  const int count = static_cast<int>(mesh.triangles.size());
+  if (triangles.empty() || (triangles.front() >= 0 && triangles.back() < count)) return triangles;
+  std::ostringstream message;
+  message << "triangle " << (triangles.front() < 0 ? triangles.front() : triangles.back())
+          << " does not exist; the cloth has triangles 0 to " << count - 1;
+  throw std::invalid_argument(message.str());
+}
+
 bool allFinite(const std::vector<Vector3d>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(),
                      [](const Vector3d& vector) { return vector.allFinite(); });
@@ -98,31 +112,28 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fab
 
 std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangles,
                                                  const std::vector<char>& attached,
-                                                 double surround) const {
+                                                 const std::vector<int>& around) const {
   if (attached.size() != mesh_.rest_coordinates.size()) {
     std::ostringstream message;
     message << "attached has " << attached.size() << " entries; the cloth has "
             << mesh_.rest_coordinates.size() << " particles";
     throw std::invalid_argument(message.str());
   }
-  std::vector<int> cut = triangles;
-  std::sort(cut.begin(), cut.end());
-  cut.erase(std::unique(cut.begin(), cut.end()), cut.end());
+  std::vector<int> cut = sortedTriangles(triangles, mesh_), outside;
   if (cut.empty()) return nullptr;
-  const int count = static_cast<int>(mesh_.triangles.size());
-  if (cut.front() < 0 || cut.back() >= count) {
-    std::ostringstream message;
-    message << "triangle " << (cut.front() < 0 ? cut.front() : cut.back())
-            << " does not exist; the cloth has triangles 0 to " << count - 1;
-    throw std::invalid_argument(message.str());
-  }
-  // Layers of cloth that collides with itself would fall through each other.
-  std::vector<int> around;
-  if (!effects_.self_collision) around = elementsAround(mesh_, topology_, cut, surround);
+  const std::vector<int> others = sortedTriangles(around, mesh_);
+  std::set_difference(others.begin(), others.end(), cut.begin(), cut.end(),
+                      std::back_inserter(outside));
   RefinedCut refined = cutAndRefine(mesh_, topology_, std::move(cut), attached,
-                                    settings_.refinement, std::move(around));
+                                    settings_.refinement, std::move(outside));
   if (refined.free_count == 0) return nullptr;
   return std::make_unique<Patch>(mesh_, std::move(refined), fabrics_, effects_, laws_, &obstacles_);
+}
+
+std::vector<int> HapticLayer::elementsAround(const std::vector<int>& triangles,
+                                             double reach) const {
+  if (effects_.self_collision) return {};
+  return contact::elementsAround(mesh_, topology_, triangles, reach);
 }
 
 void HapticLayer::receive(const std::vector<Vector3d>& positions,
@@ -274,11 +285,14 @@ void HapticLayer::stepPatch() {
 
 /// How far the fingertip will have taken its contact along when the large-scale layer has made its
 /// next step. A fingertip that withdraws takes no more than its force away, but for what the other
-/// one pushes after it.
+/// one pushes after it. Cloth that hangs overshoots less where only the period counts; cloth that
+/// slides on an obstacle, which stops it, would be felt to be held by more than friction, and what
+/// a pinch carries with elements around it would be behind.
 Vector3d HapticLayer::aheadOf(Finger finger, const Matrix3d& stiffness) const {
   if (!settings_.predict) return Vector3d::Zero();
   const FingertipContact& contact = contacts_[finger];
-  const double seconds = motion_.period() + motion_.remaining();
+  const bool goes_on = patch_->cut().isSurrounded() || patch_->touchesObstacle();
+  const double seconds = motion_.period() + (goes_on ? motion_.remaining() : 0.0);
   const Vector3d followed = -seconds * followingSpeed(finger) * contact.normal;
   const Vector3d ahead = seconds * contact.velocity - followed;
   // Friction may pull a fingertip at rest along the mean normal.

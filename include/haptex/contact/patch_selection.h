@@ -65,8 +65,8 @@ class PatchSelection {
 /// What a patch has around its refined elements, nearest first: at most 400, and at most a quarter
 /// of the mesh, so that the large-scale cloth holds the patch.
 /// @param elements each once
-/// @param surround m, how far, >= 0; 0: none
+/// @param reach m, how far, >= 0
 std::vector<int> elementsAround(const mesh::ClothMesh& mesh, const MeshTopology& topology,
-                                const std::vector<int>& elements, double surround);
+                                const std::vector<int>& elements, double reach);
 
 }  // namespace haptex::contact
