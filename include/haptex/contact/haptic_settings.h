@@ -15,7 +15,7 @@ struct HapticSettings {
   int most_elements = 24;  ///< of the large-scale mesh, that come into a patch, per fingertip, >= 1
   /// m, how far around these the patch of a pinch goes on with whole elements, >= 0.
   double surround = 0.06;
-  bool predict = true;     ///< the patch also covers where the fingertip will be
+  bool predict = true;      ///< the patch also covers where the fingertip will be
   double time_step = 1e-3;  ///< s
 };
 
