@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
+#include "haptex/contact/fabric_directions.h"
 
 namespace haptex::contact {
 namespace {
@@ -54,38 +56,27 @@ std::vector<ContactLaw> lawsOf(const std::vector<material::Fabric>& fabrics, int
   return laws;
 }
 
+/// Ascending, each once.
+/// @throws std::invalid_argument if one does not exist
+std::vector<int> sortedTriangles(std::vector<int> triangles, const mesh::ClothMesh& mesh) {
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  const int count = static_cast<int>(mesh.triangles.size());
+  if (triangles.empty() || (triangles.front() >= 0 && triangles.back() < count)) return triangles;
+  std::ostringstream message;
+  message << "triangle " << (triangles.front() < 0 ? triangles.front() : triangles.back())
+          << " does not exist; the cloth has triangles 0 to " << count - 1;
+  throw std::invalid_argument(message.str());
+}
+
 bool allFinite(const std::vector<Vector3d>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(),
                      [](const Vector3d& vector) { return vector.allFinite(); });
 }
 
-/// What takes a displacement to the fabric's own directions: dx = U du + V dv has the least-squares
-/// solution (du, dv) for the deformed directions U, V of the element. Zero if those are parallel.
-Eigen::Matrix<double, 2, 3> toFabric(const Vector3d& weft, const Vector3d& warp) {
-  Eigen::Matrix<double, 2, 3> directions;
-  directions << weft.transpose(), warp.transpose();
-  const Eigen::Matrix2d metric = directions * directions.transpose();
-  if (!(std::abs(metric.determinant()) > 1e-12)) return Eigen::Matrix<double, 2, 3>::Zero();
-  return metric.inverse() * directions;
-}
-
 /// The part of a contact's normal force on a point; without force all points are alike.
 double shareOf(const TouchedParticle& point, const FingertipContact& contact, std::size_t points) {
   return contact.normal_force > 0.0 ? point.normal_force / contact.normal_force : 1.0 / points;
-}
-
-/// Images of the unit vectors along weft and warp of a triangle.
-std::pair<Vector3d, Vector3d> fabricDirections(const mesh::ClothMesh& mesh, int triangle,
-                                               const LargeScaleMotion& motion) {
-  const std::array<int, 3>& corners = mesh.triangles[triangle];
-  Eigen::Matrix2d rest;
-  rest << mesh.rest_coordinates[corners[1]] - mesh.rest_coordinates[corners[0]],
-      mesh.rest_coordinates[corners[2]] - mesh.rest_coordinates[corners[0]];
-  Eigen::Matrix<double, 3, 2> deformed;
-  deformed << motion.position(corners[1]) - motion.position(corners[0]),
-      motion.position(corners[2]) - motion.position(corners[0]);
-  const Eigen::Matrix<double, 3, 2> directions = deformed * rest.inverse();
-  return {directions.col(0), directions.col(1)};
 }
 
 }  // namespace
@@ -120,31 +111,29 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fab
 }
 
 std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangles,
-                                                 const std::vector<char>& attached) const {
+                                                 const std::vector<char>& attached,
+                                                 const std::vector<int>& around) const {
   if (attached.size() != mesh_.rest_coordinates.size()) {
     std::ostringstream message;
     message << "attached has " << attached.size() << " entries; the cloth has "
             << mesh_.rest_coordinates.size() << " particles";
     throw std::invalid_argument(message.str());
   }
-  std::vector<int> cut = triangles;
-  std::sort(cut.begin(), cut.end());
-  cut.erase(std::unique(cut.begin(), cut.end()), cut.end());
+  std::vector<int> cut = sortedTriangles(triangles, mesh_), outside;
   if (cut.empty()) return nullptr;
-  const int count = static_cast<int>(mesh_.triangles.size());
-  if (cut.front() < 0 || cut.back() >= count) {
-    std::ostringstream message;
-    message << "triangle " << (cut.front() < 0 ? cut.front() : cut.back())
-            << " does not exist; the cloth has triangles 0 to " << count - 1;
-    throw std::invalid_argument(message.str());
-  }
-  // Layers of cloth that collides with itself would fall through each other.
-  std::vector<int> around;
-  if (!effects_.self_collision) around = elementsAround(mesh_, topology_, cut, settings_);
+  const std::vector<int> others = sortedTriangles(around, mesh_);
+  std::set_difference(others.begin(), others.end(), cut.begin(), cut.end(),
+                      std::back_inserter(outside));
   RefinedCut refined = cutAndRefine(mesh_, topology_, std::move(cut), attached,
-                                    settings_.refinement, std::move(around));
+                                    settings_.refinement, std::move(outside));
   if (refined.free_count == 0) return nullptr;
   return std::make_unique<Patch>(mesh_, std::move(refined), fabrics_, effects_, laws_, &obstacles_);
+}
+
+std::vector<int> HapticLayer::elementsAround(const std::vector<int>& triangles,
+                                             double reach) const {
+  if (effects_.self_collision) return {};
+  return contact::elementsAround(mesh_, topology_, triangles, reach);
 }
 
 void HapticLayer::receive(const std::vector<Vector3d>& positions,
@@ -296,11 +285,14 @@ void HapticLayer::stepPatch() {
 
 /// How far the fingertip will have taken its contact along when the large-scale layer has made its
 /// next step. A fingertip that withdraws takes no more than its force away, but for what the other
-/// one pushes after it.
+/// one pushes after it. Cloth that hangs overshoots less where only the period counts; cloth that
+/// slides on an obstacle, which stops it, would be felt to be held by more than friction, and what
+/// a pinch carries with elements around it would be behind.
 Vector3d HapticLayer::aheadOf(Finger finger, const Matrix3d& stiffness) const {
   if (!settings_.predict) return Vector3d::Zero();
   const FingertipContact& contact = contacts_[finger];
-  const double seconds = motion_.period() + motion_.remaining();
+  const bool goes_on = patch_->cut().isSurrounded() || patch_->touchesObstacle();
+  const double seconds = motion_.period() + (goes_on ? motion_.remaining() : 0.0);
   const Vector3d followed = -seconds * followingSpeed(finger) * contact.normal;
   const Vector3d ahead = seconds * contact.velocity - followed;
   // Friction may pull a fingertip at rest along the mean normal.
@@ -312,12 +304,18 @@ Vector3d HapticLayer::aheadOf(Finger finger, const Matrix3d& stiffness) const {
 /// How fast (m/s) the fingertip withdraws and the other one, on the other side of the cloth,
 /// follows it: the cloth between the fingers of a pinch goes along with them.
 double HapticLayer::followingSpeed(Finger finger) const {
+  if (!isPinched()) return 0.0;
   const FingertipContact& contact = contacts_[finger];
   const FingertipContact& other =
       contacts_[finger == Finger::kIndex ? Finger::kThumb : Finger::kIndex];
-  if (!other.touching || contact.normal.dot(other.normal) >= 0.0) return 0.0;
   return std::max(
       0.0, std::min(-contact.normal.dot(contact.velocity), -contact.normal.dot(other.velocity)));
+}
+
+bool HapticLayer::isPinched() const {
+  const FingertipContact& index = contacts_[Finger::kIndex];
+  const FingertipContact& thumb = contacts_[Finger::kThumb];
+  return index.touching && thumb.touching && index.normal.dot(thumb.normal) < 0.0;
 }
 
 void HapticLayer::stepWholeCloth() {
@@ -346,18 +344,15 @@ void HapticLayer::stepWholeCloth() {
 template <typename RestOf, typename LoadOf>
 void HapticLayer::sendBack(FingertipContact& contact, const std::vector<TouchedParticle>& touched,
                            const RestOf& rest_of, const LoadOf& load_of) {
-  Vector3d weft = Vector3d::Zero();
-  Vector3d warp = Vector3d::Zero();
+  Eigen::Matrix<double, 3, 2> directions = Eigen::Matrix<double, 3, 2>::Zero();
   for (const TouchedParticle& point : touched) {
     const double share = shareOf(point, contact, touched.size());
     const cloth::PointLoad load = load_of(point);
-    const auto directions = fabricDirections(mesh_, load.triangle, motion_);
     contact.fabric_position += share * rest_of(point.particle);
-    weft += share * directions.first;
-    warp += share * directions.second;
+    directions += share * fabricDirections(mesh_, load.triangle, motion_);
     if (loads_.size() < loads_.capacity()) loads_.push_back(load);
   }
-  contact.to_fabric = toFabric(weft, warp);
+  contact.to_fabric = toFabric(directions);
   contact.fabric_velocity = contact.to_fabric * contact.sliding_velocity;
 }
 

@@ -164,8 +164,8 @@ void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
     const bool shared = theirs != other.cut_.order.end() && other.cut_.supports[*theirs] == support;
     const bool is_free = i < cut_.free_count;
     if (!shared) {
-      if (is_free) placeOn(other, i, motion);
-      if (touches && is_free) tethers_[i] = kFirstTether;
+      const bool was_held = is_free && !placeOn(other, i, motion);
+      if (touches && was_held) tethers_[i] = kFirstTether;
       continue;
     }
     const int k = *theirs;
@@ -189,17 +189,21 @@ void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
 
 /// Where the other patch has the element of a particle that it has not, if it has it: whole, but
 /// refined here.
-void Patch::placeOn(const Patch& other, int particle, const LargeScaleMotion& motion) {
+/// @returns whether the element was free to move there
+bool Patch::placeOn(const Patch& other, int particle, const LargeScaleMotion& motion) {
   Vector3d position = Vector3d::Zero(), velocity = Vector3d::Zero();
+  bool was_free = false;
   for (int k = 0; k < 3; ++k) {
     const int corner = cornerIn(other.cut_, corners_[particle][k]);
-    if (corner < 0) return;
+    if (corner < 0) return false;
+    was_free = was_free || corner < other.cut_.free_count;
     position += cut_.weights[particle][k] * other.state_.positions[corner];
     velocity += cut_.weights[particle][k] * other.state_.velocities[corner];
   }
   state_.positions[particle] = position;
   state_.velocities[particle] = velocity;
   detours_[particle] = position - placeOnCloth(particle, motion);
+  return was_free;
 }
 
 void Patch::tie(int particle, const LargeScaleMotion& motion, double h) {

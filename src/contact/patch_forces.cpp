@@ -76,7 +76,7 @@ std::unique_ptr<cloth::Bending> bendingOf(const Part& part, const Rigidities& ri
 
 void addBending(const mesh::ClothMesh& coarse, const RefinedCut& cut, Rigidities rigidities,
                 const cloth::BendingSettings& settings, PatchForces& forces) {
-  if (cut.refined_count == static_cast<int>(cut.elements.size())) {
+  if (!cut.isSurrounded()) {
     forces.sum.add(rigidities.size() == 1
                        ? std::make_unique<cloth::Bending>(cut.mesh, rigidities.front(), settings)
                        : std::make_unique<cloth::Bending>(cut.mesh, rigidities, settings));

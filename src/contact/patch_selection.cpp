@@ -51,9 +51,8 @@ bool PatchSelection::finish() {
 }
 
 std::vector<int> elementsAround(const mesh::ClothMesh& mesh, const MeshTopology& topology,
-                                const std::vector<int>& elements, const HapticSettings& settings) {
-  if (settings.surround == 0.0) return {};
-  return trianglesAround(mesh, topology, elements, settings.surround,
+                                const std::vector<int>& elements, double reach) {
+  return trianglesAround(mesh, topology, elements, reach,
                          std::min(kMostAround, mesh.triangles.size() / kShareOfMesh));
 }
 

@@ -291,6 +291,7 @@ void ForceLoop::showView(bool has_news) {
   view_.state_period = state_period_;
   view_.loads.clear();
   if (layer_) view_.loads.assign(layer_->loads().begin(), layer_->loads().end());
+  view_.is_pinched = layer_ && layer_->isPinched();
   view_.mesh = layer_mesh_;
   view_.load_gain = loadGain();
   views_.write(view_);

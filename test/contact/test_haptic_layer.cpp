@@ -47,6 +47,23 @@ TEST_F(HapticLayerTest, HasNoContactBeforeTheFirstState) {
   EXPECT_TRUE(layer_.contacts()[Finger::kIndex].touching);
 }
 
+TEST_F(HapticLayerTest, IsPinchedByFingertipsThatPressFromOppositeSides) {
+  receiveRest();
+  const Fingertip index = pressingMiddle();
+  Fingertip thumb = index;
+  step({index, std::nullopt}, 2);
+  EXPECT_FALSE(layer_.isPinched());
+  thumb.position.y() += 5e-3;
+  step({index, thumb}, 2);
+  EXPECT_FALSE(layer_.isPinched()) << "both from one side";
+  thumb.position = {-index.position.x(), 0.0, index.position.z()};
+  step({index, std::nullopt}, 1);
+  step({index, thumb}, 2);
+  EXPECT_TRUE(layer_.isPinched());
+  step({index, std::nullopt}, 1);
+  EXPECT_FALSE(layer_.isPinched());
+}
+
 TEST_F(HapticLayerTest, NothingHoldsAFingertipBeforeTheFirstState) {
   HapticSettings settings;
   settings.layer = HapticSettings::Layer::kWholeCloth;

@@ -34,9 +34,8 @@ class OnObstacles {
  public:
   explicit OnObstacles(std::vector<mesh::Obstacle> obstacles,
                        const material::Fabric& fabric = wool(),
-                       const cloth::ModelledEffects& effects = amongObstacles(),
-                       const HapticSettings& settings = {})
-      : fabric_(fabric), layer_(mesh_, fabric_, effects, settings, std::move(obstacles)) {
+                       const cloth::ModelledEffects& effects = amongObstacles())
+      : fabric_(fabric), layer_(mesh_, fabric_, effects, {}, std::move(obstacles)) {
     layer_.exchange(
         layer_.preparePatch(trianglesAround(mesh_, {0.02, 0.02}, 0.015), nothingAttached(mesh_)));
     layer_.receive(mesh_.initial_positions, atRest(mesh_), 0.02);
@@ -139,12 +138,9 @@ TEST(ObstacleContact, AThinObstacleAndASurfaceLetNothingThrough) {
   const mesh::Obstacle surface = {
       "surface", mesh::ObstacleMesh{{{x, -1, -1}, {x, 1, -1}, {x, 0, 1}}, {{0, 1, 2}}},
       Eigen::Isometry3d::Identity()};
-  // With more cloth around that is free to slide, where it sticks at last depends on the blow.
-  HapticSettings refined_only;
-  refined_only.surround = 0.0;
   std::vector<double> forces;
   for (const mesh::Obstacle& obstacle : {plate(), plate(1e-4), surface}) {
-    OnObstacles cloth({obstacle}, wool(), amongObstacles(), refined_only);
+    OnObstacles cloth({obstacle});
     Fingertip tip = pressing(cloth.law(), kSmallSampleMiddle, 0.0);
     tip.velocity.x() = -2.0;
     for (int i = 0; i < 2; ++i) {

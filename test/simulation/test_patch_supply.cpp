@@ -107,6 +107,38 @@ TEST_F(PatchSupplyTest, WhatIsTouchedStaysWhereverTheLargeScaleClothIs) {
   EXPECT_EQ(supply_.triangles(), (std::vector<int>{42, 43}));
 }
 
+TEST_F(PatchSupplyTest, APinchOfClothThatNothingElseHoldsDoesNotWidenThePatch) {
+  supply_.setAttached(nothing_attached_);
+  const PatchSupply::Search search = finds({40, 41, 42, 43, 56, 57, 58, 59});
+  supply_.ask(index_, search);
+  supply_.prepare(layer_);
+  index_.is_pinched = true;
+  supply_.ask(index_, search);
+  EXPECT_FALSE(supply_.isOutdated());
+}
+
+TEST_F(PatchSupplyTest, APinchWidensThePatchUntilItHasBeenOpenForAWhile) {
+  std::vector<char> attached = nothing_attached_;
+  attached[0] = 1;
+  supply_.setAttached(attached);
+  const PatchSupply::Search search = finds({40, 41, 42, 43, 56, 57, 58, 59});
+  const auto particles = [&] { return supply_.prepare(layer_)->particleCount(); };
+  supply_.ask(index_, search);
+  const std::size_t touched = particles();
+  index_.is_pinched = true;
+  supply_.ask(index_, search);
+  ASSERT_TRUE(supply_.isOutdated());
+  EXPECT_GT(particles(), touched);
+  index_.is_pinched = false;
+  for (int round = 1; round < PatchSupply::kRests; ++round) {
+    supply_.ask(index_, search);
+    EXPECT_FALSE(supply_.isOutdated()) << round;
+  }
+  supply_.ask(index_, search);
+  ASSERT_TRUE(supply_.isOutdated());
+  EXPECT_EQ(particles(), touched);
+}
+
 TEST_F(PatchSupplyTest, NothingNearIsNoPatch) {
   supply_.setAttached(nothing_attached_);
   supply_.ask(index_, finds({40, 41}));

@@ -93,10 +93,15 @@ class HapticLayer {
   /// Constant: any thread.
   /// @param triangles of the large-scale mesh, in any order, repetition allowed; may be empty
   /// @param attached  one per large-scale particle, nonzero where it is held
+  /// @param around    others that come into the patch and stay as they are
   /// @returns null if there are no triangles
   /// @throws std::invalid_argument if a triangle does not exist or `attached` has another size
   std::unique_ptr<Patch> preparePatch(const std::vector<int>& triangles,
-                                      const std::vector<char>& attached) const;
+                                      const std::vector<char>& attached,
+                                      const std::vector<int>& around = {}) const;
+  /// What the patch of a pinch has around some triangles: contact::elementsAround(), nothing if the
+  /// cloth collides with itself, because its layers would fall through each other there.
+  std::vector<int> elementsAround(const std::vector<int>& triangles, double reach) const;
 
   /// A state of the large-scale layer. From now on the layer moves from where it is to this state
   /// within `period`, so it follows one period behind, and never jumps.
@@ -127,6 +132,8 @@ class HapticLayer {
   /// them where the cloth holds them (HeldFingertip).
   const std::optional<Fingertip>& held(base::Finger finger) const { return held_[finger].held(); }
   const base::PerFinger<FingertipContact>& contacts() const { return contacts_; }
+  /// Whether the fingertips press on the cloth from opposite sides, so that a hand may carry it.
+  bool isPinched() const;
   /// What acts on the large-scale cloth, see cloth::Cloth::setPointLoads().
   const std::vector<cloth::PointLoad>& loads() const { return loads_; }
 

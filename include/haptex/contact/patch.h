@@ -98,7 +98,7 @@ class Patch {
         const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles, PatchForces forces);
   Particles particlesAt(const std::vector<Eigen::Vector3d>& positions, base::Finger finger) const;
   Particles atObstacles(const std::vector<Eigen::Vector3d>& positions) const;
-  void placeOn(const Patch& other, int particle, const LargeScaleMotion& motion);
+  bool placeOn(const Patch& other, int particle, const LargeScaleMotion& motion);
   void tie(int particle, const LargeScaleMotion& motion, double h);
   void assemble(const LargeScaleMotion& motion, double h);
   bool solve(double h);

@@ -62,10 +62,11 @@ class PatchSelection {
   std::vector<int> elements_;
 };
 
-/// What a patch has around its refined elements, nearest first: as far as settings.surround, at
-/// most 400, and at most a quarter of the mesh, so that the large-scale cloth holds the patch.
+/// What a patch has around its refined elements, nearest first: at most 400, and at most a quarter
+/// of the mesh, so that the large-scale cloth holds the patch.
 /// @param elements each once
+/// @param reach m, how far, >= 0
 std::vector<int> elementsAround(const mesh::ClothMesh& mesh, const MeshTopology& topology,
-                                const std::vector<int>& elements, const HapticSettings& settings);
+                                const std::vector<int>& elements, double reach);
 
 }  // namespace haptex::contact

@@ -57,6 +57,9 @@ struct RefinedCut {
   /// triangle around it in the original mesh. Empty: all are of the first fabric.
   std::vector<std::uint8_t> fabrics;
   std::vector<int> order;  ///< particles sorted by support
+
+  /// Whether some elements stay coarse.
+  bool isSurrounded() const { return refined_count < static_cast<int>(elements.size()); }
 };
 
 /// @param triangles of the mesh, at least one, each once

@@ -47,8 +47,9 @@ struct LoopView {
   /// when it is back.
   contact::Fingertips fingertips;
   std::vector<cloth::PointLoad> loads;
-  std::uint32_t mesh = 0;  ///< number of the one that they are on
-  double load_gain = 0.0;  ///< share of them that is to act
+  bool is_pinched = false;  ///< HapticLayer::isPinched()
+  std::uint32_t mesh = 0;   ///< number of the one that they are on
+  double load_gain = 0.0;   ///< share of them that is to act
 };
 
 /// The loads that are to act: times their gain, none without.

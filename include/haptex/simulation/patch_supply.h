@@ -16,15 +16,20 @@ namespace haptex::simulation {
 /// One thread.
 class PatchSupply {
  public:
+  static constexpr int kRests = contact::PatchSelection::kRests;
+
   /// @param triangles of the large-scale mesh
   PatchSupply(const contact::HapticSettings& settings, std::size_t triangles)
       : settings_(settings), selection_(triangles) {}
 
   /// Adds what is near a volume to the selection. @returns false if that is not known
   using Search = std::function<bool(const contact::SearchVolume&, contact::PatchSelection&)>;
-  /// A round about both fingertips. One whose search fails changes nothing.
-  /// @param view of the force loop: where the fingertips are, what they touch, and the period for
-  ///   which they are predicted
+  /// A round about both fingertips. One whose search fails changes nothing. From a pinch on, until
+  /// kRests rounds without one, the patch goes on around the fingertips, as far as it went before
+  /// while that is half as far as it may be: what leaves a patch that is carried is felt. Not so
+  /// where nothing is attached: the large-scale cloth would take seconds to where the patch hangs.
+  /// @param view of the force loop: where the fingertips are, what they touch, whether they pinch
+  ///   it, and the period for which they are predicted
   /// @returns whether every search was answered
   bool ask(const LoopView& view, const Search& search);
 
@@ -42,9 +47,14 @@ class PatchSupply {
   std::size_t attachedSize() const { return attached_.size(); }
 
  private:
+  bool isWide() const;
+  void widen(const contact::HapticLayer& layer);
+
   contact::HapticSettings settings_;
   contact::PatchSelection selection_;
   std::vector<char> attached_;
+  int rounds_of_pinch_ = 0;  // that are left
+  std::vector<int> wide_;    // all of the patch of a pinch, ascending
   bool outdated_ = false;
 };
 

@@ -25,7 +25,7 @@ void validateMovedPinch(const material::Fabric& fabric, const Sink& sink) {
     cloth.step(fingertips, kMovedPinchStep);
     return feltIn(cloth);
   });
-  for (const Tolerance& tolerance : {Tolerance{80.0, 0.04}, Tolerance{40.0, 0.12}}) {
+  for (const Tolerance& tolerance : {Tolerance{80.0, 0.03}, Tolerance{40.0, 0.1}}) {
     HapticLoop loop(sampleAt(tolerance.rate));
     const std::vector<MovedPinch> felt = movePinch([&](const Fingertips& fingertips) {
       loop.step(fingertips);

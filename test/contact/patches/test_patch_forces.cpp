@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "fixtures.h"
+#include "../fixtures.h"
 #include "haptex/contact/patch_forces.h"
 
 namespace haptex::contact::test_patch_forces {

@@ -1,0 +1,29 @@
+#include "haptex/contact/fabric_directions.h"
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+
+namespace haptex::contact {
+
+using Eigen::Matrix2d;
+
+Eigen::Matrix<double, 3, 2> fabricDirections(const mesh::ClothMesh& mesh, int triangle,
+                                             const LargeScaleMotion& motion) {
+  const std::array<int, 3>& corners = mesh.triangles[triangle];
+  Matrix2d rest;
+  rest << mesh.rest_coordinates[corners[1]] - mesh.rest_coordinates[corners[0]],
+      mesh.rest_coordinates[corners[2]] - mesh.rest_coordinates[corners[0]];
+  Eigen::Matrix<double, 3, 2> deformed;
+  deformed << motion.position(corners[1]) - motion.position(corners[0]),
+      motion.position(corners[2]) - motion.position(corners[0]);
+  return deformed * rest.inverse();
+}
+
+Eigen::Matrix<double, 2, 3> toFabric(const Eigen::Matrix<double, 3, 2>& directions) {
+  const Matrix2d metric = directions.transpose() * directions;
+  if (!(std::abs(metric.determinant()) > 1e-12)) return Eigen::Matrix<double, 2, 3>::Zero();
+  return metric.inverse() * directions.transpose();
+}
+
+}  // namespace haptex::contact
