@@ -24,7 +24,10 @@ RECORDING = 3.0  # s
 
 # What stands for something of the reader's own.
 PLACEHOLDERS = {'/path/to/scene.yaml': str(ROOT / 'config/scenes/wool_in_wind.yaml'), 'NAME': 'denim',
-                'CSV': str(ROOT / 'config/readings/wool_readings.csv')}
+                'CSV': str(ROOT / 'config/readings/wool_readings.csv'),
+                'PATTERN.json': str(ROOT / 'test/garment/patterns/shirt_mean_specification.json'),
+                'GARMENT.yaml': str(ROOT / 'config/garments/fitted_shirt.yaml'),
+                'BODY.yaml': str(ROOT / 'config/bodies/woman.yaml')}
 
 CLOTH = 'roslaunch haptex cloth.launch quality:=balanced'
 TOUCH = 'roslaunch haptex haptex.launch path:=demo'
@@ -42,6 +45,7 @@ ELSEWHERE = {
     'export ROS_IP=127.0.0.1': 'scripts/test sets it for all tests',
     'scripts/rviz_screenshot': f'{INSTALLS}; readme.test opens the same view',
     'scripts/evaluate': f'{INSTALLS}; machine_rater.test looks at its parts',
+    'rosrun haptex drape_garment SHIRT.yaml worn.obj --body BODY.obj': 'takes minutes; test_dressing drapes',
     'scripts/validate': 'test_oracles makes the same checks',
     'scripts/validate --seed S': 'test_oracles makes the same checks',
     'scripts/validate cloth': 'test_oracles makes the same checks',
