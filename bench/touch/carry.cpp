@@ -94,6 +94,7 @@ int main(int argc, char** argv) {
     oracles::HapticLoopSettings settings =
         oracles::hangingSample(fabric, kes::Direction::kWarp, rate, cells);
     settings.haptics.refinement = 1;
+    settings.haptics.surround = oracles::kCarriedSurround;
     return settings;
   };
   std::vector<MovedPinch> exact;

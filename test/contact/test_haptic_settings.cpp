@@ -35,7 +35,7 @@ TEST_F(HapticSettingsFile, HasItsDefaultsWhereTheSceneSaysNothing) {
     EXPECT_EQ(settings.layer, Layer::kPatch);
     EXPECT_EQ(settings.refinement, 2);
     EXPECT_EQ(settings.margin, 0.008);
-    EXPECT_EQ(settings.surround, 0.06);
+    EXPECT_EQ(settings.surround, 0.0);
     EXPECT_TRUE(settings.predict);
     EXPECT_EQ(settings.time_step, 1e-3);
   }
@@ -62,7 +62,7 @@ TEST_F(HapticSettingsFile, LeavesOutWhatIsNotGiven) {
   EXPECT_EQ(settings.margin, 0.008);
   EXPECT_TRUE(load("haptics: {predict: true}\n").predict);
   EXPECT_EQ(load("haptics: {margin: 0.1}\n").margin, 0.1);
-  EXPECT_EQ(load("haptics: {surround: 0}\n").surround, 0.0);
+  EXPECT_EQ(load("haptics: {surround: 0.2}\n").surround, 0.2);
 }
 
 TEST(HapticSettings, OfTheShippedWoolSampleAreAPatchRefinedTwice) {

@@ -19,6 +19,12 @@ class PatchSupplyTest : public testing::Test {
     index_.state_period = 0.01;
   }
 
+  static contact::HapticSettings carrying() {
+    contact::HapticSettings settings;
+    settings.surround = 0.06;
+    return settings;
+  }
+
   /// A search that finds these triangles, the nearest first, and counts how often it was asked.
   PatchSupply::Search finds(const std::vector<int>& triangles) {
     return
@@ -37,7 +43,7 @@ class PatchSupplyTest : public testing::Test {
   const contact::HapticLayer layer_{
       mesh_, material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), {}, {}};
   const std::vector<char> nothing_attached_ = std::vector<char>(mesh_.rest_coordinates.size(), 0);
-  PatchSupply supply_{{}, mesh_.triangles.size()};
+  PatchSupply supply_{carrying(), mesh_.triangles.size()};
   LoopView index_;
   int asked_ = 0;
   Eigen::Vector3d last_end_ = Eigen::Vector3d::Zero();

@@ -10,7 +10,8 @@
 
 namespace haptex::oracles {
 
-constexpr double kMovedPinchStep = 1e-3;  ///< s, between two records
+constexpr double kMovedPinchStep = 1e-3;   ///< s, between two records
+constexpr double kCarriedSurround = 0.06;  ///< m, of patches that carry cloth: HapticSettings
 
 /// After a millisecond.
 struct Felt {

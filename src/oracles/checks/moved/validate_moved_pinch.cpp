@@ -18,6 +18,7 @@ void validateMovedPinch(const material::Fabric& fabric, const Sink& sink) {
   const auto sampleAt = [&](double rate) {
     HapticLoopSettings sample = hangingSample(fabric, kes::Direction::kWarp, rate);
     sample.haptics.refinement = 1;  // as fine as the whole cloth is
+    sample.haptics.surround = kCarriedSurround;
     return sample;
   };
   RefinedCloth cloth(sampleAt(80.0));
