@@ -107,7 +107,7 @@ class ExoskeletonEmulator(NodeTest):
     def test_5_offers_handles(self):
         init = rospy.wait_for_message('emulator/interactive_markers/update_full',
                                       InteractiveMarkerInit, WAIT)
-        self.assertEqual({marker.name for marker in init.markers}, {'index', 'thumb', 'hand_base'})
+        self.assertEqual({marker.name for marker in init.markers}, {'index', 'thumb', 'pinch', 'hand_base'})
 
     def test_6_refuses_targets_that_are_none(self):
         header = Header(frame_id='hand_base')
