@@ -129,8 +129,7 @@ void ClothDisplay::receive(const haptex::ClothMeshConstPtr& mesh) {
     object_.reset();
     object_ = std::make_unique<SurfaceObject>(*scene_manager_, *scene_node_, *surface);
     surface_ = std::move(surface);
-    setStatusStd(
-        rviz::StatusProperty::Ok, "Mesh",
+    say("Mesh", rviz::StatusProperty::Ok,
         std::to_string(mesh->triangles.size() / 3) + " triangles of " + mesh->fabrics.front());
     restyle();
   } catch (const std::exception& error) {
