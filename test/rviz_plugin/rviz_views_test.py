@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Views of rviz with our displays and panel under Xvfb: test_rviz_views, which says what is tested.
-HAPTEX_VIEW_CYCLES=1000 adds and removes everything so often (scripts/test: 200 times)."""
+HAPTEX_VIEW_CYCLES=1000 adds and removes everything so often (otherwise 200 times)."""
 import os
 import pathlib
 import re
