@@ -68,7 +68,8 @@ def needs_graph(command):
 
 
 def needs_nothing(command):
-    return not needs_graph(command) and command.text.startswith(('rosrun haptex ', 'source '))
+    return (command.text.startswith(('rosrun haptex ', 'source '))
+            and not needs_graph(command) and not runs_elsewhere(command))
 
 
 def plan():
