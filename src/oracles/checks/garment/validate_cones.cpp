@@ -130,7 +130,7 @@ void validateCone(const CutDisc& disc, const std::string& name, const Sink& sink
 }  // namespace
 
 void validateCones(const Sink& sink) {
-  const int columns = base::unlessSanitized(40, 16);
+  const int columns = base::unlessSanitized(40, 20);
   for (const double degrees : {30.0, 60.0, 120.0, 180.0}) {
     const CutDisc disc{degrees * M_PI / 180.0, columns};
     validateCone(disc, "garment/cone/sector_" + std::to_string(static_cast<int>(degrees)), sink);
@@ -140,7 +140,7 @@ void validateCones(const Sink& sink) {
 
 void randomCone(const std::string&, Random& random, const Sink& sink) {
   CutDisc disc{random.uniform(0.3, 3.2)};
-  disc.columns = base::unlessSanitized(36, 16) + random.below(12);
+  disc.columns = base::unlessSanitized(36, 20) + random.below(12);
   disc.rings = 6 + random.below(5);
   disc.other_rings = 6 + random.below(5);
   CaseName name("garment", "cone");
