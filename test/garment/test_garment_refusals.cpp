@@ -72,7 +72,8 @@ TEST(GarmentRefusals, NamePanelEdgeAndWhatIsAllowed) {
        "panel 'front': its position has a coordinate of 30 m: allowed are finite ones up to 20 m"},
   };
   for (const auto& [part, replacement, message] : refused) {
-    EXPECT_EQ(refusalOf(panels(), part, replacement), std::string("small.yaml: ") + message) << part;
+    EXPECT_EQ(refusalOf(panels(), part, replacement), std::string("small.yaml: ") + message)
+        << part;
   }
 }
 
