@@ -23,7 +23,7 @@ WAIT = 300.0  # s, for what a command does; more than any takes on a busy machin
 RECORDING = 3.0  # s
 
 # What stands for something of the reader's own.
-PLACEHOLDERS = {'/path/to/scene.yaml': str(ROOT / 'config/scenes/wool_in_wind.yaml'), 'NAME': 'denim',
+EXAMPLES = {'/path/to/scene.yaml': str(ROOT / 'config/scenes/wool_in_wind.yaml'), 'NAME': 'denim',
                 'CSV': str(ROOT / 'config/readings/wool_readings.csv'),
                 'PATTERN.json': str(ROOT / 'test/garment/patterns/shirt_mean_specification.json'),
                 'GARMENT.yaml': str(ROOT / 'config/garments/fitted_shirt.yaml'),
@@ -45,7 +45,8 @@ ELSEWHERE = {
     'export ROS_IP=127.0.0.1': 'scripts/test sets it for all tests',
     'scripts/rviz_screenshot': f'{INSTALLS}; readme.test opens the same view',
     'scripts/evaluate': f'{INSTALLS}; machine_rater.test looks at its parts',
-    'rosrun haptex drape_garment SHIRT.yaml worn.obj --body BODY.obj': 'takes minutes; test_dressing drapes',
+    'rosrun haptex drape_garment SHIRT.yaml worn.obj --body BODY.obj --edge 0.03':
+        'takes minutes; test_dressing drapes',
     'scripts/validate': 'test_oracles makes the same checks',
     'scripts/validate --seed S': 'test_oracles makes the same checks',
     'scripts/validate contact': 'test_oracles makes the same checks',
@@ -87,8 +88,8 @@ def plan():
 
 
 def filled(text):
-    for placeholder, value in PLACEHOLDERS.items():
-        text = re.sub(rf'(?<![\w/]){re.escape(placeholder)}(?!\w)', value, text)
+    for word, value in EXAMPLES.items():
+        text = re.sub(rf'(?<![\w/]){re.escape(word)}(?!\w)', value, text)
     return text
 
 
