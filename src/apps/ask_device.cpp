@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <exception>
 #include <iostream>
 #include <string>
 
+#include "haptex/base/command_line.h"
 #include "haptex/exoskeleton/protocol/device_link.h"
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/serial/serial_port.h"
@@ -130,21 +130,9 @@ void ask(SerialPort& port) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string path = argc == 2 ? argv[1] : "";
-  if (path == "--help") {
-    std::cout << kUsage;
-    return 0;
-  }
-  if (argc != 2) {
-    std::cerr << kUsage;
-    return 2;
-  }
-  try {
-    SerialPort port(path);
-    ask(port);
-  } catch (const std::exception& error) {
-    std::cerr << "ask_device: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  return haptex::base::runPlainProgram("ask_device", kUsage, {argv + 1, argv + argc}, 1, 1,
+                                       [](const auto& arguments) {
+                                         SerialPort port(arguments[0]);
+                                         ask(port);
+                                       });
 }

@@ -1,11 +1,11 @@
 // The program count_intersections: how many pairs of triangles intersect, by the exact test of
 // haptex/proximity/intersections.h. Needs no ROS master.
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 
+#include "haptex/base/command_line.h"
 #include "haptex/mesh/obj_file.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/cloth_recording.h"
@@ -64,19 +64,6 @@ void count(const std::string& path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 2 && std::string(argv[1]) == "--help") {
-    std::fputs(kUsage, stdout);
-    return 0;
-  }
-  if (argc != 2) {
-    std::fputs(kUsage, stderr);
-    return 2;
-  }
-  try {
-    count(argv[1]);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "count_intersections: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  return base::runPlainProgram("count_intersections", kUsage, {argv + 1, argv + argc}, 1, 1,
+                               [](const auto& arguments) { count(arguments[0]); });
 }

@@ -1,8 +1,7 @@
 // The program explain_scene: what a scene models, at what cost and error. Needs no ROS master.
-#include <exception>
 #include <iostream>
-#include <string>
 
+#include "haptex/base/command_line.h"
 #include "haptex/nodes/common/config_files.h"
 #include "haptex/scene/quality_file.h"
 #include "haptex/simulation/scene_explanation.h"
@@ -16,23 +15,11 @@ constexpr const char* kUsage =
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string scene = argc == 2 ? argv[1] : "";
-  if (scene == "--help") {
-    std::cout << kUsage;
-    return 0;
-  }
-  if (argc != 2) {
-    std::cerr << kUsage;
-    return 2;
-  }
-  try {
-    haptex::simulation::explainScene(
-        haptex::nodes::findConfigFile("scenes", scene),
-        haptex::scene::loadQualities(haptex::nodes::findConfigFile("presets", "front")), std::cout,
-        std::cerr);
-  } catch (const std::exception& error) {
-    std::cerr << "explain_scene: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  using haptex::nodes::findConfigFile;
+  return haptex::base::runPlainProgram(
+      "explain_scene", kUsage, {argv + 1, argv + argc}, 1, 1, [](const auto& arguments) {
+        haptex::simulation::explainScene(
+            findConfigFile("scenes", arguments[0]),
+            haptex::scene::loadQualities(findConfigFile("presets", "front")), std::cout, std::cerr);
+      });
 }

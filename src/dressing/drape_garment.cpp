@@ -1,12 +1,12 @@
 #include "haptex/dressing/drape_garment.h"
 
-#include <charconv>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
 #include <stdexcept>
 
+#include "haptex/base/command_line.h"
+#include "haptex/base/parse_number.h"
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/dressing/drape.h"
@@ -31,36 +31,22 @@ struct Request {
   double edge_length = 0.02;  // m
 };
 
-double readLength(const std::string& text) {
-  double length = 0.0;
-  const char* end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, length);
-  if (read.ec != std::errc() || read.ptr != end) {
-    base::refuse("--edge ", base::quoted(text), ": allowed is a number of metres");
-  }
-  return length;
-}
-
 Request parse(const std::vector<std::string>& arguments) {
-  Request request;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string& argument = arguments[i];
-    if (argument == "--body" || argument == "--edge") {
-      if (++i == arguments.size()) base::refuse(argument, " needs a value");
-      if (argument == "--body") request.body = arguments[i];
-      if (argument == "--edge") request.edge_length = readLength(arguments[i]);
-    } else if (argument.rfind("--", 0) == 0) {
-      base::refuse(argument, " is unknown; allowed are --body and --edge");
-    } else if (request.garment.empty()) {
-      request.garment = argument;
-    } else if (request.out.empty()) {
-      request.out = argument;
-    } else {
-      base::refuse(argument, ": two files are allowed, ", request.garment, " and ", request.out);
-    }
+  const base::CommandLine line = base::readCommandLine(arguments, {"--body", "--edge"});
+  if (line.files.size() < 2) base::refuse("two files are needed, the garment and the one to write");
+  if (line.files.size() > 2) {
+    base::refuse(line.files[2], ": two files are allowed, ", line.files[0], " and ", line.files[1]);
   }
-  if (request.out.empty()) base::refuse("two files are needed, the garment and the one to write");
+  Request request = {line.files[0], line.files[1], line.value("--body")};
   if (request.body.empty()) base::refuse("a body is needed: --body BODY.obj");
+  if (line.options.count("--edge") > 0) {
+    const auto length = base::parseNumber<double>(line.value("--edge"));
+    if (!length) {
+      base::refuse("--edge ", base::quoted(line.value("--edge")),
+                   ": allowed is a number of metres");
+    }
+    request.edge_length = *length;
+  }
   return request;
 }
 
@@ -100,13 +86,8 @@ void print(const DrapeOutcome& outcome, std::ostream& out) {
 int drapeGarment(const std::vector<std::string>& arguments, const std::string& fabric_directory,
                  std::ostream& out, std::ostream& err) {
   Request request;
-  try {
-    request = parse(arguments);
-  } catch (const std::exception& error) {
-    err << error.what() << '\n' << kUsage;
-    return 2;
-  }
-  try {
+  const auto read = [&] { request = parse(arguments); };
+  return base::runProgram(kUsage, err, read, [&] {
     const garment::GarmentMesh garment =
         garment::makeGarmentMesh(garment::loadPattern(request.garment), request.edge_length);
     const std::vector<material::Fabric> fabrics =
@@ -120,10 +101,8 @@ int drapeGarment(const std::vector<std::string>& arguments, const std::string& f
     if (outcome.isSound()) return 0;
     err << "the garment is not at rest after " << outcome.settling_time
         << " s, or it intersects itself or the body: see above\n";
-  } catch (const std::exception& error) {
-    err << error.what() << '\n';
-  }
-  return 1;
+    return 1;
+  });
 }
 
 }  // namespace haptex::dressing

@@ -1,11 +1,13 @@
 #include "haptex/material/fit_curves.h"
 
-#include <charconv>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <sstream>
 
+#include "haptex/base/command_line.h"
+#include "haptex/base/parse_number.h"
 #include "haptex/base/require.h"
 #include "haptex/material/fabric_writer.h"
 
@@ -20,36 +22,24 @@ const char* const kFitCurvesUsage =
 namespace {
 
 int piecesOf(const std::string& text) {
-  int pieces = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), pieces);
-  if (error != std::errc() || end != text.data() + text.size() || pieces < 1 ||
-      pieces > kMostPieces) {
+  const std::optional<int> pieces = base::parseNumber<int>(text);
+  if (!pieces || *pieces < 1 || *pieces > kMostPieces) {
     base::refuse("--pieces ", text, ": allowed are whole numbers from 1 to ", kMostPieces);
   }
-  return pieces;
+  return *pieces;
 }
 
 }  // namespace
 
 FitRequest parseFitRequest(const std::vector<std::string>& arguments) {
+  const base::CommandLine line = base::readCommandLine(arguments, {"--pieces", "--name"});
   FitRequest request;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string& argument = arguments[i];
-    if (argument == "--pieces" || argument == "--name") {
-      if (++i == arguments.size()) base::refuse(argument, " needs a value");
-      if (argument == "--name") {
-        request.name = arguments[i];
-      } else {
-        request.pieces = piecesOf(arguments[i]);
-      }
-    } else if (argument.rfind("--", 0) == 0) {
-      base::refuse(argument, " is unknown; allowed are --pieces and --name");
-    } else if (request.file.empty()) {
-      request.file = argument;
-    } else {
-      base::refuse(argument, ": one file of readings is allowed, ", request.file, " is there");
-    }
+  if (line.options.count("--pieces") > 0) request.pieces = piecesOf(line.value("--pieces"));
+  request.name = line.value("--name");
+  if (line.files.size() > 1) {
+    base::refuse(line.files[1], ": one file of readings is allowed, ", line.files[0], " is there");
   }
+  if (!line.files.empty()) request.file = line.files[0];
   if (request.file.empty()) base::refuse("the file of readings is missing");
   if (request.name.empty()) request.name = std::filesystem::path(request.file).stem().string();
   return request;

@@ -1,14 +1,15 @@
 #include "haptex/material/tester_file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include "haptex/base/file_size.h"
+#include "haptex/base/parse_number.h"
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/material/kes_conditions.h"
@@ -221,12 +222,11 @@ class Reader {
   /// In SI, checked there; a refusal has the number as written.
   double numberOf(const char* what, const std::string& text, double factor,
                   const Range& range) const {
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) {
+    const std::optional<double> number = base::parseNumber<double>(text);
+    if (!number) {
       refuse(what, " ", base::quoted(text), " must be a number with a point for decimals");
     }
-    const double si = number * factor;
+    const double si = *number * factor;
     // In this order, so that NaN is refused.
     if (!(si >= range.low && si <= range.high) || (range.above_low && si == range.low)) {
       refuse(what, " is ", base::shortened(text),

@@ -1,7 +1,6 @@
 #include "haptex/mesh/obj_file.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -13,16 +12,10 @@
 #include <vector>
 
 #include "haptex/base/file_size.h"
+#include "haptex/base/parse_number.h"
 
 namespace haptex::mesh {
 namespace {
-
-template <typename Number>
-bool parseAll(const std::string& text, Number& number) {
-  const char* end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, number);
-  return result.ec == std::errc() && result.ptr == end;
-}
 
 enum class RestCoordinates { kRequired, kIgnored };
 
@@ -89,10 +82,12 @@ class ObjReader {
              std::to_string(kSize));
     }
     for (int i = 0; i < kSize; ++i) {
-      if (!parseAll(words[i], numbers[i]) || !std::isfinite(numbers[i])) {
+      const std::optional<double> number = base::parseNumber<double>(words[i]);
+      if (!number || !std::isfinite(*number)) {
         refuse("number " + std::to_string(i + 1) + " of '" + statement +
                "' must be a finite number");
       }
+      numbers[i] = *number;
     }
     return numbers;
   }
@@ -143,8 +138,9 @@ class ObjReader {
   // Counts from 1, or backwards from the last one with -1.
   int readIndex(const std::string& word, const std::string& kind, std::size_t count) const {
     const int size = static_cast<int>(count);
-    int index = 0;
-    if (!parseAll(word, index)) refuse(kind + " of a corner must be a whole number");
+    const std::optional<int> number = base::parseNumber<int>(word);
+    if (!number) refuse(kind + " of a corner must be a whole number");
+    const int index = *number;
     if (index == 0 || index > size || index < -size) {
       refuse(kind + " " + std::to_string(index) + " does not exist, " + std::to_string(size) +
              " are defined before this line");

@@ -4,17 +4,18 @@
 
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
 
 #include "haptex/base/file_size.h"
+#include "haptex/base/parse_number.h"
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/proximity/cursor.h"
@@ -130,14 +131,12 @@ class StateReader {
 
   double number(std::size_t index) const {
     const std::string& word = words_[index];
-    double value = 0.0;
-    const char* end = word.data() + word.size();
-    const std::from_chars_result result = std::from_chars(word.data(), end, value);
-    if (result.ec != std::errc() || result.ptr != end || !(std::abs(value) <= kLargest)) {
+    const std::optional<double> value = base::parseNumber<double>(word);
+    if (!value || !(std::abs(*value) <= kLargest)) {
       refuseLine(base::quoted(word) + " must be a finite number up to " +
                  base::shortNumber(kLargest));
     }
-    return value;
+    return *value;
   }
 
   const std::string& path_;

@@ -1,9 +1,9 @@
 // Files of MakeHuman as text.
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "haptex/base/parse_number.h"
 #include "haptex/base/require.h"
 #include "haptex/garment/body/makehuman.h"
 
@@ -48,31 +48,24 @@ class Lines {
     if (words_.size() != first + 3) refuseLine("must have ", first + 3, " words");
     for (std::size_t i = 0; i < 3; ++i) {
       const std::string& word = words_[first + i];
-      const char* const end = word.data() + word.size();
-      double value = 0.0;
-      const char* const begin = word.data() + (word.front() == '+' ? 1 : 0);
-      const auto result = std::from_chars(begin, end, value);
-      if (result.ec != std::errc() || result.ptr != end ||
-          !(std::abs(value) <= kLargestFigureLength)) {
+      const auto value = base::parseNumber<double>(base::withoutPlus(word));
+      if (!value || !(std::abs(*value) <= kLargestFigureLength)) {
         refuseLine("coordinate ", i + 1, " must be a number from -", kLargestFigureLength, " to ",
                    kLargestFigureLength);
       }
-      values[static_cast<Eigen::Index>(i)] = value;
+      values[static_cast<Eigen::Index>(i)] = *value;
     }
     return values;
   }
 
   /// A whole number from `first` that is less than the count.
   int index(const std::string& word, int first, std::size_t count) const {
-    int value = 0;
-    const char* const end = word.data() + word.size();
-    const auto result = std::from_chars(word.data(), end, value);
-    if (result.ec != std::errc() || result.ptr != end || value < first ||
-        static_cast<std::size_t>(value - first) >= count) {
+    const auto value = base::parseNumber<int>(word);
+    if (!value || *value < first || static_cast<std::size_t>(*value - first) >= count) {
       refuseLine("vertices must be whole numbers from ", first, " to ",
                  static_cast<long>(count) + first - 1);
     }
-    return value - first;
+    return *value - first;
   }
 
  private:

@@ -1,11 +1,11 @@
 #include "haptex/garment/importers/dxf_reader.h"
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "haptex/base/parse_number.h"
 #include "haptex/base/require.h"
 
 namespace haptex::garment {
@@ -75,15 +75,11 @@ class GroupReader {
 
   template <typename Number>
   Number parsed(std::string_view text, const char* what) const {
-    Number number{};
-    const char* const end = text.data() + text.size();
-    const char* begin = text.data();
-    if (!text.empty() && *begin == '+') ++begin;
-    const auto result = std::from_chars(begin, end, number);
-    if (result.ec != std::errc() || result.ptr != end) {
+    const auto number = base::parseNumber<Number>(base::withoutPlus(text));
+    if (!number) {
       refuse(name_, ": line ", line_, ": '", std::string(text.substr(0, 40)), "' must be ", what);
     }
-    return number;
+    return *number;
   }
 
   std::string_view rest_;

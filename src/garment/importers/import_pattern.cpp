@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
 
+#include "haptex/base/command_line.h"
 #include "haptex/base/require.h"
 #include "haptex/garment/importers/dxf_pattern.h"
 #include "haptex/garment/importers/garment_code.h"
@@ -24,28 +24,17 @@ const char* const kUsage =
     "seams in FILE.seams.yaml; its panels are of the fabric NAME (wool): docs/garments.md.\n";
 
 struct Request {
-  std::string file, out;
-  std::string fabric = "wool";
+  std::string file, out, fabric;
 };
 
 Request parse(const std::vector<std::string>& arguments) {
-  Request request;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string& argument = arguments[i];
-    if (argument == "--fabric") {
-      if (++i == arguments.size() || arguments[i].empty()) base::refuse("--fabric needs a name");
-      request.fabric = arguments[i];
-    } else if (argument.rfind("--", 0) == 0) {
-      base::refuse(argument, " is unknown; allowed is --fabric");
-    } else if (request.file.empty()) {
-      request.file = argument;
-    } else if (request.out.empty()) {
-      request.out = argument;
-    } else {
-      base::refuse(argument, ": two files are allowed, ", request.file, " and ", request.out);
-    }
+  const base::CommandLine line = base::readCommandLine(arguments, {"--fabric"});
+  if (line.files.size() < 2) base::refuse("two files are needed, the pattern and the one to write");
+  if (line.files.size() > 2) {
+    base::refuse(line.files[2], ": two files are allowed, ", line.files[0], " and ", line.files[1]);
   }
-  if (request.out.empty()) base::refuse("two files are needed, the pattern and the one to write");
+  const Request request = {line.files[0], line.files[1], line.value("--fabric", "wool")};
+  if (request.fabric.empty()) base::refuse("--fabric needs a name");
   return request;
 }
 
@@ -122,24 +111,18 @@ void print(const ImportedPattern& imported, std::ostream& out) {
 
 int importPattern(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err) {
   Request request;
-  try {
+  const auto read = [&] {
     request = parse(arguments);
     requireOutput(request);
-  } catch (const std::exception& error) {
-    err << error.what() << '\n' << kUsage;
-    return 2;
-  }
-  try {
+  };
+  return base::runProgram(kUsage, err, read, [&] {
     const ImportedPattern imported = import(request);
     std::ofstream file(request.out);
     file << writePattern(imported.pattern) << std::flush;
     if (!file) throw std::runtime_error(request.out + ": cannot be written");
     print(imported, out);
-  } catch (const std::exception& error) {
-    err << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+    return 0;
+  });
 }
 
 }  // namespace haptex::garment

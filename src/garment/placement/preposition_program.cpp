@@ -1,15 +1,17 @@
 #include "haptex/garment/placement/preposition_program.h"
 
-#include <charconv>
-#include <exception>
 #include <fstream>
 #include <ostream>
 #include <stdexcept>
 
+#include "haptex/base/command_line.h"
+#include "haptex/base/parse_number.h"
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/garment/body/body_file.h"
 #include "haptex/garment/pattern/pattern_file.h"
 #include "haptex/garment/placement/preposition.h"
+#include "haptex/mesh/obj_writer.h"
 
 namespace haptex::garment {
 namespace {
@@ -22,41 +24,24 @@ const char* const kUsage =
 struct Request {
   std::vector<std::string> files;
   std::string body_obj;
-  double edge = 0.01;  // m
+  double edge = 0.0;  // m
 };
 
 double readEdge(const std::string& text) {
-  double edge = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, edge);
-  if (result.ec != std::errc() || result.ptr != end || !(edge >= 1e-3 && edge <= 1.0)) {
-    base::refuse("--edge is '", text, "': allowed are 0.001 to 1 m");
+  const auto edge = base::parseNumber<double>(text);
+  if (!edge || !(*edge >= 1e-3 && *edge <= 1.0)) {
+    base::refuse("--edge is ", base::quoted(text), ": allowed are 0.001 to 1 m");
   }
-  return edge;
+  return *edge;
 }
 
 Request parse(const std::vector<std::string>& arguments) {
-  Request request;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string& argument = arguments[i];
-    if (argument == "--edge" || argument == "--body") {
-      if (++i == arguments.size()) base::refuse(argument, " needs a value");
-      if (argument == "--edge") {
-        request.edge = readEdge(arguments[i]);
-      } else {
-        request.body_obj = arguments[i];
-      }
-    } else if (argument.rfind("--", 0) == 0) {
-      base::refuse(argument, " is unknown; allowed are --edge and --body");
-    } else {
-      request.files.push_back(argument);
-    }
-  }
-  if (request.files.size() != 3) {
-    base::refuse(request.files.size(),
+  const base::CommandLine line = base::readCommandLine(arguments, {"--edge", "--body"});
+  if (line.files.size() != 3) {
+    base::refuse(line.files.size(),
                  " files: needed are three, the garment, the body and the one to write");
   }
-  return request;
+  return {line.files, line.value("--body"), readEdge(line.value("--edge", "0.01"))};
 }
 
 std::ofstream openToWrite(const std::string& path) {
@@ -72,21 +57,10 @@ void requireWritten(std::ofstream& file, const std::string& path) {
 
 void writePanels(const Pattern& pattern, const std::vector<PanelMesh>& meshes,
                  const std::string& path) {
+  std::vector<std::string> names;
+  for (const Panel& panel : pattern.panels) names.push_back(panel.name);
   std::ofstream file = openToWrite(path);
-  std::size_t first = 1;
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    const mesh::ClothMesh& mesh = meshes[i].mesh;
-    file << "g " << pattern.panels[i].name << '\n';
-    for (const auto& position : mesh.initial_positions)
-      file << "v " << position.transpose() << '\n';
-    for (const auto& rest : mesh.rest_coordinates) file << "vt " << rest.transpose() << '\n';
-    for (const auto& triangle : mesh.triangles) {
-      file << 'f';
-      for (const int corner : triangle) file << ' ' << first + corner << '/' << first + corner;
-      file << '\n';
-    }
-    first += mesh.initial_positions.size();
-  }
+  mesh::writeObj(joined(meshes), names, file);
   requireWritten(file, path);
 }
 
@@ -123,13 +97,8 @@ void print(const Pattern& pattern, const Preposition& laid, std::ostream& out) {
 int prepositionProgram(const std::vector<std::string>& arguments, std::ostream& out,
                        std::ostream& err) {
   Request request;
-  try {
-    request = parse(arguments);
-  } catch (const std::exception& error) {
-    err << error.what() << '\n' << kUsage;
-    return 2;
-  }
-  try {
+  const auto read = [&] { request = parse(arguments); };
+  return base::runProgram(kUsage, err, read, [&] {
     const Pattern pattern = loadPattern(request.files[0]);
     const Body body = loadBody(request.files[1]);
     std::vector<PanelMesh> meshes;
@@ -139,10 +108,7 @@ int prepositionProgram(const std::vector<std::string>& arguments, std::ostream& 
     if (!request.body_obj.empty()) writeBody(body, request.body_obj);
     print(pattern, laid, out);
     return laid.overlaps.empty() ? 0 : 3;
-  } catch (const std::exception& error) {
-    err << error.what() << '\n';
-    return 1;
-  }
+  });
 }
 
 }  // namespace haptex::garment

@@ -1,0 +1,40 @@
+// What the package's programs do with their arguments.
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace haptex::base {
+
+struct CommandLine {
+  std::vector<std::string> files;  ///< what is neither an option nor its value
+  std::map<std::string, std::string>
+      options;  ///< values by name; the last where one is there twice
+
+  /// @returns the value of an option, or `otherwise` if it is not there
+  std::string value(const std::string& option, const std::string& otherwise = "") const;
+};
+
+/// @param options that are allowed, such as "--edge", at least one; each has a value
+/// @throws std::invalid_argument naming an option that is not allowed and those that are, or one
+///   without a value
+CommandLine readCommandLine(const std::vector<std::string>& arguments,
+                            const std::vector<std::string>& options);
+
+/// A program that first reads its arguments and then works.
+/// @returns its exit status: 2 if `read` throws, which `err` tells with the usage, 1 if `work`
+///   throws, which `err` tells, otherwise what `work` returns
+int runProgram(const char* usage, std::ostream& err, const std::function<void()>& read,
+               const std::function<int()>& work);
+
+/// A program with `least` to `most` arguments and no options but --help, which shows the usage.
+/// @param name of the program, before its errors @param work is given the arguments
+/// @returns its exit status: 2 for another number of arguments, 1 if `work` throws, otherwise 0
+int runPlainProgram(const char* name, const char* usage, const std::vector<std::string>& arguments,
+                    std::size_t least, std::size_t most,
+                    const std::function<void(const std::vector<std::string>&)>& work);
+
+}  // namespace haptex::base

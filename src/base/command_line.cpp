@@ -1,0 +1,84 @@
+#include "haptex/base/command_line.h"
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+
+#include "haptex/base/require.h"
+
+namespace haptex::base {
+namespace {
+
+/// "--a and --b".
+std::string listed(const std::vector<std::string>& options) {
+  std::string text;
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    if (i > 0) text += i + 1 == options.size() ? " and " : ", ";
+    text += options[i];
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string CommandLine::value(const std::string& option, const std::string& otherwise) const {
+  const auto found = options.find(option);
+  return found == options.end() ? otherwise : found->second;
+}
+
+CommandLine readCommandLine(const std::vector<std::string>& arguments,
+                            const std::vector<std::string>& options) {
+  CommandLine line;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& argument = arguments[i];
+    if (argument.rfind("--", 0) != 0) {
+      line.files.push_back(argument);
+    } else if (std::find(options.begin(), options.end(), argument) == options.end()) {
+      refuse(argument, " is unknown; allowed ", options.size() == 1 ? "is " : "are ",
+             listed(options));
+    } else if (++i == arguments.size()) {
+      refuse(argument, " needs a value");
+    } else {
+      line.options[argument] = arguments[i];
+    }
+  }
+  return line;
+}
+
+int runProgram(const char* usage, std::ostream& err, const std::function<void()>& read,
+               const std::function<int()>& work) {
+  try {
+    read();
+  } catch (const std::exception& error) {
+    err << error.what() << '\n' << usage;
+    return 2;
+  }
+  try {
+    return work();
+  } catch (const std::exception& error) {
+    err << error.what() << '\n';
+    return 1;
+  }
+}
+
+int runPlainProgram(const char* name, const char* usage, const std::vector<std::string>& arguments,
+                    std::size_t least, std::size_t most,
+                    const std::function<void(const std::vector<std::string>&)>& work) {
+  if (!arguments.empty() && arguments.front() == "--help") {
+    std::cout << usage;
+    return 0;
+  }
+  if (arguments.size() < least || arguments.size() > most) {
+    std::cerr << usage;
+    return 2;
+  }
+  try {
+    work(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace haptex::base
