@@ -7,7 +7,6 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "haptex/base/constants.h"
@@ -15,7 +14,7 @@
 #include "haptex/cloth/forces/self_contact/rest_surface.h"
 #include "haptex/dressing/overdamped_cloth.h"
 #include "haptex/dressing/seam_pull.h"
-#include "haptex/proximity/intersections.h"
+#include "haptex/garment/placement/overlaps.h"
 
 namespace haptex::dressing {
 namespace {
@@ -127,10 +126,12 @@ class Dressing {
   }
 
   void countIntersections() {
-    const auto& [positions, triangles] =
-        std::tie(outcome_.mesh.initial_positions, outcome_.mesh.triangles);
-    outcome_.with_itself = proximity::countIntersections(positions, triangles);
-    outcome_.with_body = countBodyIntersections(positions, triangles, body_);
+    outcome_.with_itself = outcome_.with_body = 0;
+    const auto overlaps = garment::findOverlaps(outcome_.mesh, body_.vertices, body_.triangles);
+    for (const auto& [panels, pairs] : overlaps) {
+      const bool is_body = panels[1] == outcome_.mesh.panelCount();
+      (is_body ? outcome_.with_body : outcome_.with_itself) += pairs;
+    }
   }
 
   [[noreturn]] void refuseGap(const SeamPull& pull, const std::vector<Vector3d>& positions) const {
@@ -181,22 +182,6 @@ class Dressing {
 };
 
 }  // namespace
-
-std::size_t countBodyIntersections(const std::vector<Vector3d>& positions,
-                                   const std::vector<std::array<int, 3>>& triangles,
-                                   const mesh::ObstacleMesh& body) {
-  std::vector<Vector3d> all = positions;
-  all.insert(all.end(), body.vertices.begin(), body.vertices.end());
-  std::vector<std::array<int, 3>> both = triangles;
-  const int first = static_cast<int>(positions.size());
-  for (const auto& [a, b, c] : body.triangles) both.push_back({first + a, first + b, first + c});
-  const auto pairs = proximity::intersectingTriangles(all, both);
-  const int count = static_cast<int>(triangles.size());
-  const auto of_both = [&](const proximity::TrianglePair& pair) {
-    return pair[0] < count && pair[1] >= count;
-  };
-  return static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), of_both));
-}
 
 DrapeOutcome drape(const garment::GarmentMesh& garment,
                    const std::vector<material::Fabric>& fabrics, const mesh::ObstacleMesh& body,

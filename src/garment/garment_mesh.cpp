@@ -9,27 +9,11 @@
 namespace haptex::garment {
 namespace {
 
-constexpr double kTolerance = 0.05;  // of the edge length, of the distance from curves
-
 /// The number of a name, which is added if it is new.
 int indexOf(const std::string& name, std::vector<std::string>& names) {
   const auto at = std::find(names.begin(), names.end(), name) - names.begin();
   if (at == static_cast<std::ptrdiff_t>(names.size())) names.push_back(name);
   return static_cast<int>(at);
-}
-
-/// @param first number of its first particle
-void append(const PanelMesh& panel, int first, mesh::ClothMesh& all) {
-  const auto add = [](const auto& from, auto& to) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  add(panel.mesh.rest_coordinates, all.rest_coordinates);
-  add(panel.mesh.initial_positions, all.initial_positions);
-  const int index = all.panelCount() - 1;
-  for (const auto& [a, b, c] : panel.mesh.triangles) {
-    all.triangles.push_back({first + a, first + b, first + c});
-    all.triangle_panels.push_back(index);
-  }
 }
 
 struct SewnSide {
@@ -67,19 +51,22 @@ GarmentMesh makeGarmentMesh(const Pattern& pattern, double edge_length) {
     base::refuse("panel '", panel.name, "' is to be laid on the carrier '", on_carrier->carrier,
                  "': allowed are panels that are placed by position and rpy");
   }
-  const double tolerance = kTolerance * edge_length;
+  const double tolerance = kCurveTolerance * edge_length;
   const SeamDivisions divisions = divideSeams(pattern, edge_length, tolerance);
-  GarmentMesh garment;
   std::vector<PanelMesh> panels;
   std::vector<int> first;  // particle, of every panel
+  int particles = 0;
   for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
-    const Panel& panel = pattern.panels[p];
-    panels.push_back(
-        triangulate(panel, edge_length, tolerance, Interior::kEven, divisions.panels[p]));
-    first.push_back(static_cast<int>(garment.mesh.rest_coordinates.size()));
-    garment.mesh.panels.push_back({indexOf(panel.fabric, garment.fabrics), 0.0});
-    garment.panel_names.push_back(panel.name);
-    append(panels.back(), first.back(), garment.mesh);
+    panels.push_back(triangulate(pattern.panels[p], edge_length, tolerance, Interior::kEven,
+                                 divisions.panels[p]));
+    first.push_back(particles);
+    particles += static_cast<int>(panels.back().mesh.rest_coordinates.size());
+  }
+  GarmentMesh garment;
+  garment.mesh = joined(panels);
+  for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
+    garment.mesh.panels[p].fabric = indexOf(pattern.panels[p].fabric, garment.fabrics);
+    garment.panel_names.push_back(pattern.panels[p].name);
   }
   for (std::size_t s = 0; s < pattern.seams.size(); ++s) {
     const auto side_of = [&](int i) {

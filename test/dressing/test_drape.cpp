@@ -9,6 +9,7 @@
 
 #include "dressing_fixtures.h"
 #include "haptex/dressing/drape.h"
+#include "haptex/garment/placement/overlaps.h"
 
 namespace haptex::dressing::test_drape {
 namespace {
@@ -121,9 +122,15 @@ TEST(Drape, RefusesSettingsThatAreNoNumbers) {
 
 TEST(Drape, CountsWhatIsInTheBody) {
   const mesh::ObstacleMesh body = cone(0.2, 0.04, 0.4);
-  const std::vector<std::array<int, 3>> triangle = {{0, 1, 2}};
-  EXPECT_EQ(countBodyIntersections({{1, 0, 0}, {1, 1, 0}, {1, 0, 1}}, triangle, body), 0u);
-  EXPECT_GT(countBodyIntersections({{-1, 0, 0.1}, {1, 1, 0.1}, {1, -1, 0.1}}, triangle, body), 0u);
+  mesh::ClothMesh cloth;
+  cloth.triangles = {{0, 1, 2}};
+  const auto count = [&](const std::vector<Eigen::Vector3d>& positions) {
+    cloth.initial_positions = positions;
+    const auto overlaps = garment::findOverlaps(cloth, body.vertices, body.triangles);
+    return overlaps.count({0, 1}) > 0 ? overlaps.at({0, 1}) : 0;
+  };
+  EXPECT_EQ(count({{1, 0, 0}, {1, 1, 0}, {1, 0, 1}}), 0);
+  EXPECT_GT(count({{-1, 0, 0.1}, {1, 1, 0.1}, {1, -1, 0.1}}), 0);
 }
 
 }  // namespace

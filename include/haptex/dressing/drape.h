@@ -1,8 +1,6 @@
 // From flat panels to a garment at rest on a body.
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
 #include <vector>
 
 #include "haptex/garment/garment_mesh.h"
@@ -71,11 +69,5 @@ struct DrapeOutcome {
 DrapeOutcome drape(const garment::GarmentMesh& garment,
                    const std::vector<material::Fabric>& fabrics, const mesh::ObstacleMesh& body,
                    const DrapeSettings& settings);
-
-/// Pairs of a triangle of a cloth and one of a body that intersect.
-/// @param positions m
-std::size_t countBodyIntersections(const std::vector<Eigen::Vector3d>& positions,
-                                   const std::vector<std::array<int, 3>>& triangles,
-                                   const mesh::ObstacleMesh& body);
 
 }  // namespace haptex::dressing

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
 #include "haptex/proximity/mesh_intersections.h"
 
@@ -10,58 +11,51 @@ namespace {
 
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
+using Triangle = std::array<int, 3>;
 
-/// Triangles of panels and a body in one mesh.
-struct Together {
-  std::vector<Vector3d> positions;
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<int> panels;  // per triangle
+AlignedBox3d boxOf(const std::vector<Vector3d>& positions, const Triangle& triangle) {
+  AlignedBox3d box;
+  for (const int corner : triangle) box.extend(positions[corner]);
+  return box;
+}
 
-  void add(const std::vector<Vector3d>& places, const std::vector<std::array<int, 3>>& faces,
-           int panel) {
-    const int first = static_cast<int>(positions.size());
-    positions.insert(positions.end(), places.begin(), places.end());
-    for (const auto& [a, b, c] : faces) triangles.push_back({first + a, first + b, first + c});
-    panels.insert(panels.end(), faces.size(), panel);
+std::vector<AlignedBox3d> boxesOfPanels(const mesh::ClothMesh& cloth) {
+  std::vector<AlignedBox3d> boxes(cloth.panelCount());
+  for (std::size_t t = 0; t < cloth.triangles.size(); ++t) {
+    boxes[cloth.panelOf(t)].extend(boxOf(cloth.initial_positions, cloth.triangles[t]));
   }
-};
-
-/// Of the body, what is in the box of some panel: faces, hands and feet have many triangles.
-std::vector<std::array<int, 3>> trianglesNear(const std::vector<AlignedBox3d>& boxes,
-                                              const Body& body) {
-  std::vector<std::array<int, 3>> near;
-  for (const auto& triangle : body.triangles) {
-    AlignedBox3d box;
-    for (const int vertex : triangle) box.extend(body.vertices[vertex]);
-    if (std::any_of(boxes.begin(), boxes.end(),
-                    [&](const AlignedBox3d& other) { return other.intersects(box); })) {
-      near.push_back(triangle);
-    }
-  }
-  return near;
+  return boxes;
 }
 
 }  // namespace
 
-std::map<std::array<int, 2>, int> findOverlaps(const std::vector<PanelMesh>& meshes,
-                                               const Body& body) {
-  Together all;
-  std::vector<AlignedBox3d> boxes;
-  const int body_index = static_cast<int>(meshes.size());
-  for (int i = 0; i < body_index; ++i) {
-    all.add(meshes[i].mesh.initial_positions, meshes[i].mesh.triangles, i);
-    boxes.emplace_back();
-    for (const Vector3d& position : meshes[i].mesh.initial_positions) {
-      boxes.back().extend(position);
+std::map<std::array<int, 2>, int> findOverlaps(const mesh::ClothMesh& cloth,
+                                               const std::vector<Vector3d>& vertices,
+                                               const std::vector<Triangle>& triangles) {
+  std::map<std::array<int, 2>, int> counts;
+  if (cloth.triangles.empty()) return counts;
+  const std::vector<AlignedBox3d> boxes = boxesOfPanels(cloth);
+  std::vector<Vector3d> positions = cloth.initial_positions;
+  positions.insert(positions.end(), vertices.begin(), vertices.end());
+  std::vector<Triangle> all = cloth.triangles;
+  const int first = static_cast<int>(cloth.initial_positions.size());
+  for (const Triangle& triangle : triangles) {
+    const AlignedBox3d box = boxOf(vertices, triangle);
+    // Of a body the face, the hands and the feet have many triangles, which are near no panel.
+    if (std::any_of(boxes.begin(), boxes.end(),
+                    [&](const AlignedBox3d& other) { return other.intersects(box); })) {
+      all.push_back({first + triangle[0], first + triangle[1], first + triangle[2]});
     }
   }
-  all.add(body.vertices, trianglesNear(boxes, body), body_index);
-  std::map<std::array<int, 2>, int> counts;
-  if (all.triangles.empty()) return counts;
-  proximity::MeshIntersections intersections(all.triangles, all.positions);
-  for (const auto& [first, second] : intersections.find(all.positions)) {
-    const int a = all.panels[first], b = all.panels[second];  // ascending, as the triangles are
-    if (a != body_index) ++counts[{a, b}];
+  const std::size_t of_cloth = cloth.triangles.size();
+  const auto panel_of = [&](std::size_t t) {
+    return t < of_cloth ? cloth.panelOf(t) : cloth.panelCount();
+  };
+  proximity::MeshIntersections intersections(std::move(all), positions);
+  for (const auto& [a, b] : intersections.find(positions)) {
+    // The smaller index comes first, but in a merged mesh that need not be the smaller panel.
+    const auto panels = std::minmax({panel_of(a), panel_of(b)});
+    if (panels.first != cloth.panelCount()) ++counts[{panels.first, panels.second}];
   }
   return counts;
 }

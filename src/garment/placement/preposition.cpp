@@ -58,7 +58,7 @@ class Prepositioner {
         shiftRings();
       }
       layAll();
-      overlaps_ = findOverlaps(meshes_, body);
+      overlaps_ = findOverlaps(joined(meshes_), body.vertices, body.triangles);
       if (widening == kMostWidenings || !widen(body)) break;
     }
     Preposition result;

@@ -264,7 +264,26 @@ PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance, 
 }
 
 PanelMesh triangulate(const Panel& panel, double edge_length) {
-  return triangulate(panel, edge_length, edge_length / 20.0);
+  return triangulate(panel, edge_length, kCurveTolerance * edge_length);
+}
+
+mesh::ClothMesh joined(const std::vector<PanelMesh>& panels) {
+  mesh::ClothMesh all;
+  const auto add = [](const auto& from, auto& to) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    const mesh::ClothMesh& panel = panels[p].mesh;
+    const int first = static_cast<int>(all.rest_coordinates.size());
+    all.panels.push_back({0, 0.0});
+    add(panel.rest_coordinates, all.rest_coordinates);
+    add(panel.initial_positions, all.initial_positions);
+    for (const auto& [a, b, c] : panel.triangles) {
+      all.triangles.push_back({first + a, first + b, first + c});
+      all.triangle_panels.push_back(static_cast<int>(p));
+    }
+  }
+  return all;
 }
 
 }  // namespace haptex::garment

@@ -34,6 +34,10 @@ struct PanelMesh {
   std::vector<std::vector<EdgeParticles>> edges;  ///< per outline and edge
 };
 
+/// How far edges may be from the curves of an outline, of the edge length, where nothing else is
+/// asked for.
+constexpr double kCurveTolerance = 0.05;
+
 /// Lengths (m) at which edges of a panel are to be divided, ascending from 0 to their own: per
 /// outline and edge. Empty: as triangulate() finds best.
 using EdgeDivisions = std::vector<std::vector<std::vector<double>>>;
@@ -59,7 +63,10 @@ PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance,
 /// @param divisions empty, or of all outlines and edges
 PanelMesh triangulate(const Panel& panel, double edge_length, double tolerance, Interior interior,
                       const EdgeDivisions& divisions);
-/// The same with a tolerance of a twentieth of the edge length.
+/// The same with a tolerance of kCurveTolerance of the edge length.
 PanelMesh triangulate(const Panel& panel, double edge_length);
+
+/// Some panels as one mesh, one after the other, with no particle in common; all of fabric 0.
+mesh::ClothMesh joined(const std::vector<PanelMesh>& panels);
 
 }  // namespace haptex::garment
