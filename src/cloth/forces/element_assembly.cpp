@@ -15,19 +15,20 @@ MembraneElement restElement(const mesh::ClothMesh& mesh, std::size_t triangle) {
   std::sort(order.begin(), order.end(), [&](int i, int j) { return corners[i] < corners[j]; });
   const std::array<int, 3> particles = {corners[order[0]], corners[order[1]], corners[order[2]]};
   const std::array<Eigen::Vector2d, 3> rest = mesh.restCorners(triangle);
-  const Eigen::Vector2d &a = rest[order[0]], &b = rest[order[1]], &c = rest[order[2]];
-  const double ua = a.x(), va = a.y(), ub = b.x(), vb = b.y(), uc = c.x(), vc = c.y();
-  const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
-  MembraneElement element{};
-  element.particles = particles;
-  element.slots = {-1, -1, -1};
-  element.weft_weights = {(vb - vc) / d, (vc - va) / d, (va - vb) / d};
-  element.warp_weights = {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d};
-  element.area = 0.5 * std::abs(d);
-  return element;
+  const auto [weft, warp, area] = restTriangle({rest[order[0]], rest[order[1]], rest[order[2]]});
+  return {particles, {-1, -1, -1}, weft, warp, area};
 }
 
 }  // namespace
+
+RestTriangle restTriangle(const std::array<Eigen::Vector2d, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  const double ua = a.x(), va = a.y(), ub = b.x(), vb = b.y(), uc = c.x(), vc = c.y();
+  const double d = ua * (vb - vc) + ub * (vc - va) + uc * (va - vb);
+  return {{(vb - vc) / d, (vc - va) / d, (va - vb) / d},
+          {(uc - ub) / d, (ua - uc) / d, (ub - ua) / d},
+          0.5 * std::abs(d)};
+}
 
 std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh, std::optional<int> fabric) {
   std::vector<MembraneElement> elements;

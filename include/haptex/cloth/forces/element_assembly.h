@@ -24,6 +24,15 @@ struct MembraneElement {
   double area;                         ///< at rest, m^2
 };
 
+/// A triangle at rest: the derivatives of what is linear in it, along weft and warp, as weights of
+/// its values in the corners.
+struct RestTriangle {
+  std::array<double, 3> weft_weights, warp_weights;  ///< 1/m
+  double area;                                       ///< m^2
+};
+/// @param corners (u along weft, v along warp), m
+RestTriangle restTriangle(const std::array<Eigen::Vector2d, 3>& corners);
+
 /// The elements of all triangles of a mesh without defects, or of those of one fabric.
 std::vector<MembraneElement> restElements(const mesh::ClothMesh& mesh,
                                           std::optional<int> fabric = std::nullopt);

@@ -110,15 +110,14 @@ struct Part {
 };
 
 Part partOf(const std::array<Vector2d, 4>& rest, const std::array<int, 3>& corners) {
-  const Vector2d &a = rest[corners[0]], &b = rest[corners[1]], &c = rest[corners[2]];
-  const double d = (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+  const RestTriangle triangle =
+      restTriangle({rest[corners[0]], rest[corners[1]], rest[corners[2]]});
   Part part;
   for (int i = 0; i < 3; ++i) {
-    const Vector2d side = rest[corners[(i + 1) % 3]] - rest[corners[(i + 2) % 3]];
-    part.weft[corners[i]] = side.y() / d;
-    part.warp[corners[i]] = -side.x() / d;
+    part.weft[corners[i]] = triangle.weft_weights[i];
+    part.warp[corners[i]] = triangle.warp_weights[i];
   }
-  part.area = 0.5 * std::abs(d);
+  part.area = triangle.area;
   return part;
 }
 
