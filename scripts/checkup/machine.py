@@ -11,7 +11,7 @@ import stat
 import subprocess
 import time
 
-from demo_report.host import read_steal
+from demo_report.host import fifo_granted, read_steal
 
 PATIENCE = 2.0  # s, for an answer
 Answer = collections.namedtuple('Answer', 'status output')  # status None: there is no such program
@@ -90,12 +90,7 @@ class Machine:
 
     @staticmethod
     def fifo_granted(priority):
-        try:
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
-            os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
-            return True
-        except OSError:
-            return False
+        return fifo_granted(priority)
 
     @staticmethod
     def processors():

@@ -28,6 +28,16 @@ def read_steal(processor=''):
         return next(steal_of(line) for line in file if line.startswith(f'cpu{processor} '))
 
 
+def fifo_granted(priority):
+    """Whether this process may have SCHED_FIFO."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        return True
+    except PermissionError:
+        return False
+
+
 def watch_processor(processor, pipe):
     """Writes the stalls of a processor into a pipe until its other end is closed."""
     os.sched_setaffinity(0, {processor})
@@ -56,22 +66,13 @@ class HostWatch:
         self.children = []
         self.pipe, write_end = os.pipe()
         os.set_blocking(self.pipe, False)
-        self.has_fifo = self.may_have_fifo()
+        self.has_fifo = fifo_granted(PRIORITY)
         for processor in self.processors:
             child = os.fork()
             if child == 0:
                 self.run_child(processor, write_end)
             self.children.append(child)
         os.close(write_end)
-
-    @staticmethod
-    def may_have_fifo():
-        try:
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
-            os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
-            return True
-        except PermissionError:
-            return False
 
     def run_child(self, processor, write_end):
         try:
