@@ -19,12 +19,11 @@ constexpr double kQuaternionTolerance = 1e-3;
 Eigen::Isometry3d fromMessage(const geometry_msgs::Transform& message) {
   const Eigen::Quaterniond rotation(message.rotation.w, message.rotation.x, message.rotation.y,
                                     message.rotation.z);
-  return Eigen::Translation3d(message.translation.x, message.translation.y, message.translation.z) *
-         rotation.normalized();
+  return Eigen::Translation3d(fromMessage(message.translation)) * rotation.normalized();
 }
 
 Eigen::Isometry3d fromMessage(const geometry_msgs::Pose& message) {
-  const Eigen::Vector3d position(message.position.x, message.position.y, message.position.z);
+  const Eigen::Vector3d position = fromMessage(message.position);
   const Eigen::Quaterniond rotation(message.orientation.w, message.orientation.x,
                                     message.orientation.y, message.orientation.z);
   if (!position.allFinite()) {

@@ -6,6 +6,7 @@
 #include "haptex/exoskeleton/control/command_check.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/ros_time.h"
+#include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
@@ -15,15 +16,11 @@ using base::Time;
 using exoskeleton::CommandFlaw;
 using exoskeleton::ForceCommand;
 
-Eigen::Vector3d fromMessage(const geometry_msgs::Vector3& vector) {
-  return {vector.x, vector.y, vector.z};
-}
-
 ForceCommand commandOf(const haptex::ServoForce& message) {
   using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   ForceCommand command;
   command.force = fromMessage(message.force);
-  command.position = {message.position.x, message.position.y, message.position.z};
+  command.position = fromMessage(message.position);
   command.velocity = fromMessage(message.velocity);
   command.stiffness = Eigen::Map<const RowMajor>(message.stiffness.data());
   command.damping = Eigen::Map<const RowMajor>(message.damping.data());

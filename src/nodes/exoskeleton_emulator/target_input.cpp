@@ -7,6 +7,7 @@
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/hand_markers.h"
 #include "haptex/nodes/wire/frame_names.h"
 
@@ -15,8 +16,6 @@ namespace {
 
 using base::Finger;
 using base::kFingers;
-
-Eigen::Vector3d vector(const geometry_msgs::Point& point) { return {point.x, point.y, point.z}; }
 
 }  // namespace
 
@@ -45,7 +44,7 @@ TargetInput::TargetInput(const ros::NodeHandle& node, exoskeleton::HandMotion& m
 
 void TargetInput::receivePoint(Finger finger, const geometry_msgs::PointStamped& message) {
   count_.count(base::name(finger) + std::string("/target"), [&] {
-    Eigen::Vector3d target = vector(message.point);
+    Eigen::Vector3d target = fromMessage(message.point);
     if (target.allFinite() && message.header.frame_id != handFrame()) {
       target = transformFrom(message.header, handFrame(), transforms_) * target;
     }
@@ -94,7 +93,7 @@ void TargetInput::receivePinch(const geometry_msgs::Point& handle) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!pinched_) pinched_.emplace(pinchPlace(fingertips_), fingertips_);
   const auto& [begin, fingertips] = *pinched_;
-  const double way = begin.x() - vector(handle).x();
+  const double way = begin.x() - fromMessage(handle).x();
   moveFingertips(Grasp::atDistance(Grasp::distanceOf(fingertips) - 2.0 * way, fingertips));
 }
 

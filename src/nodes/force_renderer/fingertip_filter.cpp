@@ -7,6 +7,7 @@
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
+#include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/wire/frame_names.h"
 
 namespace haptex::nodes {
@@ -39,10 +40,6 @@ void requireWithin(const char* what, const Eigen::Vector3d& vector, double large
   throw std::invalid_argument(text.str());
 }
 
-Eigen::Vector3d vector(const geometry_msgs::Vector3& message) {
-  return {message.x, message.y, message.z};
-}
-
 Eigen::Isometry3d soundPose(const geometry_msgs::Pose& message) {
   const Eigen::Isometry3d pose = fromMessage(message);
   requireWithin("the position", pose.translation(), FingertipFilter::kFarthest, "m");
@@ -50,7 +47,7 @@ Eigen::Isometry3d soundPose(const geometry_msgs::Pose& message) {
 }
 
 simulation::FingertipTwist soundTwist(const geometry_msgs::Twist& message) {
-  const simulation::FingertipTwist twist{vector(message.linear), vector(message.angular)};
+  const simulation::FingertipTwist twist{fromMessage(message.linear), fromMessage(message.angular)};
   requireWithin("the velocity", twist.velocity, FingertipFilter::kFastest, "m/s");
   requireWithin("the angular velocity", twist.angular_velocity, FingertipFilter::kFastestTurning,
                 "rad/s");

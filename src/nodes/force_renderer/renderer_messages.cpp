@@ -78,7 +78,7 @@ mesh::ClothMesh clothMesh(const haptex::ClothMesh& message) {
 }
 
 Eigen::Vector3d readGravity(const haptex::ClothMesh& message) {
-  const Eigen::Vector3d gravity(message.gravity.x, message.gravity.y, message.gravity.z);
+  const Eigen::Vector3d gravity = fromMessage(message.gravity);
   if (gravity.allFinite() && gravity.norm() <= kLargestGravity) return gravity;
   std::ostringstream text;
   text << "gravity = (" << gravity.transpose() << "): allowed are finite numbers up to "

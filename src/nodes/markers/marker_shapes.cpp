@@ -20,8 +20,6 @@ constexpr int kParallels = 16;  // of both caps together, about
 const Eigen::Vector3d kLight = Eigen::Vector3d(0.62, -0.52, 0.58).normalized();
 constexpr double kAmbient = 0.35;
 
-Eigen::Vector3d vector(const geometry_msgs::Point& point) { return {point.x, point.y, point.z}; }
-
 /// A circle around the axis of a surface of revolution.
 struct Ring {
   Eigen::Vector3d centre;
@@ -89,9 +87,9 @@ void shadeTriangles(visualization_msgs::Marker& marker, const Eigen::Vector3f& c
   const Eigen::Quaterniond rotation(pose.w, pose.x, pose.y, pose.z);
   marker.colors.resize(marker.points.size());
   for (std::size_t i = 0; i + 2 < marker.points.size(); i += 3) {
-    const Eigen::Vector3d first = vector(marker.points[i]);
-    const Eigen::Vector3d normal =
-        (vector(marker.points[i + 1]) - first).cross(vector(marker.points[i + 2]) - first);
+    const Eigen::Vector3d first = fromMessage(marker.points[i]);
+    const Eigen::Vector3d normal = (fromMessage(marker.points[i + 1]) - first)
+                                       .cross(fromMessage(marker.points[i + 2]) - first);
     // Normalising leaves the zero of a triangle without area.
     const Eigen::Vector3f shaded = shade(rotation * normal.normalized()) * colour;
     std::fill_n(marker.colors.begin() + static_cast<std::ptrdiff_t>(i), 3,

@@ -28,4 +28,12 @@ inline geometry_msgs::Vector3 vectorMessage(const Eigen::Vector3d& vector) {
   return message;
 }
 
+inline Eigen::Vector3d fromMessage(const geometry_msgs::Point& point) {
+  return {point.x, point.y, point.z};
+}
+
+inline Eigen::Vector3d fromMessage(const geometry_msgs::Vector3& vector) {
+  return {vector.x, vector.y, vector.z};
+}
+
 }  // namespace haptex::nodes

@@ -1,0 +1,278 @@
+#include "haptex/nodes/rviz_plugin/cloth_surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "haptex/mesh/mesh.h"
+#include "haptex/nodes/common/cloth_fabric.h"
+#include "haptex/nodes/common/proximity_messages.h"
+#include "haptex/nodes/common/vector_messages.h"
+#include "haptex/nodes/markers/colour_map.h"
+#include "haptex/nodes/markers/marker_shapes.h"
+
+namespace haptex::nodes {
+namespace {
+
+const Eigen::Vector3f kExcludedColour(0.62F, 0.62F, 0.62F);
+
+bool isQuantity(ColourBy colour_by) {
+  return colour_by != ColourBy::kFabric && colour_by != ColourBy::kPanel;
+}
+
+bool needsElements(ColourBy colour_by) {
+  return colour_by == ColourBy::kStrain || colour_by == ColourBy::kStress;
+}
+
+std::vector<cloth::MembraneElement> elementsOf(const RestMesh& rest) {
+  mesh::ClothMesh mesh;
+  mesh.triangles = rest.triangles;
+  for (const Eigen::Vector3d& place : rest.rest_coordinates) {
+    mesh.rest_coordinates.push_back(place.head<2>());
+  }
+  return cloth::restElements(mesh);
+}
+
+/// For each triangle the number of its part: triangles that share particles, from 0.
+std::vector<int> partsOf(const std::vector<std::array<int, 3>>& triangles, std::size_t particles) {
+  std::vector<int> parents(particles);
+  std::iota(parents.begin(), parents.end(), 0);
+  const auto root = [&](int particle) {
+    while (parents[particle] != particle) {
+      particle = parents[particle] = parents[parents[particle]];
+    }
+    return particle;
+  };
+  for (const auto& triangle : triangles) {
+    parents[root(triangle[1])] = root(triangle[0]);
+    parents[root(triangle[2])] = root(triangle[0]);
+  }
+  std::map<int, int> numbers;
+  std::vector<int> parts;
+  for (const auto& triangle : triangles) {
+    const int next = static_cast<int>(numbers.size());
+    parts.push_back(numbers.emplace(root(triangle[0]), next).first->second);
+  }
+  return parts;
+}
+
+VertexColour colourOf(const Eigen::Vector3f& colour, float brightness, double opacity) {
+  const auto byte = [](double value) {
+    return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
+  };
+  return {byte(brightness * colour[0]), byte(brightness * colour[1]), byte(brightness * colour[2]),
+          byte(opacity)};
+}
+
+void requireCount(const std::string& field, std::size_t count, std::size_t allowed) {
+  if (count == allowed) return;
+  throw std::invalid_argument(field + " has " + std::to_string(count) + " elements: allowed are " +
+                              std::to_string(allowed) + ", one per particle of cloth/mesh");
+}
+
+}  // namespace
+
+ClothSurface::ClothSurface(const haptex::ClothMesh& mesh, ColourBy colour_by)
+    : mesh_(mesh.mesh), colour_by_(colour_by) {
+  const RestMesh rest = restMesh(mesh);
+  requireFabrics(mesh);
+  triangles_ = rest.triangles;
+  triangle_fabrics_.assign(mesh.triangle_fabrics.begin(), mesh.triangle_fabrics.end());
+  if (!triangle_fabrics_.empty() && triangle_fabrics_.size() != triangles_.size()) {
+    throw std::invalid_argument("triangle_fabrics has " + std::to_string(triangle_fabrics_.size()) +
+                                " elements: allowed are none, or " +
+                                std::to_string(triangles_.size()) + ", one per triangle");
+  }
+  for (const int fabric : triangle_fabrics_) {
+    if (fabric >= static_cast<int>(mesh.fabrics.size())) {
+      throw std::invalid_argument("triangle_fabrics names fabric " + std::to_string(fabric) +
+                                  ": there are " + std::to_string(mesh.fabrics.size()));
+    }
+  }
+  if (isQuantity(colour_by)) scale_ = scaleOf(colour_by);
+  if (needsElements(colour_by)) elements_ = elementsOf(rest);
+  if (colour_by == ColourBy::kStress) fabrics_ = fabricsOfCloth(mesh);
+  const std::size_t particles = rest.rest_coordinates.size();
+  points_.resize(particles);
+  normals_.resize(particles);
+  values_.assign(particles, 0.0);
+  areas_.assign(particles, 0.0);
+  excluded_.assign(particles, 0);
+  contact_forces_.assign(particles, 0.0);
+  makeVertices(groupsOfTriangles(mesh));
+  findGrainLines(mesh);
+  positions_.resize(3 * particles_.size());
+  colours_.resize(particles_.size());
+}
+
+/// Also names the groups.
+std::vector<int> ClothSurface::groupsOfTriangles(const haptex::ClothMesh& mesh) {
+  std::vector<int> groups(triangles_.size(), 0);
+  if (colour_by_ == ColourBy::kFabric) {
+    groups_.assign(mesh.fabrics.begin(), mesh.fabrics.end());
+    if (!triangle_fabrics_.empty()) groups = triangle_fabrics_;
+  } else if (colour_by_ == ColourBy::kPanel) {
+    groups = partsOf(triangles_, points_.size());
+    const int count = 1 + *std::max_element(groups.begin(), groups.end());
+    for (int part = 0; part < count; ++part) groups_.push_back("panel " + std::to_string(part));
+  }
+  return groups;
+}
+
+void ClothSurface::makeVertices(const std::vector<int>& groups) {
+  std::map<std::pair<int, int>, std::uint32_t> known;  // by particle and group
+  first_vertices_.assign(points_.size(), 0);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (const int particle : triangles_[t]) {
+      const auto next = static_cast<std::uint32_t>(particles_.size());
+      const auto [place, is_new] = known.emplace(std::make_pair(particle, groups[t]), next);
+      if (is_new) {
+        particles_.push_back(particle);
+        vertex_groups_.push_back(groups[t]);
+        first_vertices_[particle] = next;
+      }
+      triangle_vertices_.push_back(place->second);
+    }
+  }
+}
+
+void ClothSurface::findGrainLines(const haptex::ClothMesh& mesh) {
+  constexpr double kAlong = 1e-6;  // of an edge's length, across the grain
+  std::set<std::pair<int, int>> known;
+  for (const Triangle& triangle : triangles_) {
+    for (int i = 0; i < 3; ++i) {
+      const auto [first, second] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
+      const double weft =
+          std::abs(mesh.rest_weft_coordinates[first] - mesh.rest_weft_coordinates[second]);
+      const double warp =
+          std::abs(mesh.rest_warp_coordinates[first] - mesh.rest_warp_coordinates[second]);
+      if (std::min(weft, warp) > kAlong * std::max(weft, warp)) continue;
+      if (!known.emplace(first, second).second) continue;
+      grain_lines_.push_back(first_vertices_[first]);
+      grain_lines_.push_back(first_vertices_[second]);
+    }
+  }
+}
+
+void ClothSurface::setFullScale(double full) {
+  if (!isQuantity(colour_by_)) return;
+  scale_ = scaleOf(colour_by_);
+  if (full > 0.0) scale_.full = full;
+}
+
+void ClothSurface::setOpacity(double opacity) { opacity_ = opacity; }
+
+void ClothSurface::take(const haptex::ContactForces& forces) {
+  if (forces.mesh != mesh_) return;
+  std::fill(contact_forces_.begin(), contact_forces_.end(), 0.0);
+  const std::size_t points =
+      std::min({forces.triangles.size(), forces.forces.size(), forces.barycentric.size() / 3});
+  std::vector<Eigen::Vector3d> sums(contact_forces_.size(), Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < points; ++i) {
+    if (forces.triangles[i] >= triangles_.size()) continue;
+    const Eigen::Vector3d force = fromMessage(forces.forces[i]);
+    for (int corner = 0; corner < 3; ++corner) {
+      sums[triangles_[forces.triangles[i]][corner]] += forces.barycentric[3 * i + corner] * force;
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) contact_forces_[i] = sums[i].norm();
+}
+
+void ClothSurface::take(const haptex::ClothState& state) {
+  readPositions(state);
+  computeNormals();
+  computeValues();
+  colourVertices(state);
+}
+
+void ClothSurface::readPositions(const haptex::ClothState& state) {
+  requireCount("positions", state.positions.size(), points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const geometry_msgs::Point& point = state.positions[i];
+    points_[i] = fromMessage(point);
+    if (!points_[i].allFinite() || points_[i].cwiseAbs().maxCoeff() > kFarthest) {
+      std::ostringstream message;
+      message << "positions[" << i << "] = (" << points_[i].transpose()
+              << "): allowed are finite numbers, at most " << kFarthest << " m";
+      throw std::invalid_argument(message.str());
+    }
+  }
+  low_ = high_ = points_.front().cast<float>();
+  for (std::size_t vertex = 0; vertex < particles_.size(); ++vertex) {
+    const Eigen::Vector3f place = points_[particles_[vertex]].cast<float>();
+    std::copy_n(place.data(), 3, &positions_[3 * vertex]);
+    low_ = low_.cwiseMin(place);
+    high_ = high_.cwiseMax(place);
+  }
+}
+
+void ClothSurface::computeNormals() {
+  std::fill(normals_.begin(), normals_.end(), Eigen::Vector3d::Zero());
+  for (const Triangle& triangle : triangles_) {
+    const Eigen::Vector3d& first = points_[triangle[0]];
+    const Eigen::Vector3d normal =
+        (points_[triangle[1]] - first).cross(points_[triangle[2]] - first);
+    for (const int particle : triangle) normals_[particle] += normal;
+  }
+  for (Eigen::Vector3d& normal : normals_) normal.normalize();
+}
+
+/// Of an element that restElements() made, whose order is that of the triangles.
+double ClothSurface::valueOf(std::size_t element) const {
+  const cloth::MembraneStrain strain = cloth::greenStrain(elements_[element], points_);
+  if (colour_by_ == ColourBy::kStrain) return largestPrincipalStrain(strain);
+  const material::Fabric& fabric =
+      fabrics_[triangle_fabrics_.empty() ? 0 : triangle_fabrics_[element]];
+  // Shear stress belongs to U.V: its tensor has it whole beside the diagonal.
+  const Eigen::Vector3d stress(fabric.weft.elastic.evaluate(strain[0]).stress,
+                               fabric.warp.elastic.evaluate(strain[1]).stress,
+                               2.0 * fabric.shear.elastic.evaluate(strain[2]).stress);
+  return largestPrincipalStrain(stress);
+}
+
+void ClothSurface::computeValues() {
+  if (colour_by_ == ColourBy::kContactForce) values_ = contact_forces_;
+  if (!needsElements(colour_by_)) return;
+  std::fill(values_.begin(), values_.end(), 0.0);
+  std::fill(areas_.begin(), areas_.end(), 0.0);
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const double value = valueOf(e);
+    for (const int particle : elements_[e].particles) {
+      values_[particle] += elements_[e].area * value;
+      areas_[particle] += elements_[e].area;
+    }
+  }
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] /= areas_[i];
+}
+
+void ClothSurface::colourVertices(const haptex::ClothState& state) {
+  std::fill(excluded_.begin(), excluded_.end(), 0);
+  for (const std::uint32_t particle : state.excluded) {
+    if (particle < excluded_.size()) excluded_[particle] = 1;
+  }
+  const bool by_quantity = isQuantity(colour_by_);
+  for (std::size_t vertex = 0; vertex < particles_.size(); ++vertex) {
+    const int particle = particles_[vertex];
+    const Eigen::Vector3f colour = excluded_[particle] != 0 ? kExcludedColour
+                                   : by_quantity ? viridis(scale_.fraction(values_[particle]))
+                                                 : distinctColour(vertex_groups_[vertex]);
+    colours_[vertex] = colourOf(colour, shade(normals_[particle]), opacity_);
+  }
+}
+
+std::vector<std::uint32_t> ClothSurface::attached(const haptex::ClothState& state) const {
+  std::vector<std::uint32_t> vertices;
+  for (const std::uint32_t particle : state.attached) {
+    if (particle >= excluded_.size() || excluded_[particle] != 0) continue;
+    vertices.push_back(first_vertices_[particle]);
+  }
+  return vertices;
+}
+
+}  // namespace haptex::nodes

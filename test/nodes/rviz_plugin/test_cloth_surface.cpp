@@ -1,0 +1,214 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "haptex/nodes/markers/colour_map.h"
+#include "haptex/nodes/markers/marker_shapes.h"
+#include "haptex/nodes/rviz_plugin/cloth_surface.h"
+
+namespace haptex::nodes::test_cloth_surface {
+namespace {
+
+/// 100 N/m along weft and warp.
+std::string linearFabric() {
+  std::ifstream file(HAPTEX_CONFIG_DIRECTORY "/fabrics/linear.yaml");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Two triangles, a square of 1 m: particles 0 and 1 below, 2 and 3 above.
+haptex::ClothMesh squareMesh() {
+  haptex::ClothMesh mesh;
+  mesh.mesh = 3;
+  mesh.fabrics = {"linear"};
+  mesh.fabric_files = {linearFabric()};
+  mesh.rest_weft_coordinates = {0.0, 1.0, 0.0, 1.0};
+  mesh.rest_warp_coordinates = {0.0, 0.0, 1.0, 1.0};
+  mesh.triangles = {0, 1, 2, 1, 3, 2};
+  return mesh;
+}
+
+/// Weft along y, warp along z, stretched along weft.
+haptex::ClothState squareState(double stretch) {
+  haptex::ClothState state;
+  state.mesh = 3;
+  state.header.frame_id = "world";
+  for (const double z : {0.0, 1.0}) {
+    for (const double y : {0.0, stretch}) {
+      geometry_msgs::Point point;
+      point.y = y;
+      point.z = z;
+      state.positions.push_back(point);
+    }
+  }
+  return state;
+}
+
+VertexColour shaded(const Eigen::Vector3f& colour, const Eigen::Vector3d& normal) {
+  VertexColour bytes{0, 0, 0, 255};
+  for (int i = 0; i < 3; ++i) {
+    bytes[i] = static_cast<std::uint8_t>(std::lround(255.0F * shade(normal) * colour[i]));
+  }
+  return bytes;
+}
+
+TEST(ClothSurface, HasTheColourOfItsLargestPrincipalStrain) {
+  ClothSurface surface(squareMesh(), ColourBy::kStrain);
+  surface.take(squareState(1.002));
+  const double strain = 0.5 * (1.002 * 1.002 - 1.0);
+  const Eigen::Vector3f colour = viridis(1.0 + std::log10(strain / 0.01) / 4.0);
+  ASSERT_EQ(surface.colours().size(), 4u);
+  for (const VertexColour& vertex : surface.colours()) {
+    EXPECT_EQ(vertex, shaded(colour, Eigen::Vector3d::UnitX()));
+  }
+}
+
+TEST(ClothSurface, HasTheColourOfTheStressOfItsFabric) {
+  ClothSurface surface(squareMesh(), ColourBy::kStress);
+  surface.take(squareState(1.002));
+  const double stress = 100.0 * 0.5 * (1.002 * 1.002 - 1.0);  // N/m
+  const Eigen::Vector3f colour = viridis(1.0 + std::log10(stress / 100.0) / 4.0);
+  EXPECT_EQ(surface.colours().front(), shaded(colour, Eigen::Vector3d::UnitX()));
+}
+
+TEST(ClothSurface, FollowsAnotherFullScale) {
+  ClothSurface surface(squareMesh(), ColourBy::kStrain);
+  surface.setFullScale(0.0001);
+  surface.take(squareState(1.002));
+  EXPECT_EQ(surface.colours().front(), shaded(viridis(1.0), Eigen::Vector3d::UnitX()));
+  surface.setFullScale(0.0);
+  EXPECT_EQ(surface.scale().full, 0.01) << "0 is the default";
+}
+
+TEST(ClothSurface, SharesOutContactForcesByBarycentricWeights) {
+  ClothSurface surface(squareMesh(), ColourBy::kContactForce);
+  haptex::ContactForces forces;
+  forces.mesh = 3;
+  forces.triangles = {0};
+  forces.barycentric = {0.5, 0.5, 0.0};
+  forces.forces.resize(1);
+  forces.forces[0].x = 0.02;
+  surface.take(forces);
+  surface.take(squareState(1.0));
+  const Eigen::Vector3f colour = viridis(1.0 + std::log10(0.01 / 0.1) / 3.0);
+  const Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
+  EXPECT_EQ(surface.colours()[0], shaded(colour, normal));
+  EXPECT_EQ(surface.colours()[1], shaded(colour, normal));
+  EXPECT_EQ(surface.colours()[2], shaded(viridis(0.0), normal));
+  forces.mesh = 4;
+  forces.forces[0].x = 1.0;
+  surface.take(forces);
+  surface.take(squareState(1.0));
+  EXPECT_EQ(surface.colours()[0], shaded(colour, normal)) << "forces of another mesh";
+}
+
+TEST(ClothSurface, BothSidesAreEquallyBright) {
+  ClothSurface surface(squareMesh(), ColourBy::kStrain);
+  surface.take(squareState(1.002));
+  const std::vector<VertexColour> front = surface.colours();
+  haptex::ClothState state = squareState(1.002);
+  for (geometry_msgs::Point& point : state.positions) point.y = -point.y;  // turns the normals
+  surface.take(state);
+  EXPECT_EQ(surface.colours(), front);
+}
+
+TEST(ClothSurface, FabricsMeetInASharpEdge) {
+  haptex::ClothMesh mesh = squareMesh();
+  mesh.fabrics = {"linear", "linear"};
+  mesh.fabric_files = {linearFabric(), linearFabric()};
+  mesh.triangle_fabrics = {0, 1};
+  ClothSurface surface(mesh, ColourBy::kFabric);
+  EXPECT_EQ(surface.vertexCount(), 6u) << "the two common particles twice";
+  EXPECT_EQ(surface.groups().size(), 2u);
+  surface.take(squareState(1.0));
+  const std::vector<std::uint32_t>& vertices = surface.triangles();
+  ASSERT_EQ(vertices.size(), 6u);
+  for (std::size_t corner = 0; corner < 6; ++corner) {
+    const Eigen::Vector3f colour = distinctColour(corner < 3 ? 0 : 1);
+    EXPECT_EQ(surface.colours()[vertices[corner]], shaded(colour, Eigen::Vector3d::UnitX()));
+  }
+}
+
+TEST(ClothSurface, PanelsArePartsThatNoTriangleJoins) {
+  haptex::ClothMesh mesh = squareMesh();
+  mesh.rest_weft_coordinates.insert(mesh.rest_weft_coordinates.end(), {2.0, 3.0, 2.0});
+  mesh.rest_warp_coordinates.insert(mesh.rest_warp_coordinates.end(), {0.0, 0.0, 1.0});
+  mesh.triangles.insert(mesh.triangles.end(), {4, 5, 6});
+  const ClothSurface surface(mesh, ColourBy::kPanel);
+  EXPECT_EQ(surface.groups(), (std::vector<std::string>{"panel 0", "panel 1"}));
+}
+
+TEST(ClothSurface, GrainLinesRunAlongWeftAndWarpOnce) {
+  const ClothSurface surface(squareMesh(), ColourBy::kStrain);
+  EXPECT_EQ(surface.grainLines().size(), 2u * 4u) << "the square's sides, and not its diagonal";
+}
+
+TEST(ClothSurface, WhatIsLeftOutIsGreyAndNotMarkedAsAttached) {
+  ClothSurface surface(squareMesh(), ColourBy::kStrain);
+  haptex::ClothState state = squareState(1.002);
+  state.attached = {0, 3, 77};
+  state.excluded = {3};
+  surface.take(state);
+  EXPECT_EQ(surface.attached(state).size(), 1u);
+  const Eigen::Vector3f grey(0.62F, 0.62F, 0.62F);
+  const std::set<VertexColour> colours(surface.colours().begin(), surface.colours().end());
+  EXPECT_EQ(colours.count(shaded(grey, Eigen::Vector3d::UnitX())), 1u);
+}
+
+std::string refusalOf(const haptex::ClothMesh& mesh, ColourBy colour_by = ColourBy::kStrain) {
+  try {
+    const ClothSurface surface(mesh, colour_by);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(ClothSurface, RefusesMeshesThatDoNotFitTogether) {
+  haptex::ClothMesh mesh = squareMesh();
+  mesh.triangles[5] = 4;
+  EXPECT_EQ(refusalOf(mesh), "triangles[5] = 4: there are 4 particles");
+  mesh = squareMesh();
+  mesh.triangle_fabrics = {0, 2};
+  EXPECT_EQ(refusalOf(mesh), "triangle_fabrics names fabric 2: there are 1");
+  mesh.triangle_fabrics = {0};
+  EXPECT_EQ(refusalOf(mesh),
+            "triangle_fabrics has 1 elements: allowed are none, or 2, one per triangle");
+  mesh = squareMesh();
+  mesh.fabric_files = {"name: another"};
+  EXPECT_NE(refusalOf(mesh, ColourBy::kStress).find("fabric 'linear' in cloth/mesh"),
+            std::string::npos);
+  EXPECT_EQ(refusalOf(mesh, ColourBy::kStrain), "taken") << "which needs no fabric";
+}
+
+TEST(ClothSurface, RefusesStatesThatCannotBeDrawn) {
+  ClothSurface surface(squareMesh(), ColourBy::kStrain);
+  haptex::ClothState state = squareState(1.0);
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e5}) {
+    state.positions[2].x = bad;
+    EXPECT_THROW(surface.take(state), std::invalid_argument) << bad;
+  }
+  state = squareState(1.0);
+  state.positions.pop_back();
+  EXPECT_THROW(surface.take(state), std::invalid_argument);
+  state = squareState(1.0);
+  state.mesh = 4;
+  EXPECT_FALSE(surface.knows(state));
+}
+
+TEST(ClothSurface, TrianglesWithoutAreaHaveAColour) {
+  haptex::ClothMesh mesh = squareMesh();
+  mesh.rest_weft_coordinates = {0.0, 0.0, 0.0, 0.0};
+  ClothSurface surface(mesh, ColourBy::kStrain);
+  surface.take(squareState(1.0));
+  for (const float coordinate : surface.positions()) EXPECT_TRUE(std::isfinite(coordinate));
+}
+
+}  // namespace
+}  // namespace haptex::nodes::test_cloth_surface

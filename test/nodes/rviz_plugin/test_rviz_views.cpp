@@ -1,0 +1,270 @@
+// What people do to a view of rviz, and what may go wrong around it: nothing of it ends rviz. Run
+// by rviz_views_test.py, with a display. The environment HAPTEX_VIEW_CYCLES says how often displays
+// and panel are added and removed.
+#include <rviz/display.h>
+#include <rviz/display_group.h>
+#include <rviz/properties/enum_property.h>
+#include <rviz/properties/status_property.h>
+#include <std_srvs/Trigger.h>
+
+#include <QDockWidget>
+#include <QLabel>
+#include <QPushButton>
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "view_fixture.h"
+
+namespace haptex::nodes::test_rviz_views {
+namespace {
+
+int cycles() {
+  const char* text = std::getenv("HAPTEX_VIEW_CYCLES");
+  return text != nullptr ? std::atoi(text) : 200;
+}
+
+/// Whether a display says that something of this name is well.
+bool isWell(rviz::Display* display, const QString& name) {
+  for (int i = 0; i < display->numChildren(); ++i) {
+    rviz::Property* list = display->childAt(i);
+    for (int j = 0; j < list->numChildren(); ++j) {
+      const auto* status = qobject_cast<rviz::StatusProperty*>(list->childAt(j));
+      if (status != nullptr && status->getName() == name) {
+        return status->getLevel() == rviz::StatusProperty::Ok;
+      }
+    }
+  }
+  return false;
+}
+
+TEST_F(ViewTest, DisplaysAreAddedAndRemovedOverAndOver) {
+  const haptex::ClothMesh mesh = sheetMesh(16, 1, fabric_file_);
+  publish(mesh, 0.0);
+  for (int cycle = 0; cycle < cycles(); ++cycle) {
+    rviz::Display* cloth = manager().createDisplay("haptex/Cloth", "Cloth", true);
+    rviz::Display* contact = manager().createDisplay("haptex/Contact", "Contact", true);
+    ASSERT_NE(cloth, nullptr);
+    if (cycle % 10 == 0) {
+      EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); })) << "the cloth is not drawn";
+    } else {
+      run(0.01 * (cycle % 3));
+    }
+    state_publisher_.publish(sheetState(mesh, 0.01 * cycle));
+    delete cloth;
+    delete contact;
+  }
+  EXPECT_EQ(manager().getRootDisplayGroup()->numDisplays(), 0);
+}
+
+TEST_F(ViewTest, DisplaysAreSwitchedOffAndOnAndReset) {
+  const haptex::ClothMesh mesh = sheetMesh(16, 2, fabric_file_);
+  publish(mesh, 0.0);
+  rviz::Display* cloth = manager().createDisplay("haptex/Cloth", "Cloth", true);
+  for (int cycle = 0; cycle < cycles() / 5; ++cycle) {
+    cloth->setEnabled(false);
+    run(0.01 * (cycle % 2));
+    cloth->setEnabled(true);
+    if (cycle % 3 == 0) cloth->reset();
+    run(0.01);
+  }
+  EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); }));
+}
+
+TEST_F(ViewTest, ThePanelIsAddedAndRemovedOverAndOver) {
+  for (int cycle = 0; cycle < cycles(); ++cycle) {
+    QDockWidget* dock = frame_->addPanelByName("haptex", "haptex/Panel");
+    ASSERT_NE(dock, nullptr);
+    run(cycle % 10 == 0 ? 0.15 : 0.0);
+    delete dock;
+  }
+}
+
+TEST_F(ViewTest, EveryColourAndStyleIsDrawn) {
+  const haptex::ClothMesh mesh = sheetMesh(16, 3, fabric_file_);
+  publish(mesh, 0.0);
+  rviz::Display* cloth = manager().createDisplay("haptex/Cloth", "Cloth", true);
+  for (const char* colours : {"Strain", "Stress", "Contact force", "Fabric", "Panel"}) {
+    for (const bool on : {true, false}) {
+      cloth->subProp("Colour by")->setValue(colours);
+      cloth->subProp("Wireframe")->setValue(on);
+      cloth->subProp("Grain lines")->setValue(on);
+      cloth->subProp("Legend")->setValue(on);
+      cloth->subProp("Alpha")->setValue(on ? 0.5F : 1.0F);
+      cloth->subProp("Full scale")->setValue(on ? 0.5F : 0.0F);
+      state_publisher_.publish(sheetState(mesh, 0.1));
+      run(0.1);  // a few frames
+      EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); })) << colours;
+    }
+  }
+}
+
+TEST_F(ViewTest, MeshesAndFabricsChangeWhileTheyAreDrawn) {
+  rviz::Display* cloth = manager().createDisplay("haptex/Cloth", "Cloth", true);
+  for (int i = 0; i < 200; ++i) {
+    publish(sheetMesh(4 + i % 20, static_cast<std::uint32_t>(100 + i), fabric_file_), 0.01 * i);
+    run(0.005);
+  }
+  EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); }));
+}
+
+TEST_F(ViewTest, MessagesThatAreWrongAreRefusedAndTheNextIsDrawn) {
+  rviz::Display* cloth = manager().createDisplay("haptex/Cloth", "Cloth", true);
+  const haptex::ClothMesh good = sheetMesh(8, 500, fabric_file_);
+  haptex::ClothMesh outside = good;
+  outside.triangles[0] = 1000000;
+  haptex::ClothMesh empty;
+  haptex::ClothMesh nan = good;
+  nan.rest_weft_coordinates[0] = std::numeric_limits<double>::quiet_NaN();
+  for (const haptex::ClothMesh& bad : {outside, empty, nan}) {
+    publish(good, 0.0);
+    EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "Mesh"); }));
+    mesh_publisher_.publish(bad);
+    EXPECT_TRUE(run(10.0, [&] { return !isWell(cloth, "Mesh"); }));
+  }
+  haptex::ClothState state = sheetState(good, 0.0);
+  publish(good, 0.0);
+  EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); }));
+  state.positions[5].x = std::numeric_limits<double>::infinity();
+  // Queues of one message may lose it: again until it has come.
+  bool refused = false;
+  for (int i = 0; i < 50 && !refused; ++i) {
+    state_publisher_.publish(state);
+    refused = run(0.2, [&] { return !isWell(cloth, "State"); });
+  }
+  EXPECT_TRUE(refused);
+  state_publisher_.publish(sheetState(good, 0.1));
+  EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); }));
+}
+
+TEST_F(ViewTest, BrokenConfigurationsAreTakenAsFarAsTheyCanBe) {
+  const std::string before =
+      "Visualization Manager:\n  Displays:\n    - Class: haptex/Cloth\n"
+      "      Name: Cloth\n      Enabled: true\n";
+  for (const char* lines :
+       {"      Colour by: Temperature\n", "      Colour by: 7\n", "      Colour by: [1, 2]\n",
+        "      Full scale: -3\n", "      Full scale: .nan\n", "      Full scale: much\n",
+        "      Alpha: 1e9\n", "      Topics: \"\"\n", "      Topics: \"no name!\"\n",
+        "      Topics: {a: b}\n", "      Wireframe: perhaps\n", "      Unknown: 1\n", ""}) {
+    load(before + lines);
+    run(0.05);
+    EXPECT_EQ(manager().getRootDisplayGroup()->numDisplays(), 1) << lines;
+  }
+}
+
+TEST_F(ViewTest, ConfigurationsFromBeforeTheDisplaysAreTaken) {
+  load(
+      "Panels: []\nVisualization Manager:\n  Displays:\n    - Class: rviz/MarkerArray\n"
+      "      Name: Cloth\n      Enabled: true\n      Marker Topic: cloth/markers\n"
+      "    - Class: haptex/Removed\n      Name: Of another version\n      Enabled: true\n");
+  run(0.1);
+  EXPECT_EQ(manager().getRootDisplayGroup()->numDisplays(), 2);
+  for (const char* name : {"cloth", "exoskeleton", "haptex"}) {
+    frame_->loadDisplayConfigHelper(std::string(HAPTEX_SOURCE_DIRECTORY "/rviz/") + name + ".rviz",
+                                    true);
+    run(0.2);
+  }
+}
+
+TEST_F(ViewTest, AServiceThatHangsDoesNotKeepThePanel) {
+  std::atomic<bool> release{false}, called{false};
+  ros::CallbackQueue queue;
+  ros::NodeHandle node;
+  node.setCallbackQueue(&queue);
+  const boost::function<bool(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&)> hang =
+      [&](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+        called = true;
+        while (!release) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        response.success = true;
+        response.message = "done at last";
+        return true;
+      };
+  ros::ServiceServer service = node.advertiseService("cloth/reset", hang);
+  ros::AsyncSpinner spinner(1, &queue);
+  spinner.start();
+  QDockWidget* dock = frame_->addPanelByName("haptex", "haptex/Panel");
+  QPushButton* reset = nullptr;
+  for (QPushButton* button : dock->findChildren<QPushButton*>()) {
+    if (button->text() == "Reset") reset = button;
+  }
+  ASSERT_NE(reset, nullptr);
+  auto* answer = dock->findChild<QLabel*>("answer");
+  ASSERT_NE(answer, nullptr);
+  reset->click();
+  EXPECT_TRUE(run(10.0, [&] { return called.load(); }));
+  // All of this while the service hangs.
+  EXPECT_TRUE(run(10.0, [&] { return answer->text() == "no answer yet from cloth/reset"; }));
+  reset->click();
+  EXPECT_EQ(answer->text(), "cloth/reset: the call before has not been answered yet");
+  release = true;
+  EXPECT_TRUE(run(10.0, [&] { return answer->text() == "cloth/reset: done at last"; }));
+  // One that is not there.
+  service.shutdown();
+  reset->click();
+  EXPECT_TRUE(run(10.0, [&] { return answer->text().contains("does not answer"); }))
+      << answer->text().toStdString();
+}
+
+/// What is done with panel and display by a person. @returns ms, the longest that one of it took
+double longestOf(const std::function<void(double)>& run,
+                 const std::vector<std::function<void()>>& actions) {
+  double longest = 0.0;
+  QElapsedTimer timer;
+  for (const auto& action : actions) {
+    timer.start();
+    action();
+    longest = std::max(longest, 1e-6 * static_cast<double>(timer.nsecsElapsed()));
+    run(0.1);
+  }
+  return longest;
+}
+
+/// Only with a master of its own, whose process HAPTEX_MASTER names.
+TEST_F(ViewTest, AMasterThatHangsOrDiesKeepsNothing) {
+  const char* master = std::getenv("HAPTEX_MASTER");
+  if (master == nullptr) GTEST_SKIP() << "the master is not ours";
+  const pid_t process = std::atoi(master);
+  const haptex::ClothMesh mesh = sheetMesh(16, 900, fabric_file_);
+  publish(mesh, 0.0);
+  for (const char* what : {"lives", "hangs", "is dead"}) {
+    if (std::string(what) == "hangs") kill(process, SIGSTOP);
+    if (std::string(what) == "is dead") kill(process, SIGKILL);
+    QDockWidget* dock = nullptr;
+    rviz::Display* cloth = nullptr;
+    const auto handle = [this](double seconds) { run(seconds); };
+    longest_event_ = 0.0;
+    double longest = 0.0;
+    for (int cycle = 0; cycle < 5; ++cycle) {
+      longest = std::max(
+          longest,
+          longestOf(handle,
+                    {[&] { dock = frame_->addPanelByName("haptex", "haptex/Panel"); },
+                     [&] { cloth = manager().createDisplay("haptex/Cloth", "Cloth", true); },
+                     [&] {
+                       for (auto* button : dock->findChildren<QPushButton*>()) button->click();
+                     },
+                     [&] { cloth->reset(); }, [&] { delete cloth; }, [&] { delete dock; }}));
+    }
+    std::printf("a master that %s: longest action %.1f ms, longest event of the window %.1f ms\n",
+                what, longest, longest_event_);
+  }
+}
+
+}  // namespace
+}  // namespace haptex::nodes::test_rviz_views
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "test_rviz_views", ros::init_options::AnonymousName);
+  testing::InitGoogleTest(&argc, argv);
+  QApplication application(argc, argv);
+  const ros::NodeHandle node;  // roscpp runs as long as it is there
+  const int result = RUN_ALL_TESTS();
+  haptex::nodes::ViewTest::closeWindow();
+  return result;
+}
