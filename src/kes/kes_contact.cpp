@@ -7,10 +7,8 @@
 #include "haptex/contact/sphere_contact.h"
 #include "haptex/kes/virtual_kes.h"
 #include "haptex/material/compression.h"
-#include "haptex/tactile/height_file.h"
 #include "haptex/tactile/kes_surface.h"
 #include "haptex/tactile/surface.h"
-#include "haptex/tactile/weave_relief.h"
 
 namespace haptex::kes {
 namespace {
@@ -134,15 +132,7 @@ struct TestedSurface {
 /// spectrum, whose power says how high the relief is.
 TestedSurface testBuiltSurface(const material::Fabric& fabric) {
   const tactile::Surface built = tactile::buildSurface(fabric);
-  const auto& relief = fabric.surface->relief;
-  tactile::HeightField field;
-  if (const auto* weave = std::get_if<material::Weave>(&relief)) {
-    field = tactile::weaveRelief(*weave);
-  } else {
-    const auto& file = std::get<material::HeightFile>(relief);
-    field = tactile::loadHeights(file);
-    if (!file.periodic) removePlane(field);
-  }
+  tactile::HeightField field = tactile::sampledRelief(*fabric.surface);
   const double scale = std::sqrt(built.small_scale.waves.totalPower() /
                                  tactile::kSpaceOfPeriodic(field).totalPower());
   for (double& height : field.heights) height *= scale;

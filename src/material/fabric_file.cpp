@@ -329,7 +329,7 @@ void readSurfaceInto(const base::YamlValue& file, Fabric& fabric) {
   }
   const base::YamlValue value = file.at("surface");
   fabric.surface = readSurface(value, *fabric.friction);
-  for (const std::string key : {"kes", "weave", "heights"}) {
+  for (const std::string key : {"kes", "weave", "knit", "heights"}) {
     if (value.has(key)) fabric.provenance["surface." + key] = readProvenance(value.at(key));
   }
 }

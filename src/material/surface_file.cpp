@@ -57,6 +57,14 @@ Weave readWeave(const base::YamlValue& value) {
   return weave;
 }
 
+Knit readKnit(const base::YamlValue& value) {
+  value.requireKeys({"unit", "provenance", "source", "wale", "course", "irregularity"});
+  value.at("unit").oneOf({"m"});
+  return {readFromTo(value.at("wale"), kMinLoopSpacing, kMaxLoopSpacing, " m"),
+          readFromTo(value.at("course"), kMinLoopSpacing, kMaxLoopSpacing, " m"),
+          readFromTo(value.at("irregularity"), 0.0, kMaxIrregularity)};
+}
+
 HeightFile readHeightFile(const base::YamlValue& value) {
   value.requireKeys({"unit", "provenance", "source", "file", "spacing", "height", "periodic"});
   value.at("unit").oneOf({"m"});
@@ -73,9 +81,9 @@ HeightFile readHeightFile(const base::YamlValue& value) {
 }  // namespace
 
 Surface readSurface(const base::YamlValue& value, double friction) {
-  value.requireKeys({"kes"}, {"weave", "heights"});
-  if (value.has("weave") == value.has("heights")) {
-    value.refuseBecause("must have exactly one of weave, heights");
+  value.requireKeys({"kes"}, {"weave", "knit", "heights"});
+  if (value.has("weave") + value.has("knit") + value.has("heights") != 1) {
+    value.refuseBecause("must have exactly one of weave, knit, heights");
   }
   const base::YamlValue kes = value.at("kes");
   kes.requireKeys({"unit", "provenance", "source", "SMD", "MMD"});
@@ -88,6 +96,8 @@ Surface readSurface(const base::YamlValue& value, double friction) {
   }
   if (value.has("weave")) {
     surface.relief = readWeave(value.at("weave"));
+  } else if (value.has("knit")) {
+    surface.relief = readKnit(value.at("knit"));
   } else {
     surface.relief = readHeightFile(value.at("heights"));
   }

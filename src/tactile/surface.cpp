@@ -11,6 +11,7 @@
 #include "haptex/base/quoted.h"
 #include "haptex/tactile/height_file.h"
 #include "haptex/tactile/kes_surface.h"
+#include "haptex/tactile/knit_relief.h"
 #include "haptex/tactile/weave_relief.h"
 
 namespace haptex::tactile {
@@ -152,11 +153,18 @@ double farthestOf(const HeightField& field) {
   return farthest;
 }
 
-Relief reliefOf(const material::Weave& weave) {
-  HeightField field = weaveRelief(weave);
+Relief periodicRelief(HeightField field, AmplitudeMap large_scale) {
   KSpace waves = kSpaceOfPeriodic(field);
   const double farthest = farthestOf(field);
-  return {std::move(field), farthest, std::move(waves), weaveUnevenness(weave)};
+  return {std::move(field), farthest, std::move(waves), std::move(large_scale)};
+}
+
+Relief reliefOf(const material::Weave& weave) {
+  return periodicRelief(weaveRelief(weave), weaveUnevenness(weave));
+}
+
+Relief reliefOf(const material::Knit& knit) {
+  return periodicRelief(knitRelief(knit), knitUnevenness(knit));
 }
 
 Relief reliefOf(const material::HeightFile& file) {
@@ -174,7 +182,13 @@ bool isFlat(const Relief& relief, const KesSurface& tested) {
   return !(tested.roughness > little && tested.slope_deviation * spacing > little);
 }
 
+Relief reliefOf(const material::Surface& surface) {
+  return std::visit([](const auto& kind) { return reliefOf(kind); }, surface.relief);
+}
+
 }  // namespace
+
+HeightField sampledRelief(const material::Surface& surface) { return reliefOf(surface).field; }
 
 Surface buildSurface(const material::Fabric& fabric) {
   if (!fabric.surface) {
@@ -183,7 +197,7 @@ Surface buildSurface(const material::Fabric& fabric) {
                                 "surface");
   }
   const material::Surface& measured = *fabric.surface;
-  Relief relief = std::visit([](const auto& kind) { return reliefOf(kind); }, measured.relief);
+  Relief relief = reliefOf(measured);
   const KesSurface tested = testSurface(relief.field);
   if (isFlat(relief, tested)) {
     throw std::invalid_argument("fabric " + base::quoted(fabric.name) +

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <random>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
+
+#include "haptex/tactile/yarn_irregularity.h"
 
 namespace haptex::tactile {
 namespace {
@@ -19,9 +19,6 @@ using material::WeaveKind;
 constexpr double kSampleSpacing = 1e-4;  // m, aimed at
 constexpr int kMinSamples = 4;           // across a yarn: its shape needs them
 constexpr int kMaxTileSamples = 128;     // along a side
-constexpr double kFibreLength = 0.04;    // m
-constexpr int kMapCells = 80;            // along a side: two fibres, see yarnNoise()
-constexpr std::uint64_t kSeed = 6;       // any
 
 [[noreturn]] void refuse(const char* name, double value, const char* allowed) {
   std::ostringstream message;
@@ -84,48 +81,6 @@ Weave withJoinedYarns(Weave weave) {
   return weave;
 }
 
-/// Numbers of a standard normal distribution, the same on every platform: the standard fixes what
-/// the generator gives, but not what its own normal distribution makes of it.
-class NormalNumbers {
- public:
-  double next() {
-    const double radius = std::sqrt(-2.0 * std::log1p(-uniform()));
-    return radius * std::cos(2.0 * M_PI * uniform());
-  }
-
- private:
-  double uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }  // below 1
-
-  std::mt19937_64 generator_{kSeed};
-};
-
-/// A closed yarn's deviation at evenly spaced places: mean 0, variance 1, and the correlation
-///   1 - d/kFibreLength
-/// of places d apart (the shorter way round), that of fibres strewn at random (Martindale 1945, J.
-/// Text. Inst. 36:T35). The moving sum of white noise over half of the way round has the
-/// correlation 1 - 2 d/length; a deviation of the whole yarn makes up for the rest.
-/// @param length m, at most two fibres
-std::vector<double> yarnNoise(NormalNumbers& numbers, int places, double length) {
-  const double changing = length / (2.0 * kFibreLength);
-  const double lasting = std::sqrt(std::max(0.0, 1.0 - changing)) * numbers.next();
-  std::vector<double> white(places);
-  for (double& value : white) value = numbers.next();
-  const int half = std::max(1, places / 2);
-  std::vector<double> noise(places, lasting);
-  for (int i = 0; i < places; ++i) {
-    double sum = 0.0;
-    for (int k = 0; k < half; ++k) sum += white[(i + k) % places];
-    noise[i] += std::sqrt(changing / half) * sum;
-  }
-  return noise;
-}
-
-/// A log-normal factor, so that no crown is negative: mean 1, coefficient of variation as given.
-double variation(double noise, double irregularity) {
-  const double variance = std::log1p(irregularity * irregularity);
-  return std::exp(std::sqrt(variance) * noise - 0.5 * variance);
-}
-
 /// The samples along a side of the tile, across the yarns that it is measured in.
 struct Side {
   int yarns;
@@ -185,26 +140,6 @@ double yarnHeight(const std::vector<double>& crowns, const Side& across, int sam
   return across.across[sample_across % across.per_yarn] * middle;
 }
 
-/// Mean square factor of the yarns in every cell of the map: index kMapCells across + along.
-std::vector<double> cellPowers(NormalNumbers& numbers, double spacing, double irregularity) {
-  const double length = kMapCells * AmplitudeMap::kSpacing;
-  const int yarns = static_cast<int>(std::lround(length / spacing));
-  const double width = static_cast<double>(kMapCells) / yarns;  // in cells
-  std::vector<double> powers(static_cast<std::size_t>(kMapCells) * kMapCells);
-  for (int yarn = 0; yarn < yarns; ++yarn) {
-    const std::vector<double> noise = yarnNoise(numbers, kMapCells, length);
-    const double begin = yarn * width, end = begin + width;
-    for (int cell = static_cast<int>(begin); cell < std::min(end, 1.0 * kMapCells); ++cell) {
-      const double share = std::min(end, cell + 1.0) - std::max<double>(begin, cell);
-      for (int along = 0; along < kMapCells; ++along) {
-        const double factor = variation(noise[along], irregularity);
-        powers[static_cast<std::size_t>(kMapCells) * cell + along] += share * factor * factor;
-      }
-    }
-  }
-  return powers;
-}
-
 }  // namespace
 
 HeightField weaveRelief(const material::Weave& asked) {
@@ -240,26 +175,20 @@ AmplitudeMap weaveUnevenness(const material::Weave& asked) {
   if (!(asked.irregularity > 0.0)) return {};
   const Weave weave = withJoinedYarns(asked);
   NormalNumbers numbers;
-  const std::vector<double> warp = cellPowers(numbers, weave.warp.spacing, weave.irregularity);
-  const std::vector<double> weft = cellPowers(numbers, weave.weft.spacing, weave.irregularity);
+  const std::vector<double> warp =
+      cellPowers(numbers, {weave.warp.spacing, 1.0}, weave.irregularity);
+  const std::vector<double> weft =
+      cellPowers(numbers, {weave.weft.spacing, 1.0}, weave.irregularity);
   const double weft_share = 1.0 / (1.0 + std::pow(weave.warp.height / weave.weft.height, 2));
   std::vector<double> powers;
-  double mean = 0.0;
   for (int row = 0; row < kMapCells; ++row) {
     for (int column = 0; column < kMapCells; ++column) {
       const double of_warp = warp[static_cast<std::size_t>(kMapCells) * column + row];
       const double of_weft = weft[static_cast<std::size_t>(kMapCells) * row + column];
       powers.push_back(of_warp + weft_share * (of_weft - of_warp));
-      mean += powers.back() / (kMapCells * kMapCells);
     }
   }
-  std::vector<PerChannel<double>> values;
-  values.reserve(powers.size());
-  for (const double power : powers) {
-    const double amplitude = std::sqrt(power / mean);
-    values.push_back({amplitude, amplitude});
-  }
-  return AmplitudeMap(kMapCells, kMapCells, std::move(values));
+  return mapOfPowers(powers);
 }
 
 }  // namespace haptex::tactile

@@ -36,6 +36,14 @@ const std::string kHeights = R"(  heights:
     height: 3e-4
     periodic: false
 )";
+const std::string kKnit = R"(  knit:
+    unit: m
+    provenance: representative
+    source: as long as its loops let it be
+    wale: 1.8e-3
+    course: 1.4e-3
+    irregularity: 0.1
+)";
 const std::string kWoven = kFull + kSurface + kWeave;
 const std::string kScanned = kFull + kSurface + kHeights;
 
@@ -56,6 +64,15 @@ TEST(SurfaceFile, ReadsEveryNumberOfAWeave) {
   EXPECT_EQ(weave.warp.spacing, 4e-4);
   EXPECT_EQ(weave.warp.height, 2e-4);
   EXPECT_EQ(weave.irregularity, 0.15);
+}
+
+TEST(SurfaceFile, ReadsEveryNumberOfAKnit) {
+  const Fabric fabric = loadFabric(TemporaryFile(kFull + kSurface + kKnit).path());
+  const Knit& knit = std::get<Knit>(fabric.surface->relief);
+  EXPECT_EQ(knit.wale, 1.8e-3);
+  EXPECT_EQ(knit.course, 1.4e-3);
+  EXPECT_EQ(knit.irregularity, 0.1);
+  EXPECT_EQ(fabric.provenance.at("surface.knit").source, "as long as its loops let it be");
 }
 
 TEST(SurfaceFile, KnowsEveryWeave) {
@@ -134,6 +151,7 @@ TEST(SurfaceFile, AcceptsTheEndsOfEveryRange) {
 
 class WovenSurfaceRefuses : public testing::TestWithParam<Refusal> {};
 class ScannedSurfaceRefuses : public testing::TestWithParam<Refusal> {};
+class KnittedSurfaceRefuses : public testing::TestWithParam<Refusal> {};
 
 TEST_P(WovenSurfaceRefuses, NamingFileKeyValueAndWhatIsAllowed) {
   expectRefusal(kWoven, GetParam());
@@ -141,6 +159,10 @@ TEST_P(WovenSurfaceRefuses, NamingFileKeyValueAndWhatIsAllowed) {
 
 TEST_P(ScannedSurfaceRefuses, NamingFileKeyValueAndWhatIsAllowed) {
   expectRefusal(kScanned, GetParam());
+}
+
+TEST_P(KnittedSurfaceRefuses, NamingFileKeyValueAndWhatIsAllowed) {
+  expectRefusal(kFull + kSurface + kKnit, GetParam());
 }
 
 const std::string kKesKeys = "unit, provenance, source, SMD, MMD";
@@ -153,14 +175,14 @@ INSTANTIATE_TEST_SUITE_P(
     Kes, WovenSurfaceRefuses,
     testing::Values(
         Refusal{"SurfaceNotAMap", kSurface + kWeave, "surface: smooth\n", "surface",
-                "'smooth' must be a map with the keys kes, weave, heights"},
+                "'smooth' must be a map with the keys kes, weave, knit, heights"},
         Refusal{"UnknownSurfaceKey", kSurface, kSurface + "  colour: red\n", "surface.colour",
-                "unknown key, allowed here: kes, weave, heights"},
+                "unknown key, allowed here: kes, weave, knit, heights"},
         Refusal{"NoKes", kSurface, "surface:\n", "surface",
                 "the key 'kes' is missing, required here: kes"},
-        Refusal{"NoRelief", kWeave, "", "surface", "must have exactly one of weave, heights"},
+        Refusal{"NoRelief", kWeave, "", "surface", "must have exactly one of weave, knit, heights"},
         Refusal{"TwoReliefs", kWeave, kWeave + kHeights, "surface",
-                "must have exactly one of weave, heights"},
+                "must have exactly one of weave, knit, heights"},
         Refusal{"WithoutFriction", kFriction, "", "",
                 "the key 'friction' is missing, required together with surface"},
         Refusal{"UnknownKesKey", kKesValues, kKesValues + ", MIU: 0.2", "surface.kes.MIU",
@@ -231,6 +253,25 @@ INSTANTIATE_TEST_SUITE_P(
                 "surface.weave.irregularity", "'15' must be from 0 to 0.5"},
         Refusal{"NanIrregularity", "irregularity: 0.15", "irregularity: .nan",
                 "surface.weave.irregularity", "'.nan' must be a finite number"}),
+    [](const auto& info) { return info.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Knit, KnittedSurfaceRefuses,
+    testing::Values(
+        Refusal{"BesideAWeave", "  knit:", kWeave + "  knit:", "surface",
+                "must have exactly one of weave, knit, heights"},
+        Refusal{
+            "MissingCourse", "    course: 1.4e-3\n", "", "surface.knit",
+            "the key 'course' is missing, required here: unit, provenance, source, wale, course, "
+            "irregularity"},
+        Refusal{"KnitUnit", "  knit:\n    unit: m", "  knit:\n    unit: mm", "surface.knit.unit",
+                "'mm' must be m"},
+        Refusal{"NarrowWale", "wale: 1.8e-3", "wale: 1e-4", "surface.knit.wale",
+                "'1e-4' must be from 0.0004 to 0.006 m"},
+        Refusal{"NanCourse", "course: 1.4e-3", "course: .nan", "surface.knit.course",
+                "'.nan' must be a finite number"},
+        Refusal{"KnitInPercent", "irregularity: 0.1", "irregularity: 10",
+                "surface.knit.irregularity", "'10' must be from 0 to 0.5"}),
     [](const auto& info) { return info.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(

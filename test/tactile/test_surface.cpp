@@ -70,6 +70,21 @@ TEST(Surface, GivesBackTheRoughnessAndTheFrictionOfTheTester) {
   }
 }
 
+TEST(Surface, OfAKnitGivesBackTheRoughnessOfTheTesterAndFeelsItsWales) {
+  const material::Knit knit = {1.8e-3, 1.4e-3, 0.2};
+  const Fabric fabric = fabricWith(knit);
+  const Surface surface = buildSurface(fabric);
+  HeightField field = sampledRelief(*fabric.surface);
+  const double scale = std::sqrt(surface.small_scale.waves.totalPower() / variance(field));
+  for (double& height : field.heights) height *= scale;
+  EXPECT_NEAR(testSurface(field).roughness, kRoughness, 1e-10 * kRoughness);
+  // Its face is its own mirror across the wales.
+  const Surface regular = buildSurface(fabricWith(material::Knit{1.8e-3, 1.4e-3, 0.0}));
+  for (const double degrees : {13.0, 45.0, 71.0}) {
+    expectEqual(stroked(regular, degrees), stroked(regular, 180.0 - degrees), 1e-9);
+  }
+}
+
 TEST(Surface, HasThePowerOfItsScaledRelief) {
   for (const WeaveKind kind : kWeaves) {
     const Weave weave = weaveOf(kind, 0.2);

@@ -11,6 +11,8 @@ namespace haptex::material {
 constexpr double kMinYarnSpacing = 2e-4;  ///< m
 constexpr double kMaxYarnSpacing = 3e-3;  ///< m
 constexpr double kMaxYarnHeight = 3e-3;   ///< m
+constexpr double kMinLoopSpacing = 4e-4;  ///< m
+constexpr double kMaxLoopSpacing = 6e-3;  ///< m
 constexpr double kMaxIrregularity = 0.5;
 constexpr double kMaxSampleSpacing = 1e-3;  ///< m
 constexpr double kMaxFieldHeight = 1e-2;    ///< m
@@ -36,6 +38,15 @@ struct Weave {
   double irregularity;
 };
 
+/// The technical face of a plain knit. Courses, the rows that a yarn knits, run along weft; wales,
+/// the columns of loops, along warp.
+struct Knit {
+  double wale;    ///< m, from wale to wale, kMinLoopSpacing to kMaxLoopSpacing
+  double course;  ///< m, from course to course, likewise
+  /// Coefficient of variation of the yarn along its length, 0 to kMaxIrregularity.
+  double irregularity;
+};
+
 /// A measured relief in a file.
 struct HeightFile {
   std::string path;
@@ -51,7 +62,7 @@ struct Surface {
   double roughness;
   /// KES MMD: mean deviation of the coefficient of friction, 0 to 1 and at most that coefficient
   double friction_deviation;
-  std::variant<Weave, HeightFile> relief;
+  std::variant<Weave, Knit, HeightFile> relief;
 };
 
 }  // namespace haptex::material

@@ -27,7 +27,13 @@ struct Surface {
 /// cell's mean, the same for both channels, or uniform if the field is shorter or narrower than
 /// 10 mm or coarser than 0.25 mm.
 /// @throws std::invalid_argument if the fabric has no surface or its relief is flat, what
-///   loadHeights() throws for a relief in a file and weaveRelief() for a weave
+///   loadHeights() throws for a relief in a file, weaveRelief() for a weave and knitRelief() for a
+///   knit
 Surface buildSurface(const material::Fabric& fabric);
+
+/// The relief that buildSurface() scales: one from a file that does not continue at its opposite
+/// edge without its mean plane.
+/// @throws as buildSurface() for the relief
+HeightField sampledRelief(const material::Surface& surface);
 
 }  // namespace haptex::tactile
