@@ -9,11 +9,16 @@
 //   <rate>/force, ...  the same in two layers with so many large-scale states a second
 //   <rate>/error       largest difference of the force from one layer, in any millisecond
 //   <rate>/error_rms   its root mean square
+// Per `surround`, and per rate for the errors:
+//   error              the largest of all motions but the slide
+//   tick               processor time of a millisecond with patches refined twice at 80 Hz, without
+//                      those with a step of the cloth or the exchange of a patch
 // Patches are refined once, not twice as shipped, because the whole cloth is as fine: then
-// all takes a minute or two. In one layer what is lifted and lowered makes the same forces to 5 %.
+// all takes some minutes. In one layer what is lifted and lowered makes the same forces to 5 %.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,6 +87,53 @@ void printError(const MovedPinch& motion, const MovedPinch& exact, double rate) 
   bench::printLine(nameOf(motion, "error_rms", rate), error.root_mean_square, "N");
 }
 
+double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// s, mean over the motions of movePinch().
+double timeOfTick(const oracles::HapticLoopSettings& sample) {
+  oracles::HapticLoop loop(sample);
+  const long period = std::lround(sample.large_scale_step / kStep);
+  double sum = 0.0;
+  long ticks = 0, counted = 0;
+  oracles::movePinch([&](const Fingertips& fingertips) {
+    const double begin = processorSeconds();
+    loop.step(fingertips);
+    const double seconds = processorSeconds() - begin;
+    if (++ticks > 300 && ticks % period > 2) {
+      sum += seconds;
+      ++counted;
+    }
+    return oracles::feltIn(loop);
+  });
+  return sum / static_cast<double>(counted);
+}
+
+/// @param sample_at settings of a rate (Hz), refined once
+/// @param exact     of movePinch(), and maybe more
+template <typename SampleAt>
+void printSurround(double surround, const SampleAt& sample_at,
+                   const std::vector<MovedPinch>& exact) {
+  const std::string of = "carry/surround/" + std::to_string(std::lround(1e3 * surround)) + "mm/";
+  for (const double rate : {80.0, 40.0, 25.0}) {
+    oracles::HapticLoopSettings sample = sample_at(rate);
+    sample.haptics.surround = surround;
+    oracles::HapticLoop loop(sample);
+    const std::vector<MovedPinch> felt = oracles::movePinch([&](const Fingertips& fingertips) {
+      loop.step(fingertips);
+      return oracles::feltIn(loop);
+    });
+    double most = 0.0;
+    for (std::size_t i = 0; i < felt.size(); ++i) {
+      most = std::max(most, oracles::differenceOf(felt[i], exact[i]).largest);
+    }
+    bench::printLine(of + std::to_string(std::lround(rate)) + "Hz/error", most, "N");
+  }
+  oracles::HapticLoopSettings shipped = sample_at(80.0);
+  shipped.haptics.surround = surround;
+  shipped.haptics.refinement = 2;
+  bench::printLine(of + "tick", 1e6 * timeOfTick(shipped), "us");
+}
+
 }  // namespace
 
 /// carry [FABRIC [CELLS]]: of wool, 32 x 32, if nothing else is asked for.
@@ -133,5 +185,7 @@ int main(int argc, char** argv) {
     }
     printWay(felt.back(), rate);
   }
+  for (const double surround : {0.0, 0.02, 0.03, 0.04, 0.06})
+    printSurround(surround, sample, exact);
   return 0;
 }
