@@ -12,8 +12,8 @@ Eigen::Matrix<double, 3, 2> fabricDirections(const mesh::ClothMesh& mesh, int tr
                                              const LargeScaleMotion& motion) {
   const std::array<int, 3>& corners = mesh.triangles[triangle];
   Matrix2d rest;
-  rest << mesh.rest_coordinates[corners[1]] - mesh.rest_coordinates[corners[0]],
-      mesh.rest_coordinates[corners[2]] - mesh.rest_coordinates[corners[0]];
+  const std::array<Eigen::Vector2d, 3> places = mesh.restCorners(triangle);
+  rest << places[1] - places[0], places[2] - places[0];
   Eigen::Matrix<double, 3, 2> deformed;
   deformed << motion.position(corners[1]) - motion.position(corners[0]),
       motion.position(corners[2]) - motion.position(corners[0]);

@@ -132,7 +132,11 @@ std::vector<int> readAttachedParticles(const YamlValue& value, const mesh::Cloth
         attached.insert(readParticle(particle, mesh));
       }
     } else {
-      const std::vector<int> side = mesh::sideParticles(mesh, readSide(item));
+      const mesh::Side named = readSide(item);
+      if (!mesh.corner_coordinates.empty()) {
+        item.refuse("is of a cloth in one piece, and the mesh has seams: {particles: [...]} is allowed");
+      }
+      const std::vector<int> side = mesh::sideParticles(mesh, named);
       attached.insert(side.begin(), side.end());
     }
   }
@@ -237,6 +241,9 @@ cloth::Elasticity readElasticity(const YamlValue& value, const mesh::ClothMesh& 
   if (name == "green_lagrange") return cloth::Elasticity::kGreenLagrange;
   if (name == "bilinear") return cloth::Elasticity::kBilinear;
   if (name == "corotational") return cloth::Elasticity::kCorotational;
+  if (!mesh.corner_coordinates.empty()) {
+    value.refuseBecause("is not allowed with a mesh that has seams");
+  }
   try {
     cloth::findLatticeSprings(mesh, false);
   } catch (const std::invalid_argument& error) {
