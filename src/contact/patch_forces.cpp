@@ -85,10 +85,9 @@ std::vector<std::unique_ptr<cloth::Bending>> bendingOf(const Part& part,
   std::vector<std::unique_ptr<cloth::Bending>> bending;
   const auto add = [&](const mesh::ClothMesh& sheet, const std::vector<int>& particles) {
     if (sheet.triangles.empty()) return;
-    bending.push_back(
-        rigidities.size() == 1
-            ? std::make_unique<cloth::Bending>(sheet, rigidities.front(), settings)
-            : std::make_unique<cloth::Bending>(sheet, rigidities, settings));
+    bending.push_back(rigidities.size() == 1
+                          ? std::make_unique<cloth::Bending>(sheet, rigidities.front(), settings)
+                          : std::make_unique<cloth::Bending>(sheet, rigidities, settings));
     bending.back()->renumber(particles);
   };
   if (part.mesh.corner_coordinates.empty()) {

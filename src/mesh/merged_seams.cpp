@@ -35,8 +35,8 @@ EdgeOfTriangle sideOpposite(const ClothMesh& mesh, int triangle, int corner) {
 bool isSeam(const ClothMesh& mesh, const EdgeOfTriangle& one, const EdgeOfTriangle& other) {
   constexpr double kSame = 1e-9;  // of the edge's length
   if (mesh.panelOf(one.triangle) != mesh.panelOf(other.triangle)) return true;
-  const double apart = std::max((one.ends[0] - other.ends[0]).norm(),
-                                (one.ends[1] - other.ends[1]).norm());
+  const double apart =
+      std::max((one.ends[0] - other.ends[0]).norm(), (one.ends[1] - other.ends[1]).norm());
   return apart > kSame * one.length();
 }
 
@@ -46,8 +46,8 @@ void addHingesOfMergedSeams(ClothMesh& mesh) {
   std::map<std::array<int, 2>, EdgeOfTriangle> sides;  // the first of every edge
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int corner = 0; corner < 3; ++corner) {
-      const auto [low, high] = std::minmax(mesh.triangles[t][(corner + 1) % 3],
-                                           mesh.triangles[t][(corner + 2) % 3]);
+      const auto [low, high] =
+          std::minmax(mesh.triangles[t][(corner + 1) % 3], mesh.triangles[t][(corner + 2) % 3]);
       const EdgeOfTriangle side = sideOpposite(mesh, static_cast<int>(t), corner);
       const auto [found, is_first] = sides.try_emplace({low, high}, side);
       const EdgeOfTriangle& first = found->second;

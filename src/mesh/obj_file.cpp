@@ -197,9 +197,9 @@ class ObjReader {
   std::optional<std::array<int, 3>> seam_;  // the first position with two texture coordinates
   std::vector<std::string> open_groups_;    // of the faces that follow
   MeshGroups groups_;
-  std::map<std::string, int> panels_;      // by group, in the order of the file
-  std::vector<int> group_of_triangles_;    // in panels_
-  std::optional<Outside> outside_;         // the first face that is not in one group
+  std::map<std::string, int> panels_;    // by group, in the order of the file
+  std::vector<int> group_of_triangles_;  // in panels_
+  std::optional<Outside> outside_;       // the first face that is not in one group
 };
 
 }  // namespace

@@ -134,7 +134,8 @@ std::vector<int> readAttachedParticles(const YamlValue& value, const mesh::Cloth
     } else {
       const mesh::Side named = readSide(item);
       if (!mesh.corner_coordinates.empty()) {
-        item.refuse("is of a cloth in one piece, and the mesh has seams: {particles: [...]} is allowed");
+        item.refuse(
+            "is of a cloth in one piece, and the mesh has seams: {particles: [...]} is allowed");
       }
       const std::vector<int> side = mesh::sideParticles(mesh, named);
       attached.insert(side.begin(), side.end());

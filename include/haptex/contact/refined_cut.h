@@ -49,11 +49,11 @@ struct Support {
 /// Elements belong together by the edges that they share, whichever panels they are of: a cut goes
 /// on over seams that are merged.
 struct RefinedCut {
-  /// Rest coordinates along weft and warp: where the mesh has panels that are merged by corner, each
-  /// in its own panel, with hinges at the seams; of a particle those in its owner. Initial positions
-  /// are zero.
+  /// Rest coordinates along weft and warp: where the mesh has panels that are merged by corner,
+  /// each in its own panel, with hinges at the seams; of a particle those in its owner. Initial
+  /// positions are zero.
   mesh::ClothMesh mesh;
-  int free_count = 0;    ///< particles before the rim
+  int free_count = 0;  ///< particles before the rim
   int refinement = 0;
   int refined_count = 0;                 ///< elements before those that stay coarse
   std::vector<int> elements;             ///< of the original mesh, that were cut

@@ -5,10 +5,10 @@
 
 namespace haptex::mesh {
 
-/// Adds a hinge, flat at rest, for every edge of two triangles that is a seam: they are of different
-/// panels, or the panel has an end of the edge at two places, as along a dart. So a mesh that was
-/// written to a file gets back what merge() gave it, but for angles at rest. If more than two
-/// triangles share the edge, every further one has a hinge with the first.
+/// Adds a hinge, flat at rest, for every edge of two triangles that is a seam: they are of
+/// different panels, or the panel has an end of the edge at two places, as along a dart. So a mesh
+/// that was written to a file gets back what merge() gave it, but for angles at rest. If more than
+/// two triangles share the edge, every further one has a hinge with the first.
 /// @param mesh sound
 void addHingesOfMergedSeams(ClothMesh& mesh);
 

@@ -104,7 +104,8 @@ NearElement elementMessage(const proximity::NearElement& element) {
   return message;
 }
 
-void requireOneEach(const char* field, std::size_t count, std::size_t allowed, const char* of_each) {
+void requireOneEach(const char* field, std::size_t count, std::size_t allowed,
+                    const char* of_each) {
   if (count == allowed) return;
   throw std::invalid_argument(std::string(field) + " has " + std::to_string(count) +
                               " elements: allowed are none, or " + std::to_string(allowed) + ", " +
@@ -119,10 +120,9 @@ void readPanels(const haptex::ClothMesh& message, RestMesh& mesh) {
   std::vector<char> is_placed(mesh.rest_coordinates.size(), 0);
   for (std::size_t t = 0; t < panels.size(); ++t) {
     if (panels[t] >= panels.size()) {
-      throw std::invalid_argument("triangle_panels[" + std::to_string(t) +
-                                  "] = " + std::to_string(panels[t]) +
-                                  ": allowed are 0 to one below the number of triangles, " +
-                                  std::to_string(panels.size()));
+      throw std::invalid_argument(
+          "triangle_panels[" + std::to_string(t) + "] = " + std::to_string(panels[t]) +
+          ": allowed are 0 to one below the number of triangles, " + std::to_string(panels.size()));
     }
     mesh.panels.push_back(static_cast<int>(panels[t]));
     for (const int particle : mesh.triangles[t]) {
