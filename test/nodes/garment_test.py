@@ -11,7 +11,7 @@ from haptex.msg import ClothMesh, ClothState, Contact
 from ros_fixtures import NodeTest
 
 PANELS = 8
-FELT = 0.1  # N
+FELT = 0.05  # N
 WAIT = 90.0  # s
 
 
