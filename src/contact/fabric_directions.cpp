@@ -8,6 +8,16 @@ namespace haptex::contact {
 
 using Eigen::Matrix2d;
 
+std::vector<int> fabricsOfTriangles(const mesh::ClothMesh& mesh) {
+  std::vector<int> fabrics;
+  bool several = !mesh.triangle_fabrics.empty();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    fabrics.push_back(mesh.fabricOf(t));
+    several = several || fabrics.back() != 0;
+  }
+  return several ? fabrics : std::vector<int>();
+}
+
 Eigen::Matrix<double, 3, 2> fabricDirections(const mesh::ClothMesh& mesh, int triangle,
                                              const LargeScaleMotion& motion) {
   const std::array<int, 3>& corners = mesh.triangles[triangle];

@@ -34,12 +34,7 @@ mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
                                 std::to_string(mesh.ties.size()) +
                                 " particles of the mesh are tied");
   }
-  const bool by_panel = mesh.triangle_fabrics.empty() &&
-                        std::any_of(mesh.panels.begin(), mesh.panels.end(),
-                                    [](const mesh::Panel& panel) { return panel.fabric != 0; });
-  for (std::size_t t = 0; by_panel && t < mesh.triangles.size(); ++t) {
-    mesh.triangle_fabrics.push_back(mesh.panel(mesh.panelOf(t)).fabric);
-  }
+  mesh.triangle_fabrics = fabricsOfTriangles(mesh);
   return mesh;
 }
 

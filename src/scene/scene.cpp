@@ -102,8 +102,7 @@ mesh::ClothMesh readMesh(const YamlValue& scene, const OtherSheet& other,
     scene.refuseBecause("must have exactly one of sheet, mesh");
   }
   if (scene.has("sheet")) return readSheet(scene.at("sheet"), other);
-  mesh::ClothMesh mesh = mesh::loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"), groups);
-  return mesh;
+  return mesh::loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"), groups);
 }
 
 mesh::Side readSide(const YamlValue& value) {
@@ -132,12 +131,9 @@ std::vector<int> readAttachedParticles(const YamlValue& value, const mesh::Cloth
         attached.insert(readParticle(particle, mesh));
       }
     } else {
-      const mesh::Side named = readSide(item);
-      if (!mesh.corner_coordinates.empty()) {
-        item.refuse(
-            "is of a cloth in one piece, and the mesh has seams: {particles: [...]} is allowed");
-      }
-      const std::vector<int> side = mesh::sideParticles(mesh, named);
+      if (!mesh.corner_coordinates.empty())
+        item.refuse("must be {particles: [...]}: the mesh has seams");
+      const std::vector<int> side = mesh::sideParticles(mesh, readSide(item));
       attached.insert(side.begin(), side.end());
     }
   }
@@ -242,9 +238,6 @@ cloth::Elasticity readElasticity(const YamlValue& value, const mesh::ClothMesh& 
   if (name == "green_lagrange") return cloth::Elasticity::kGreenLagrange;
   if (name == "bilinear") return cloth::Elasticity::kBilinear;
   if (name == "corotational") return cloth::Elasticity::kCorotational;
-  if (!mesh.corner_coordinates.empty()) {
-    value.refuseBecause("is not allowed with a mesh that has seams");
-  }
   try {
     cloth::findLatticeSprings(mesh, false);
   } catch (const std::invalid_argument& error) {
