@@ -30,9 +30,8 @@ const material::Fabric& requireBending(const material::Fabric& fabric,
 mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
   mesh::requireSound(mesh);
   if (!mesh.ties.empty()) {
-    throw std::invalid_argument("fingertips touch panels that are merged, and " +
-                                std::to_string(mesh.ties.size()) +
-                                " particles of the mesh are tied");
+    base::refuse("fingertips touch panels that are merged, and ", mesh.ties.size(),
+                 " particles of the mesh are tied");
   }
   mesh.triangle_fabrics = fabricsOfTriangles(mesh);
   return mesh;
@@ -337,8 +336,7 @@ void HapticLayer::stepWholeCloth() {
   }
 }
 
-/// What goes back to the cloth from a fingertip, and where on the fabric that is: in the panel that
-/// takes most of the normal force.
+/// What goes back to the cloth, and where on the panel with most of the normal force that is.
 /// @param rest_of a particle's rest coordinates @param load_of the load of a touched particle
 template <typename RestOf, typename LoadOf>
 void HapticLayer::sendBack(FingertipContact& contact, const std::vector<TouchedParticle>& touched,
