@@ -65,7 +65,7 @@ bool endsAtRest(const garment::Pattern& pattern, const mesh::ObstacleMesh& body)
 int main(int argc, char** argv) {
   const int starts = argc > 1 ? std::atoi(argv[1]) : kStarts;
   const mesh::ObstacleMesh body =
-      mesh::loadObjSurface(HAPTEX_SOURCE_DIRECTORY "/test/dressing/body.obj");
+      mesh::loadObjSurface(HAPTEX_SOURCE_DIRECTORY "/config/meshes/figure.obj");
   const garment::Pattern shirt =
       garment::loadPattern(HAPTEX_CONFIG_DIRECTORY "/garments/shirt.yaml");
   const dressing::DrapeOutcome outcome = drape(shirt, body);

@@ -6,6 +6,17 @@ import yaml
 TOUCHES = 1e-6  # m, of rest coordinates on one line
 
 
+def corner_coordinates(message, rest, triangles):
+    """m, (triangle, corner, 2) along weft and warp, each in its own panel. Bags of version 0.1 know none."""
+    weft = getattr(message, 'corner_weft_coordinates', ())
+    if len(weft) == 0:
+        return rest[triangles]
+    corners = np.column_stack([weft, message.corner_warp_coordinates])
+    if len(corners) != triangles.size:
+        raise ValueError('the mesh has not one rest coordinate for every corner')
+    return corners.reshape(-1, 3, 2)
+
+
 class ClothMechanics:
     """Of one mesh (haptex/ClothMesh)."""
 
@@ -14,7 +25,7 @@ class ClothMechanics:
         self.triangles = np.array(message.triangles, dtype=int).reshape(-1, 3)
         if len(self.triangles) == 0 or self.triangles.max() >= len(rest):
             raise ValueError('the mesh names particles that are not there')
-        corners = rest[self.triangles]
+        corners = corner_coordinates(message, rest, self.triangles)
         first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         doubled = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
         if not (np.isfinite(doubled).all() and doubled.all()):

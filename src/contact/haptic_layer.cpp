@@ -29,15 +29,11 @@ const material::Fabric& requireBending(const material::Fabric& fabric,
 
 mesh::ClothMesh requireSoundAndReturn(mesh::ClothMesh mesh) {
   mesh::requireSound(mesh);
-  if (mesh.panelCount() > 1) {
-    throw std::invalid_argument("fingertips touch one panel, and the mesh has " +
-                                std::to_string(mesh.panelCount()));
-  }
   if (!mesh.ties.empty()) {
-    throw std::invalid_argument("fingertips touch one panel without seams, and " +
-                                std::to_string(mesh.ties.size()) +
-                                " particles of the mesh are tied");
+    base::refuse("fingertips touch panels that are merged, and ", mesh.ties.size(),
+                 " particles of the mesh are tied");
   }
+  mesh.triangle_fabrics = fabricsOfTriangles(mesh);
   return mesh;
 }
 
@@ -102,7 +98,8 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fab
                    effects.self_collision ? LayersBetween::kMost : 1)),
       obstacles_(effects.contacts ? std::move(obstacles) : std::vector<mesh::Obstacle>(), fabrics_),
       topology_(mesh_),
-      motion_(mesh_.rest_coordinates.size()) {
+      motion_(mesh_.rest_coordinates.size()),
+      panel_forces_(mesh_.panelCount(), 0.0) {
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
     whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabrics_, laws_);
   }
@@ -339,18 +336,25 @@ void HapticLayer::stepWholeCloth() {
   }
 }
 
-/// What goes back to the cloth from a fingertip, and where on the fabric that is.
+/// What goes back to the cloth, and where on the panel with most of the normal force that is.
 /// @param rest_of a particle's rest coordinates @param load_of the load of a touched particle
 template <typename RestOf, typename LoadOf>
 void HapticLayer::sendBack(FingertipContact& contact, const std::vector<TouchedParticle>& touched,
                            const RestOf& rest_of, const LoadOf& load_of) {
+  std::fill(panel_forces_.begin(), panel_forces_.end(), 0.0);
+  for (const TouchedParticle& point : touched) {
+    panel_forces_[mesh_.panelOf(load_of(point).triangle)] +=
+        shareOf(point, contact, touched.size());
+  }
+  const auto most = std::max_element(panel_forces_.begin(), panel_forces_.end());
   Eigen::Matrix<double, 3, 2> directions = Eigen::Matrix<double, 3, 2>::Zero();
   for (const TouchedParticle& point : touched) {
-    const double share = shareOf(point, contact, touched.size());
     const cloth::PointLoad load = load_of(point);
+    if (loads_.size() < loads_.capacity()) loads_.push_back(load);
+    if (mesh_.panelOf(load.triangle) != most - panel_forces_.begin()) continue;
+    const double share = shareOf(point, contact, touched.size()) / *most;
     contact.fabric_position += share * rest_of(point.particle);
     directions += share * fabricDirections(mesh_, load.triangle, motion_);
-    if (loads_.size() < loads_.capacity()) loads_.push_back(load);
   }
   contact.to_fabric = toFabric(directions);
   contact.fabric_velocity = contact.to_fabric * contact.sliding_velocity;

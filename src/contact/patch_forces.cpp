@@ -7,7 +7,9 @@
 
 #include "haptex/cloth/forces/aerodynamics.h"
 #include "haptex/cloth/forces/bending/bending.h"
+#include "haptex/cloth/forces/bending/seam_bending.h"
 #include "haptex/cloth/forces/membrane.h"
+#include "haptex/mesh/merged_seams.h"
 
 namespace haptex::contact {
 namespace {
@@ -20,77 +22,112 @@ struct Part {
   std::vector<int> particles;  // of the cut, ascending
 };
 
-/// @param triangles of the cut's particles
-/// @param fabrics   one per triangle; empty: all are of the first
-Part partOf(const RefinedCut& cut, std::vector<std::array<int, 3>> triangles,
-            std::vector<int> fabrics) {
+/// @param mesh of some triangles, of the cut's particles, without what is said of particles
+Part partOf(const RefinedCut& cut, mesh::ClothMesh mesh) {
   std::map<int, int> places;
-  for (const auto& triangle : triangles) {
+  for (const auto& triangle : mesh.triangles) {
     for (const int particle : triangle) places[particle] = 0;
   }
-  Part part;
+  Part part{std::move(mesh), {}};
   for (auto& [particle, place] : places) {
     place = static_cast<int>(part.particles.size());
     part.particles.push_back(particle);
     part.mesh.rest_coordinates.push_back(cut.mesh.rest_coordinates[particle]);
   }
-  for (auto& triangle : triangles) {
+  for (auto& triangle : part.mesh.triangles) {
     for (int& particle : triangle) particle = places.at(particle);
   }
   part.mesh.initial_positions.assign(part.particles.size(), Eigen::Vector3d::Zero());
-  part.mesh.triangles = std::move(triangles);
-  part.mesh.triangle_fabrics = std::move(fabrics);
+  if (!part.mesh.corner_coordinates.empty()) mesh::addHingesOfMergedSeams(part.mesh);
   return part;
+}
+
+template <typename T>
+std::vector<T> firstOf(const std::vector<T>& of_triangles, std::ptrdiff_t count) {
+  if (of_triangles.empty()) return {};
+  return {of_triangles.begin(), of_triangles.begin() + count};
 }
 
 Part refinedPart(const RefinedCut& cut) {
   const auto count = static_cast<std::ptrdiff_t>(cut.refined_count) << (2 * cut.refinement);
-  const auto& triangles = cut.mesh.triangles;
-  const auto& fabrics = cut.mesh.triangle_fabrics;
-  return partOf(cut, {triangles.begin(), triangles.begin() + count},
-                {fabrics.begin(), fabrics.empty() ? fabrics.end() : fabrics.begin() + count});
+  mesh::ClothMesh mesh;
+  mesh.panels = cut.mesh.panels;
+  mesh.triangles = firstOf(cut.mesh.triangles, count);
+  mesh.triangle_panels = firstOf(cut.mesh.triangle_panels, count);
+  mesh.triangle_fabrics = firstOf(cut.mesh.triangle_fabrics, count);
+  mesh.corner_coordinates = firstOf(cut.mesh.corner_coordinates, count);
+  return partOf(cut, std::move(mesh));
 }
 
 /// All elements of the cut by their corners.
 /// @param none the number of a fabric that resists nothing, which the refined ones are of
 Part coarsePart(const mesh::ClothMesh& coarse, const RefinedCut& cut, int none) {
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<int> fabrics;
+  mesh::ClothMesh mesh;
+  mesh.panels = cut.mesh.panels;
   for (std::size_t e = 0; e < cut.elements.size(); ++e) {
     const int element = cut.elements[e];
     std::array<int, 3> triangle = coarse.triangles[element];
     for (int& corner : triangle) corner = cornerIn(cut, corner);
-    triangles.push_back(triangle);
+    mesh.triangles.push_back(triangle);
     const bool is_refined = static_cast<int>(e) < cut.refined_count;
-    fabrics.push_back(is_refined ? none : coarse.fabricOf(element));
+    mesh.triangle_fabrics.push_back(is_refined ? none : coarse.fabricOf(element));
+    if (coarse.corner_coordinates.empty()) continue;
+    mesh.triangle_panels.push_back(coarse.panelOf(element));
+    mesh.corner_coordinates.push_back(coarse.restCorners(element));
   }
-  return partOf(cut, std::move(triangles), std::move(fabrics));
+  return partOf(cut, std::move(mesh));
 }
 
-std::unique_ptr<cloth::Bending> bendingOf(const Part& part, const Rigidities& rigidities,
-                                          const cloth::BendingSettings& settings) {
-  auto bending = std::make_unique<cloth::Bending>(part.mesh, rigidities, settings);
-  bending->renumber(part.particles);
+/// Of every panel that the part has something of.
+std::vector<std::unique_ptr<cloth::Bending>> bendingOf(const Part& part,
+                                                       const Rigidities& rigidities,
+                                                       const cloth::BendingSettings& settings) {
+  std::vector<std::unique_ptr<cloth::Bending>> bending;
+  const auto add = [&](const mesh::ClothMesh& sheet, const std::vector<int>& particles) {
+    if (sheet.triangles.empty()) return;
+    bending.push_back(rigidities.size() == 1
+                          ? std::make_unique<cloth::Bending>(sheet, rigidities.front(), settings)
+                          : std::make_unique<cloth::Bending>(sheet, rigidities, settings));
+    bending.back()->renumber(particles);
+  };
+  if (part.mesh.corner_coordinates.empty()) {
+    add(part.mesh, part.particles);
+    return bending;
+  }
+  for (int panel = 0; panel < part.mesh.panelCount(); ++panel) {
+    mesh::CutPanel cut = mesh::cutPanel(part.mesh, panel);
+    for (int& particle : cut.particles) particle = part.particles[particle];
+    add(cut.sheet, cut.particles);
+  }
   return bending;
+}
+
+void addSeamBending(const Part& part, const Rigidities& rigidities, PatchForces& forces) {
+  if (part.mesh.seam_hinges.empty()) return;
+  auto bending = std::make_unique<cloth::SeamBending>(part.mesh, rigidities);
+  bending->renumber(part.particles);
+  forces.sum.add(std::move(bending));
 }
 
 void addBending(const mesh::ClothMesh& coarse, const RefinedCut& cut, Rigidities rigidities,
                 const cloth::BendingSettings& settings, PatchForces& forces) {
-  if (!cut.isSurrounded()) {
-    forces.sum.add(rigidities.size() == 1
-                       ? std::make_unique<cloth::Bending>(cut.mesh, rigidities.front(), settings)
-                       : std::make_unique<cloth::Bending>(cut.mesh, rigidities, settings));
-    return;
+  const Part refined = refinedPart(cut);
+  for (auto& bending : bendingOf(refined, rigidities, settings)) {
+    forces.sum.add(std::move(bending));
   }
-  forces.sum.add(bendingOf(refinedPart(cut), rigidities, settings));
+  addSeamBending(refined, rigidities, forces);
+  if (!cut.isSurrounded()) return;
   rigidities.push_back({0.0, 0.0});
   const int none = static_cast<int>(rigidities.size()) - 1;
-  auto around = bendingOf(coarsePart(coarse, cut, none), rigidities, settings);
-  // Edges of a refined element are no edges of the cut.
-  for (const cloth::Bending::Coupling& coupling : around->couplings()) {
-    forces.pairs.push_back({coupling.column, coupling.row});
+  const Part around = coarsePart(coarse, cut, none);
+  for (auto& bending : bendingOf(around, rigidities, settings)) {
+    // Edges of a refined element are no edges of the cut.
+    for (const cloth::Bending::Coupling& coupling : bending->couplings()) {
+      forces.pairs.push_back({coupling.column, coupling.row});
+    }
+    forces.sum.add(std::move(bending));
   }
-  forces.sum.add(std::move(around));
+  addSeamBending(around, rigidities, forces);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <queue>
 #include <utility>
 
+#include "haptex/mesh/merged_seams.h"
+
 namespace haptex::contact {
 namespace {
 
@@ -113,19 +115,42 @@ struct Builder {
       cut.supports.push_back(support);
       cut.owners.push_back(owner);
       cut.weights.push_back(weights);
-      cut.mesh.rest_coordinates.push_back(weights[0] * mesh.rest_coordinates[triangle[0]] +
-                                          weights[1] * mesh.rest_coordinates[triangle[1]] +
-                                          weights[2] * mesh.rest_coordinates[triangle[2]]);
+      cut.mesh.rest_coordinates.push_back(restAt(mesh.restCorners(owner), weights));
     }
     return entry->second;
   }
 
   int particle(int owner, int a, int b) { return particle(owner, {divisions - a - b, a, b}); }
 
+  static Eigen::Vector2d restAt(const std::array<Eigen::Vector2d, 3>& corners,
+                                const Eigen::Vector3d& weights) {
+    return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+  }
+
   void add(int owner, const std::array<int, 3>& triangle) {
     cut.mesh.triangles.push_back(triangle);
-    if (mesh.triangle_fabrics.empty()) return;
-    cut.mesh.triangle_fabrics.push_back(mesh.triangle_fabrics[owner]);
+    if (!mesh.triangle_fabrics.empty()) {
+      cut.mesh.triangle_fabrics.push_back(mesh.triangle_fabrics[owner]);
+    }
+    if (mesh.corner_coordinates.empty()) return;
+    cut.mesh.triangle_panels.push_back(mesh.panelOf(owner));
+    std::array<Eigen::Vector2d, 3>& corners = cut.mesh.corner_coordinates.emplace_back();
+    for (int i = 0; i < 3; ++i) {
+      corners[i] = restAt(mesh.restCorners(owner), weightsIn(owner, triangle[i]));
+    }
+  }
+
+  /// Of the corners of an element at a particle of the cut that lies on it.
+  Eigen::Vector3d weightsIn(int owner, int particle) const {
+    const Support& support = cut.supports[particle];
+    Eigen::Vector3d weights = Eigen::Vector3d::Zero();
+    for (int corner = 0; corner < 3; ++corner) {
+      for (int i = 0; i < 3; ++i) {
+        if (support.particles[i] != mesh.triangles[owner][corner]) continue;
+        weights[corner] = static_cast<double>(support.shares[i]) / divisions;
+      }
+    }
+    return weights;
   }
 
   void split(int owner) {
@@ -190,8 +215,7 @@ std::uint8_t fabricAt(const mesh::ClothMesh& mesh, const MeshTopology& topology,
 /// infinite beyond the reach (Dijkstra 1959, A note on two problems in connexion with graphs).
 std::vector<double> distancesFrom(const mesh::ClothMesh& mesh, const MeshTopology& topology,
                                   const std::vector<int>& triangles, double reach) {
-  std::vector<double> distances(mesh.rest_coordinates.size(),
-                                std::numeric_limits<double>::infinity());
+  std::vector<double> distances(topology.particleCount(), std::numeric_limits<double>::infinity());
   using Reached = std::pair<double, int>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
   const auto arrive = [&](int particle, double distance) {
@@ -207,10 +231,10 @@ std::vector<double> distancesFrom(const mesh::ClothMesh& mesh, const MeshTopolog
     next.pop();
     if (distance > distances[from]) continue;
     for (const int triangle : topology.trianglesOf(from)) {
-      for (const int to : mesh.triangles[triangle]) {
-        const double edge = (mesh.rest_coordinates[to] - mesh.rest_coordinates[from]).norm();
-        arrive(to, distance + edge);
-      }
+      const std::array<int, 3>& corners = mesh.triangles[triangle];
+      const std::array<Eigen::Vector2d, 3> rest = mesh.restCorners(triangle);
+      const auto at = std::find(corners.begin(), corners.end(), from) - corners.begin();
+      for (int i = 0; i < 3; ++i) arrive(corners[i], distance + (rest[i] - rest[at]).norm());
     }
   }
   return distances;
@@ -272,6 +296,10 @@ RefinedCut cutAndRefine(const mesh::ClothMesh& mesh, const MeshTopology& topolog
   for (int i = 0; i < count; ++i) place[order[i]] = i;
   for (std::array<int, 3>& triangle : cut.mesh.triangles) {
     for (int& particle : triangle) particle = place[particle];
+  }
+  if (!mesh.corner_coordinates.empty()) {
+    for (const mesh::Panel& panel : mesh.panels) cut.mesh.panels.push_back({panel.fabric, 0.0});
+    mesh::addHingesOfMergedSeams(cut.mesh);
   }
   cut.order.resize(count);
   std::iota(cut.order.begin(), cut.order.end(), 0);

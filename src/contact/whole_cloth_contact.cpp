@@ -41,14 +41,16 @@ WholeClothContact::WholeClothContact(const mesh::ClothMesh& mesh,
   std::vector<std::vector<double>> areas_of_fabrics(fabrics.size(), areas_);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::array<int, 3>& triangle = mesh.triangles[t];
-    const Eigen::Vector2d a = rest_coordinates_[triangle[1]] - rest_coordinates_[triangle[0]];
-    const Eigen::Vector2d b = rest_coordinates_[triangle[2]] - rest_coordinates_[triangle[0]];
+    const std::array<Eigen::Vector2d, 3> rest = mesh.restCorners(t);
+    const Eigen::Vector2d a = rest[1] - rest[0];
+    const Eigen::Vector2d b = rest[2] - rest[0];
     for (int corner = 0; corner < 3; ++corner) {
       const double area = std::abs(a.x() * b.y() - a.y() * b.x()) / 6.0;
       areas_[triangle[corner]] += area;
       areas_of_fabrics[mesh.fabricOf(t)][triangle[corner]] += area;
       triangle_of_[triangle[corner]] = static_cast<int>(t);
       corner_of_[triangle[corner]] = corner;
+      rest_coordinates_[triangle[corner]] = rest[corner];
     }
   }
   for (std::size_t f = 0; f < fabrics.size(); ++f) {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -13,6 +15,7 @@
 
 #include "haptex/base/file_size.h"
 #include "haptex/base/parse_number.h"
+#include "haptex/mesh/merged_seams.h"
 
 namespace haptex::mesh {
 namespace {
@@ -38,6 +41,7 @@ class ObjReader {
     }
     if (stream.bad()) throw std::runtime_error(path_ + ": cannot be read to its end");
     if (with_textures_) fillRestCoordinates();
+    if (seam_) fillPanels();
     return std::move(mesh_);
   }
 
@@ -97,28 +101,37 @@ class ObjReader {
     if (corners.size() != 3) {
       refuse("a face has " + std::to_string(corners.size()) + " corners, must be a triangle");
     }
-    std::array<int, 3> triangle;
-    for (int i = 0; i < 3; ++i) triangle[i] = readCorner(corners[i]);
+    std::array<int, 3> triangle, textures{};
+    for (int i = 0; i < 3; ++i) textures[i] = readCorner(corners[i], triangle[i]);
+    textures_of_triangles_.push_back(textures);
+    noteGroups();
+    mesh_.triangles.push_back(triangle);
+  }
+
+  void noteGroups() {
+    const int count = static_cast<int>(std::set(open_groups_.begin(), open_groups_.end()).size());
+    if (count != 1 && !outside_) outside_ = Outside{line_number_, count};
+    const int next = static_cast<int>(panels_.size());
+    group_of_triangles_.push_back(
+        count == 1 ? panels_.emplace(open_groups_.front(), next).first->second : -1);
     for (const std::string& group : open_groups_) {
       std::vector<int>& members = groups_[group];
       const int index = static_cast<int>(mesh_.triangles.size());
       if (members.empty() || members.back() != index) members.push_back(index);
     }
-    mesh_.triangles.push_back(triangle);
   }
 
   // A corner is position/texture or position/texture/normal, for surfaces also position or
   // position//normal.
-  int readCorner(const std::string& corner) {
+  /// @returns its texture coordinate
+  int readCorner(const std::string& corner, int& particle) {
     const std::size_t first = corner.find('/');
-    const int particle =
-        readIndex(corner.substr(0, first), "position", mesh_.initial_positions.size());
-    if (with_textures_) readTexture(corner, first, particle);
-    return particle;
+    particle = readIndex(corner.substr(0, first), "position", mesh_.initial_positions.size());
+    return with_textures_ ? readTexture(corner, first, particle) : -1;
   }
 
   // What follows the first separator of a corner.
-  void readTexture(const std::string& corner, std::size_t first, int particle) {
+  int readTexture(const std::string& corner, std::size_t first, int particle) {
     const std::size_t second =
         first == std::string::npos ? std::string::npos : corner.find('/', first + 1);
     if (first == std::string::npos || first + 1 == corner.size() || second == first + 1) {
@@ -127,12 +140,9 @@ class ObjReader {
     const int texture = readIndex(corner.substr(first + 1, second - first - 1),
                                   "texture coordinate", textures_.size());
     std::optional<int>& known = texture_of_particle_[particle];
-    if (known && textures_[*known] != textures_[texture]) {
-      refuse("position " + std::to_string(particle + 1) + " has the texture coordinates " +
-             std::to_string(*known + 1) + " and " + std::to_string(texture + 1) +
-             " (a seam), must have one");
-    }
-    known = texture;
+    if (!known) known = texture;
+    if (!seam_ && textures_[*known] != textures_[texture]) seam_ = {particle, *known, texture};
+    return texture;
   }
 
   // Counts from 1, or backwards from the last one with -1.
@@ -155,14 +165,41 @@ class ObjReader {
     }
   }
 
+  // Panels that are sewn together: groups.
+  void fillPanels() {
+    if (outside_) {
+      const auto& [particle, one, other] = *seam_;
+      line_number_ = outside_->line;
+      refuse("a face is in " + std::to_string(outside_->groups) + " groups ('g'): position " +
+             std::to_string(particle + 1) + " has the texture coordinates " +
+             std::to_string(one + 1) + " and " + std::to_string(other + 1) +
+             " (a seam), so every face must be in one group, its panel");
+    }
+    mesh_.panels.resize(panels_.size());
+    mesh_.triangle_panels = std::move(group_of_triangles_);
+    for (const auto& [a, b, c] : textures_of_triangles_) {
+      mesh_.corner_coordinates.push_back({textures_[a], textures_[b], textures_[c]});
+    }
+  }
+
+  struct Outside {
+    int line;
+    int groups;
+  };
+
   std::string path_;
   bool with_textures_;
   int line_number_ = 0;
   ClothMesh mesh_;
   std::vector<Eigen::Vector2d> textures_;
   std::vector<std::optional<int>> texture_of_particle_;
-  std::vector<std::string> open_groups_;  // of the faces that follow
+  std::vector<std::array<int, 3>> textures_of_triangles_;
+  std::optional<std::array<int, 3>> seam_;  // the first position with two texture coordinates
+  std::vector<std::string> open_groups_;    // of the faces that follow
   MeshGroups groups_;
+  std::map<std::string, int> panels_;    // by group, in the order of the file
+  std::vector<int> group_of_triangles_;  // in panels_
+  std::optional<Outside> outside_;       // the first face that is not in one group
 };
 
 }  // namespace
@@ -181,6 +218,7 @@ ClothMesh loadObj(const std::string& path, MeshGroups& groups) {
   } catch (const std::invalid_argument& defects) {
     throw std::invalid_argument(path + ": " + defects.what() + " (counted from 0)");
   }
+  if (!mesh.corner_coordinates.empty()) addHingesOfMergedSeams(mesh);
   return mesh;
 }
 

@@ -102,8 +102,7 @@ mesh::ClothMesh readMesh(const YamlValue& scene, const OtherSheet& other,
     scene.refuseBecause("must have exactly one of sheet, mesh");
   }
   if (scene.has("sheet")) return readSheet(scene.at("sheet"), other);
-  mesh::ClothMesh mesh = mesh::loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"), groups);
-  return mesh;
+  return mesh::loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"), groups);
 }
 
 mesh::Side readSide(const YamlValue& value) {
@@ -132,6 +131,8 @@ std::vector<int> readAttachedParticles(const YamlValue& value, const mesh::Cloth
         attached.insert(readParticle(particle, mesh));
       }
     } else {
+      if (!mesh.corner_coordinates.empty())
+        item.refuse("must be {particles: [...]}: the mesh has seams");
       const std::vector<int> side = mesh::sideParticles(mesh, readSide(item));
       attached.insert(side.begin(), side.end());
     }

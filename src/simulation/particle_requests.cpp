@@ -57,6 +57,10 @@ std::vector<std::uint32_t> selectedParticles(const mesh::ClothMesh& mesh,
   requireParticles(particles, count);
   std::vector<std::uint32_t> selected = particles;
   if (!weft.empty() || !warp.empty()) {
+    if (!mesh.corner_coordinates.empty()) {
+      refuse("weft and warp name a region of a cloth in one piece, and this one is sewn of ",
+             mesh.panelCount(), " panels: allowed are particles by index");
+    }
     requireExtent("weft", weft);
     requireExtent("warp", warp);
     std::vector<bool> named(count, false);

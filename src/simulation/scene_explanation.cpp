@@ -278,12 +278,10 @@ scene::Scene withoutEffect(scene::Scene scene, const std::string& name) {
 
 double medianCellSize(const mesh::ClothMesh& mesh) {
   std::vector<double> sizes;
-  for (const std::array<int, 3>& corners : mesh.triangles) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::array<Eigen::Vector2d, 3> rest = mesh.restCorners(t);
     std::array<double, 3> edges;
-    for (int i = 0; i < 3; ++i) {
-      edges[i] =
-          (mesh.rest_coordinates[corners[(i + 1) % 3]] - mesh.rest_coordinates[corners[i]]).norm();
-    }
+    for (int i = 0; i < 3; ++i) edges[i] = (rest[(i + 1) % 3] - rest[i]).norm();
     std::sort(edges.begin(), edges.end());
     sizes.push_back(edges[1]);
   }

@@ -296,16 +296,11 @@ TEST_F(HapticLayerTest, RefusesAFabricWithoutWhatContactNeeds) {
             std::string::npos);
 }
 
-TEST_F(HapticLayerTest, RefusesSewnPanels) {
-  mesh::ClothMesh sewn = mesh_;
-  sewn.panels.resize(2);
-  sewn.triangle_panels.assign(sewn.triangles.size(), 0);
-  EXPECT_EQ(refusalOf([&] { HapticLayer(sewn, wool(), {}, {}); }),
-            "fingertips touch one panel, and the mesh has 2");
+TEST_F(HapticLayerTest, RefusesParticlesThatAreTied) {
   mesh::ClothMesh tied = mesh_;
   tied.ties.push_back({0, {1, 2}, 0.5});
   EXPECT_EQ(refusalOf([&] { HapticLayer(tied, wool(), {}, {}); }),
-            "fingertips touch one panel without seams, and 1 particles of the mesh are tied");
+            "fingertips touch panels that are merged, and 1 particles of the mesh are tied");
 }
 
 TEST_F(HapticLayerTest, InAWholeClothSceneTheLargeScaleParticlesAreTouched) {

@@ -140,8 +140,12 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"Quad", "f 1/1 2/2 3/3 4/4\n", "line 14: a face has 4 corners, must be a triangle"},
         Refusal{"Edge", "f 1/1 2/2\n", "line 14: a face has 2 corners, must be a triangle"},
-        Refusal{"Seam", "vt 0.5 0.2\nf 1/1 2/2 3/3\nf 1/1 3/5 4/4\n",
-                "line 16: position 3 has the texture coordinates 3 and 5 (a seam), must have one"},
+        Refusal{"SeamWithoutPanels", "vt 0.5 0.2\ng one\nf 1/1 2/2 3/3\ng\nf 1/1 3/5 4/4\n",
+                "line 18: a face is in 0 groups ('g'): position 3 has the texture coordinates 3 "
+                "and 5 (a seam), so every face must be in one group, its panel"},
+        Refusal{"FaceOfTwoPanels", "vt 0.5 0.2\ng one two\nf 1/1 2/2 3/3\ng two\nf 1/1 3/5 4/4\n",
+                "line 16: a face is in 2 groups ('g'): position 3 has the texture coordinates 3 "
+                "and 5 (a seam), so every face must be in one group, its panel"},
         Refusal{"PositionAlone", "f 1 2 3\n",
                 "line 14: a corner has no texture coordinate, which is its rest coordinate"},
         Refusal{"PositionAndNormal", "f 1//1 2//1 3//1\n",

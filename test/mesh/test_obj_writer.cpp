@@ -68,6 +68,30 @@ TEST(ObjWriter, GivesEveryPanelAGroupAndItsOwnRestCoordinates) {
   EXPECT_EQ(coordinates, 9);
 }
 
+TEST(ObjWriter, GivesSewnPanelsBackWithTheirSeams) {
+  const ClothMesh mesh = sewn();
+  MeshGroups groups;
+  const ClothMesh back = loadObj(save(written(mesh, {"left", "right"})), groups);
+  EXPECT_EQ(groups.at("right").size(), 8u);
+  EXPECT_EQ(back.initial_positions, mesh.initial_positions);
+  EXPECT_EQ(back.triangles, mesh.triangles);
+  EXPECT_EQ(back.triangle_panels, mesh.triangle_panels);
+  ASSERT_EQ(back.panelCount(), 2);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(back.restCorners(t)[i], mesh.restCorners(t)[i]);
+  }
+  ASSERT_EQ(back.seam_hinges.size(), mesh.seam_hinges.size());
+  for (std::size_t h = 0; h < mesh.seam_hinges.size(); ++h) {
+    const SeamHinge &hinge = back.seam_hinges[h], &expected = mesh.seam_hinges[h];
+    EXPECT_EQ(hinge.triangles, expected.triangles);
+    EXPECT_NEAR(hinge.length, expected.length, 1e-15);
+    for (int side = 0; side < 2; ++side) {
+      EXPECT_LT((hinge.along[side] - expected.along[side]).norm(), 1e-12);
+      EXPECT_LT((hinge.inward[side] - expected.inward[side]).norm(), 1e-12);
+    }
+  }
+}
+
 TEST(ObjWriter, RefusesNamesThatAnObjFileCannotHold) {
   const ClothMesh mesh = sewn();
   EXPECT_THROW(written(mesh, {"left"}), std::invalid_argument);

@@ -311,6 +311,7 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
       EXPECT_TRUE(scene.obstacles[0].body) << names.back();
       continue;
     }
+    if (names.back() == "tshirt") continue;  // ShippedTshirt
     const bool hangs = names.back() != "dropped_sheet";
     const bool lies = names.back() == "table";
     EXPECT_EQ(scene.mesh.triangles.size(), lies ? 800u : hangs ? 2048u : 512u) << names.back();
@@ -321,7 +322,7 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
   EXPECT_EQ(names, (std::vector<std::string>{
                        "acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet", "hemmed_wool",
                        "linear_sheet", "net", "orbiting_sphere", "sphere_mass_spring", "table",
-                       "wool_among_obstacles", "wool_in_wind", "wool_sample"}));
+                       "tshirt", "wool_among_obstacles", "wool_in_wind", "wool_sample"}));
 }
 
 TEST_F(SceneFile, MayHaveAnotherSheet) {

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "haptex/contact/large_scale_motion.h"
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::contact {
+
+/// Which of the cloth's fabrics every triangle is of; empty: all are of the first.
+std::vector<int> fabricsOfTriangles(const mesh::ClothMesh& mesh);
 
 /// Images of the unit vectors along weft and warp of a triangle: the columns of its deformation
 /// gradient. World frame.

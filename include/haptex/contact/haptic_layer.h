@@ -55,7 +55,8 @@ struct FingertipContact {
   Eigen::Vector3d sliding_velocity = Eigen::Vector3d::Zero();  ///< m/s, fingertip over cloth
   /// Which of the cloth's fabrics is touched: that on which most of the normal force is.
   int fabric = 0;
-  Eigen::Vector2d fabric_position = Eigen::Vector2d::Zero();  ///< m, centre in (weft, warp)
+  /// m, centre in (weft, warp), of the panel that takes most of the normal force.
+  Eigen::Vector2d fabric_position = Eigen::Vector2d::Zero();
   Eigen::Vector2d fabric_velocity = Eigen::Vector2d::Zero();  ///< m/s, sliding in (weft, warp)
   /// How (weft, warp) change with the place along the cloth in the world frame, no unit.
   Eigen::Matrix<double, 2, 3> to_fabric = Eigen::Matrix<double, 2, 3>::Zero();
@@ -74,7 +75,7 @@ class HapticLayer {
   /// @param mesh, fabrics, effects those of the large-scale layer; at most mesh::kMostFabrics
   /// @param obstacles of the scene; patches touch those without mass if effects has contacts
   /// @throws std::invalid_argument what requireTouchable(), cloth::Cloth or PlacedObstacles throws,
-  ///   or if the mesh has several panels or ties, or a triangle a fabric that is not there
+  ///   or if the mesh has ties, or a triangle a fabric that is not there
   HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fabrics,
               const cloth::ModelledEffects& effects, const HapticSettings& settings,
               std::vector<mesh::Obstacle> obstacles = {});
@@ -160,6 +161,7 @@ class HapticLayer {
   PlacedObstacles obstacles_;
   MeshTopology topology_;
   LargeScaleMotion motion_;
+  std::vector<double> panel_forces_;  // parts of a contact's normal force; scratch
   std::unique_ptr<Patch> patch_;
   CondensedStiffness stiffness_;
   std::unique_ptr<WholeClothContact> whole_cloth_;  // null with patches

@@ -70,6 +70,7 @@ class Patch {
   }
   /// The place of a particle on the large-scale cloth (m).
   Eigen::Vector3d placeOnCloth(int particle, const LargeScaleMotion& motion) const;
+  /// m, along weft and warp, in the panel of the particle's owner.
   const Eigen::Vector2d& restCoordinates(int particle) const {
     return cut_.mesh.rest_coordinates[particle];
   }

@@ -22,7 +22,8 @@ struct PatchForces {
 /// Those around them bend by their corners, together with the corners of the refined ones, which
 /// resist nothing there: so both are as regular as the mesh is, and where its cells are rectangles
 /// hinges of four particles are exact (cloth::BendingModel::kLinear). Along the line between both
-/// some half of a coarse cell resists no bend across it.
+/// some half of a coarse cell resists no bend across it. Panels that are merged bend each by
+/// itself, and over their seams by the hinges of cloth::SeamBending, as the large-scale cloth does.
 /// @param coarse  the mesh that was cut
 /// @param fabrics with bending
 /// @throws std::invalid_argument as cloth::Membrane, cloth::Bending and cloth::Aerodynamics

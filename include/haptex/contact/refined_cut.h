@@ -18,6 +18,7 @@ class MeshTopology {
   /// The triangle beyond the edge opposite to a corner (0 to 2), -1 on the border of the mesh.
   int neighbour(int triangle, int corner) const { return neighbours_[triangle][corner]; }
   const std::vector<int>& trianglesOf(int particle) const { return triangles_of_[particle]; }
+  std::size_t particleCount() const { return triangles_of_.size(); }
 
  private:
   std::vector<std::array<int, 3>> neighbours_;
@@ -44,9 +45,15 @@ struct Support {
 /// every corner lies on corners. The particles that are free to move come
 /// first, then those of the rim, which follow the mesh: they lie on an edge or corner that the cut
 /// shares with triangles outside of it, or are attached.
+///
+/// Elements belong together by the edges that they share, whichever panels they are of: a cut goes
+/// on over seams that are merged.
 struct RefinedCut {
-  mesh::ClothMesh mesh;  ///< initial positions are zero
-  int free_count = 0;    ///< particles before the rim
+  /// Rest coordinates along weft and warp: where the mesh has panels that are merged by corner,
+  /// each in its own panel, with hinges at the seams; of a particle those in its owner. Initial
+  /// positions are zero.
+  mesh::ClothMesh mesh;
+  int free_count = 0;  ///< particles before the rim
   int refinement = 0;
   int refined_count = 0;                 ///< elements before those that stay coarse
   std::vector<int> elements;             ///< of the original mesh, that were cut

@@ -29,6 +29,7 @@ class WholeClothContact {
   /// -d force / d position of the fingertip within a step of h (N/m): contact springs in series
   /// with the inertia of their particles.
   Eigen::Matrix3d stiffness(base::Finger finger, double h) const;
+  /// m, along weft and warp, in the panel of triangleOf().
   const Eigen::Vector2d& restCoordinates(int particle) const { return rest_coordinates_[particle]; }
   /// A triangle with the particle as its corner.
   int triangleOf(int particle) const { return triangle_of_[particle]; }

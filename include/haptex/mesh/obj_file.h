@@ -17,11 +17,14 @@ constexpr std::size_t kLargestObj = std::size_t{64} << 20;
 constexpr std::size_t kMostTriangles = 200'000;
 
 /// Reads triangles ("f"), positions ("v", metres, world frame) and texture coordinates ("vt"),
-/// which are the rest coordinates (u weft, v warp) in metres. Every particle needs exactly one
-/// texture coordinate; a position that faces give two of different value (a seam) is an error, as
-/// is a face that is not a triangle. Indices count from 1, or backwards if negative, over what
-/// stands before the face in the file. Other statements are ignored. Refusals repeat no words of
-/// the file.
+/// which are the rest coordinates (u weft, v warp) in metres, of every corner of a face. Where a
+/// position has two of different value, it is on a seam of panels that are merged, or of a dart:
+/// the mesh then has rest coordinates by corner, the groups ("g") in the order of the file as
+/// panels of fabric 0 along the grain, and hinges at its seams (addHingesOfMergedSeams()); every
+/// face must be in exactly one group. Without a seam the mesh is one panel, whatever its groups. A
+/// face that is not a triangle is an error. Indices count from 1, or backwards if negative, over
+/// what stands before the face in the file. Other statements are ignored. Refusals repeat no words
+/// of the file.
 /// @throws std::runtime_error if the file cannot be read or has more than kLargestObj bytes
 /// @throws std::invalid_argument naming file, line and what is wrong, which is also the first
 /// triangle

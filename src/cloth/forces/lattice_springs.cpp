@@ -174,6 +174,9 @@ class Builder {
 }  // namespace
 
 std::vector<LatticeSpring> findLatticeSprings(const mesh::ClothMesh& mesh, bool bend) {
+  if (!mesh.corner_coordinates.empty()) {
+    throw std::invalid_argument("springs know one panel, and not a mesh that has seams");
+  }
   Builder builder(mesh);
   for (const Cell& cell : findCells(mesh)) builder.add(cell);
   if (bend) builder.addBendSprings();

@@ -28,9 +28,9 @@ constexpr double kLongestInBudgets = 4.0;
 /// Legs of right-angled triangles of the mean area, m.
 double meanCellSize(const mesh::ClothMesh& mesh) {
   double doubled_area = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Eigen::Vector2d first = mesh.rest_coordinates[b] - mesh.rest_coordinates[a];
-    const Eigen::Vector2d second = mesh.rest_coordinates[c] - mesh.rest_coordinates[a];
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.restCorners(t);
+    const Eigen::Vector2d first = b - a, second = c - a;
     doubled_area += std::abs(first.x() * second.y() - first.y() * second.x());
   }
   return std::sqrt(doubled_area / static_cast<double>(mesh.triangles.size()));

@@ -22,6 +22,18 @@ void appendRowByRow(const Eigen::Matrix3d& block, std::vector<double>& numbers) 
   }
 }
 
+void fillPanels(const mesh::ClothMesh& mesh, haptex::ClothMesh& message) {
+  const std::vector<int>& panels = mesh.triangle_panels;
+  message.triangle_panels.assign(panels.begin(), panels.end());
+  if (mesh.corner_coordinates.empty()) return;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const Eigen::Vector2d& corner : mesh.restCorners(t)) {
+      message.corner_weft_coordinates.push_back(corner.x());
+      message.corner_warp_coordinates.push_back(corner.y());
+    }
+  }
+}
+
 template <typename Message>
 std::vector<Eigen::Vector3d> fromXyz(const std::vector<Message>& messages) {
   std::vector<Eigen::Vector3d> vectors;
@@ -51,6 +63,7 @@ haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
   for (const auto& triangle : cloth.mesh().triangles) {
     message.triangles.insert(message.triangles.end(), triangle.begin(), triangle.end());
   }
+  fillPanels(cloth.mesh(), message);
   const std::vector<int>& fabrics = cloth.mesh().triangle_fabrics;
   message.triangle_fabrics.assign(fabrics.begin(), fabrics.end());
   message.masses = cloth.masses();

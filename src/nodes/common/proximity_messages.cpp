@@ -1,5 +1,6 @@
 #include "haptex/nodes/common/proximity_messages.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -7,6 +8,7 @@
 #include <string>
 
 #include "haptex/base/quoted.h"
+#include "haptex/mesh/merged_seams.h"
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/vector_messages.h"
 
@@ -102,6 +104,53 @@ NearElement elementMessage(const proximity::NearElement& element) {
   return message;
 }
 
+void requireOneEach(const char* field, std::size_t count, std::size_t allowed,
+                    const char* of_each) {
+  if (count == allowed) return;
+  throw std::invalid_argument(std::string(field) + " has " + std::to_string(count) +
+                              " elements: allowed are none, or " + std::to_string(allowed) + ", " +
+                              of_each);
+}
+
+/// Moves particles apart by the panels that they are first in.
+void readPanels(const haptex::ClothMesh& message, RestMesh& mesh) {
+  const std::vector<std::uint32_t>& panels = message.triangle_panels;
+  if (panels.empty()) return;
+  requireOneEach("triangle_panels", panels.size(), mesh.triangles.size(), "one per triangle");
+  std::vector<char> is_placed(mesh.rest_coordinates.size(), 0);
+  for (std::size_t t = 0; t < panels.size(); ++t) {
+    if (panels[t] >= panels.size()) {
+      throw std::invalid_argument(
+          "triangle_panels[" + std::to_string(t) + "] = " + std::to_string(panels[t]) +
+          ": allowed are 0 to one below the number of triangles, " + std::to_string(panels.size()));
+    }
+    mesh.panels.push_back(static_cast<int>(panels[t]));
+    for (const int particle : mesh.triangles[t]) {
+      if (is_placed[particle] == 0) mesh.rest_coordinates[particle].z() = panels[t];
+      is_placed[particle] = 1;
+    }
+  }
+}
+
+void readCorners(const haptex::ClothMesh& message, RestMesh& mesh) {
+  const std::vector<double>& weft = message.corner_weft_coordinates;
+  const std::vector<double>& warp = message.corner_warp_coordinates;
+  if (weft.empty() && warp.empty()) return;
+  const std::size_t corners = message.triangles.size();
+  requireOneEach("corner_weft_coordinates", weft.size(), corners, "three per triangle");
+  requireOneEach("corner_warp_coordinates", warp.size(), corners, "three per triangle");
+  mesh.corner_coordinates.resize(mesh.triangles.size());
+  for (std::size_t i = 0; i < corners; ++i) {
+    if (!isLength(weft[i]) || !isLength(warp[i])) {
+      std::ostringstream text;
+      text << "rest coordinates of corner " << i << " = (" << weft[i] << ", " << warp[i]
+           << "): allowed are finite numbers up to " << proximity::kMaxLength << " m";
+      throw std::invalid_argument(text.str());
+    }
+    mesh.corner_coordinates[i / 3][i % 3] = {weft[i], warp[i]};
+  }
+}
+
 }  // namespace
 
 RestMesh restMesh(const haptex::ClothMesh& message) {
@@ -137,6 +186,25 @@ RestMesh restMesh(const haptex::ClothMesh& message) {
     }
     mesh.rest_coordinates.emplace_back(weft[i], warp[i], 0.0);
   }
+  readPanels(message, mesh);
+  readCorners(message, mesh);
+  return mesh;
+}
+
+mesh::ClothMesh clothOf(const RestMesh& rest) {
+  mesh::ClothMesh mesh;
+  mesh.triangles = rest.triangles;
+  for (const Eigen::Vector3d& place : rest.rest_coordinates) {
+    mesh.rest_coordinates.emplace_back(place.x(), place.y());
+    mesh.initial_positions.emplace_back(0.0, place.x(), place.y());
+  }
+  mesh.triangle_panels = rest.panels;
+  if (!rest.panels.empty()) {
+    mesh.panels.resize(1 + *std::max_element(rest.panels.begin(), rest.panels.end()));
+  }
+  mesh.corner_coordinates = rest.corner_coordinates;
+  mesh::requireSound(mesh);
+  if (!mesh.corner_coordinates.empty()) mesh::addHingesOfMergedSeams(mesh);
   return mesh;
 }
 

@@ -66,14 +66,8 @@ mesh::ClothMesh clothMesh(const haptex::ClothMesh& message) {
   const RestMesh rest = restMesh(message);
   const std::vector<std::uint8_t>& fabrics = message.triangle_fabrics;
   if (!fabrics.empty()) requireTriangleFabrics(message, rest.triangles.size());
-  mesh::ClothMesh mesh;
+  mesh::ClothMesh mesh = clothOf(rest);
   mesh.triangle_fabrics.assign(fabrics.begin(), fabrics.end());
-  mesh.triangles = rest.triangles;
-  for (const Eigen::Vector3d& place : rest.rest_coordinates) {
-    mesh.rest_coordinates.emplace_back(place.x(), place.y());
-    mesh.initial_positions.emplace_back(0.0, place.x(), place.y());
-  }
-  mesh::requireSound(mesh);
   return mesh;
 }
 

@@ -12,7 +12,6 @@
 
 #include "haptex/mesh/mesh.h"
 #include "haptex/nodes/common/cloth_fabric.h"
-#include "haptex/nodes/common/proximity_messages.h"
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
@@ -36,6 +35,7 @@ std::vector<cloth::MembraneElement> elementsOf(const RestMesh& rest) {
   for (const Eigen::Vector3d& place : rest.rest_coordinates) {
     mesh.rest_coordinates.push_back(place.head<2>());
   }
+  mesh.corner_coordinates = rest.corner_coordinates;
   return cloth::restElements(mesh);
 }
 
@@ -105,20 +105,21 @@ ClothSurface::ClothSurface(const haptex::ClothMesh& mesh, ColourBy colour_by)
   areas_.assign(particles, 0.0);
   excluded_.assign(particles, 0);
   contact_forces_.assign(particles, 0.0);
-  makeVertices(groupsOfTriangles(mesh));
-  findGrainLines(mesh);
+  makeVertices(groupsOfTriangles(mesh, rest));
+  findGrainLines(rest);
   positions_.resize(3 * particles_.size());
   colours_.resize(particles_.size());
 }
 
 /// Also names the groups.
-std::vector<int> ClothSurface::groupsOfTriangles(const haptex::ClothMesh& mesh) {
+std::vector<int> ClothSurface::groupsOfTriangles(const haptex::ClothMesh& mesh,
+                                                 const RestMesh& rest) {
   std::vector<int> groups(triangles_.size(), 0);
   if (colour_by_ == ColourBy::kFabric) {
     groups_.assign(mesh.fabrics.begin(), mesh.fabrics.end());
     if (!triangle_fabrics_.empty()) groups = triangle_fabrics_;
   } else if (colour_by_ == ColourBy::kPanel) {
-    groups = partsOf(triangles_, points_.size());
+    groups = rest.panels.empty() ? partsOf(triangles_, points_.size()) : rest.panels;
     const int count = 1 + *std::max_element(groups.begin(), groups.end());
     for (int part = 0; part < count; ++part) groups_.push_back("panel " + std::to_string(part));
   }
@@ -142,17 +143,19 @@ void ClothSurface::makeVertices(const std::vector<int>& groups) {
   }
 }
 
-void ClothSurface::findGrainLines(const haptex::ClothMesh& mesh) {
+void ClothSurface::findGrainLines(const RestMesh& rest) {
   constexpr double kAlong = 1e-6;  // of an edge's length, across the grain
   std::set<std::pair<int, int>> known;
-  for (const Triangle& triangle : triangles_) {
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const Triangle& triangle = triangles_[t];
+    const auto place = [&](int i) -> Eigen::Vector2d {
+      return rest.corner_coordinates.empty() ? rest.rest_coordinates[triangle[i]].head<2>()
+                                             : rest.corner_coordinates[t][i];
+    };
     for (int i = 0; i < 3; ++i) {
       const auto [first, second] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
-      const double weft =
-          std::abs(mesh.rest_weft_coordinates[first] - mesh.rest_weft_coordinates[second]);
-      const double warp =
-          std::abs(mesh.rest_warp_coordinates[first] - mesh.rest_warp_coordinates[second]);
-      if (std::min(weft, warp) > kAlong * std::max(weft, warp)) continue;
+      const Eigen::Vector2d edge = (place((i + 1) % 3) - place(i)).cwiseAbs();
+      if (edge.minCoeff() > kAlong * edge.maxCoeff()) continue;
       if (!known.emplace(first, second).second) continue;
       grain_lines_.push_back(first_vertices_[first]);
       grain_lines_.push_back(first_vertices_[second]);

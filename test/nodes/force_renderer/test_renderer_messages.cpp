@@ -280,5 +280,28 @@ TEST(RendererMessages, SelectsWhatAnAnswerFoundAndRefusesTrianglesThatDoNotExist
   EXPECT_EQ(nearest.elements(), (std::vector<int>{5}));
 }
 
+TEST(SewnMeshMessage, HasItsPanelsAndSeamsAndRefusesArraysThatDoNotFit) {
+  haptex::ClothMesh message;
+  message.rest_weft_coordinates = {0.0, 0.1, 0.1, 0.0};
+  message.rest_warp_coordinates = {0.0, 0.0, 0.1, 0.1};
+  message.triangles = {0, 1, 2, 0, 2, 3};
+  message.fabrics = {"wool"};
+  message.triangle_panels = {0, 1};
+  message.corner_weft_coordinates = {0.0, 0.1, 0.1, 5.0, 5.1, 5.0};
+  message.corner_warp_coordinates = {0.0, 0.0, 0.1, 0.0, 0.1, 0.1};
+  const mesh::ClothMesh mesh = clothMesh(message);
+  EXPECT_EQ(mesh.panelCount(), 2);
+  EXPECT_EQ(mesh.restCorners(1)[1], Eigen::Vector2d(5.1, 0.1));
+  EXPECT_EQ(mesh.seam_hinges.size(), 1u);
+  haptex::ClothMesh other = message;
+  other.triangle_panels = {0};
+  EXPECT_THROW(clothMesh(other), std::invalid_argument);
+  other.triangle_panels = {0, 2};
+  EXPECT_THROW(clothMesh(other), std::invalid_argument);
+  other = message;
+  other.corner_warp_coordinates.pop_back();
+  EXPECT_THROW(clothMesh(other), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace haptex::nodes::test_renderer_messages

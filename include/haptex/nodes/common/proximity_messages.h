@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "haptex/mesh/mesh.h"
 #include "haptex/proximity/cursor.h"
 #include "haptex/proximity/near_element.h"
 
@@ -18,15 +19,26 @@ namespace haptex::nodes {
 
 /// The triangles of a mesh message and where its particles are in the fabric.
 struct RestMesh {
-  std::uint32_t number = 0;                       ///< of the mesh
-  std::vector<std::array<int, 3>> triangles;      ///< particle indices
-  std::vector<Eigen::Vector3d> rest_coordinates;  ///< (u along the weft, v along the warp, 0), m
+  std::uint32_t number = 0;                   ///< of the mesh
+  std::vector<std::array<int, 3>> triangles;  ///< particle indices
+  /// m, (u along the weft, v along the warp, n), in the first panel n that a particle is of: panels
+  /// lie 1 m apart, so that nothing of two of them is near each other by chance.
+  std::vector<Eigen::Vector3d> rest_coordinates;
+  std::vector<int> panels;  ///< per triangle; empty: all are of one
+  /// m, (u, v) per triangle and corner in its own panel; empty: those of the particles.
+  std::vector<std::array<Eigen::Vector2d, 3>> corner_coordinates;
 
   bool operator==(const RestMesh& other) const {
     return number == other.number && triangles == other.triangles &&
-           rest_coordinates == other.rest_coordinates;
+           rest_coordinates == other.rest_coordinates && panels == other.panels &&
+           corner_coordinates == other.corner_coordinates;
   }
 };
+
+/// The cloth that a mesh message says, without fabrics and forces; where panels are merged, with
+/// hinges at their seams. Initial positions are the rest coordinates in the plane x = 0.
+/// @throws std::invalid_argument as mesh::requireSound()
+mesh::ClothMesh clothOf(const RestMesh& rest);
 
 /// Triangles without area are allowed.
 /// @throws std::invalid_argument naming field, value and what is allowed: no triangle, arrays that

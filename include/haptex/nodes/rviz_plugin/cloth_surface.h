@@ -13,6 +13,7 @@
 
 #include "haptex/cloth/forces/element_assembly.h"
 #include "haptex/material/fabric.h"
+#include "haptex/nodes/common/proximity_messages.h"
 #include "haptex/nodes/rviz_plugin/colour_scale.h"
 
 namespace haptex::nodes {
@@ -73,9 +74,9 @@ class ClothSurface {
  private:
   using Triangle = std::array<int, 3>;
 
-  std::vector<int> groupsOfTriangles(const haptex::ClothMesh& mesh);
+  std::vector<int> groupsOfTriangles(const haptex::ClothMesh& mesh, const RestMesh& rest);
   void makeVertices(const std::vector<int>& groups);
-  void findGrainLines(const haptex::ClothMesh& mesh);
+  void findGrainLines(const RestMesh& rest);
   void readPositions(const haptex::ClothState& state);
   void computeNormals();
   void computeValues();

@@ -115,6 +115,11 @@ void SeamBending::addHinge(const mesh::ClothMesh& mesh, const mesh::SeamHinge& s
   angles.hinges.push_back({first, static_cast<int>(angles.corners.size()), stiffness, bend, 0.0});
 }
 
+void SeamBending::renumber(const std::vector<int>& particles) {
+  for (HingeCorner& corner : corners_) corner.particle = particles[corner.particle];
+  if (rest_) rest_->renumber(particles);
+}
+
 template <typename Place>
 Vector3d SeamBending::bendingVector(const Hinge& hinge, const Place& place) const {
   const Vector3d origin = place(corners_[hinge.begin].particle);

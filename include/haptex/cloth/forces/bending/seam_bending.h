@@ -36,6 +36,10 @@ class SeamBending final : public Force {
   SeamBending(const mesh::ClothMesh& mesh,
               const std::vector<material::BendingRigidity>& rigidities);
 
+  /// Makes it one on some particles of a larger mesh. Before bind().
+  /// @param particles of that mesh, for every one of this, ascending
+  void renumber(const std::vector<int>& particles);
+
   const std::vector<Hinge>& hinges() const { return hinges_; }
   const std::vector<HingeCorner>& corners() const { return corners_; }
 
