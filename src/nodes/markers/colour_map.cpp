@@ -28,7 +28,8 @@ double strainFraction(double strain, double full_scale) {
 
 double largestPrincipalStrain(const Eigen::Vector3d& strain) {
   const double mean = 0.5 * (strain[0] + strain[1]);
-  return mean + std::hypot(0.5 * (strain[0] - strain[1]), 0.5 * strain[2]);
+  const double difference = 0.5 * (strain[0] - strain[1]), shear = 0.5 * strain[2];
+  return mean + std::sqrt(difference * difference + shear * shear);
 }
 
 Eigen::Vector3f distinctColour(int index) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -10,7 +11,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "haptex/mesh/mesh.h"
 #include "haptex/nodes/common/cloth_fabric.h"
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
@@ -29,14 +29,21 @@ bool needsElements(ColourBy colour_by) {
   return colour_by == ColourBy::kStrain || colour_by == ColourBy::kStress;
 }
 
-std::vector<cloth::MembraneElement> elementsOf(const RestMesh& rest) {
-  mesh::ClothMesh mesh;
-  mesh.triangles = rest.triangles;
-  for (const Eigen::Vector3d& place : rest.rest_coordinates) {
-    mesh.rest_coordinates.push_back(place.head<2>());
+/// Rest coordinates of a triangle's corners, in its own panel.
+std::array<Eigen::Vector2d, 3> cornersOf(const RestMesh& rest, std::size_t triangle) {
+  if (!rest.corner_coordinates.empty()) return rest.corner_coordinates[triangle];
+  const auto& [a, b, c] = rest.triangles[triangle];
+  return {rest.rest_coordinates[a].head<2>(), rest.rest_coordinates[b].head<2>(),
+          rest.rest_coordinates[c].head<2>()};
+}
+
+std::vector<cloth::RestTriangle> atRest(const RestMesh& rest) {
+  std::vector<cloth::RestTriangle> triangles;
+  triangles.reserve(rest.triangles.size());
+  for (std::size_t t = 0; t < rest.triangles.size(); ++t) {
+    triangles.push_back(cloth::restTriangle(cornersOf(rest, t)));
   }
-  mesh.corner_coordinates = rest.corner_coordinates;
-  return cloth::restElements(mesh);
+  return triangles;
 }
 
 /// For each triangle the number of its part: triangles that share particles, from 0.
@@ -62,12 +69,22 @@ std::vector<int> partsOf(const std::vector<std::array<int, 3>>& triangles, std::
   return parts;
 }
 
+/// @param value 0 to 1; NaN gives 0
+std::uint8_t byteOf(double value) {
+  if (!(value > 0.0)) return 0;
+  return static_cast<std::uint8_t>(255.0 * std::min(value, 1.0) + 0.5);  // to the nearest
+}
+
 VertexColour colourOf(const Eigen::Vector3f& colour, float brightness, double opacity) {
-  const auto byte = [](double value) {
-    return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
-  };
-  return {byte(brightness * colour[0]), byte(brightness * colour[1]), byte(brightness * colour[2]),
-          byte(opacity)};
+  return {byteOf(brightness * colour[0]), byteOf(brightness * colour[1]),
+          byteOf(brightness * colour[2]), byteOf(opacity)};
+}
+
+/// NaN is not.
+bool isDrawable(const Eigen::Vector3d& point) {
+  constexpr double kFarthest = ClothSurface::kFarthest;
+  return std::abs(point.x()) <= kFarthest && std::abs(point.y()) <= kFarthest &&
+         std::abs(point.z()) <= kFarthest;
 }
 
 void requireCount(const std::string& field, std::size_t count, std::size_t allowed) {
@@ -96,13 +113,12 @@ ClothSurface::ClothSurface(const haptex::ClothMesh& mesh, ColourBy colour_by)
     }
   }
   if (isQuantity(colour_by)) scale_ = scaleOf(colour_by);
-  if (needsElements(colour_by)) elements_ = elementsOf(rest);
+  if (needsElements(colour_by)) at_rest_ = atRest(rest);
   if (colour_by == ColourBy::kStress) fabrics_ = fabricsOfCloth(mesh);
   const std::size_t particles = rest.rest_coordinates.size();
   points_.resize(particles);
-  normals_.resize(particles);
-  values_.assign(particles, 0.0);
-  areas_.assign(particles, 0.0);
+  sums_.resize(particles);
+  shareOutAreas();
   excluded_.assign(particles, 0);
   contact_forces_.assign(particles, 0.0);
   makeVertices(groupsOfTriangles(mesh, rest));
@@ -148,18 +164,22 @@ void ClothSurface::findGrainLines(const RestMesh& rest) {
   std::set<std::pair<int, int>> known;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const Triangle& triangle = triangles_[t];
-    const auto place = [&](int i) -> Eigen::Vector2d {
-      return rest.corner_coordinates.empty() ? rest.rest_coordinates[triangle[i]].head<2>()
-                                             : rest.corner_coordinates[t][i];
-    };
+    const std::array<Eigen::Vector2d, 3> corners = cornersOf(rest, t);
     for (int i = 0; i < 3; ++i) {
       const auto [first, second] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
-      const Eigen::Vector2d edge = (place((i + 1) % 3) - place(i)).cwiseAbs();
+      const Eigen::Vector2d edge = (corners[(i + 1) % 3] - corners[i]).cwiseAbs();
       if (edge.minCoeff() > kAlong * edge.maxCoeff()) continue;
       if (!known.emplace(first, second).second) continue;
       grain_lines_.push_back(first_vertices_[first]);
       grain_lines_.push_back(first_vertices_[second]);
     }
+  }
+}
+
+void ClothSurface::shareOutAreas() {
+  areas_.assign(points_.size(), 0.0);
+  for (std::size_t t = 0; t < at_rest_.size(); ++t) {
+    for (const int particle : triangles_[t]) areas_[particle] += at_rest_[t].area;
   }
 }
 
@@ -189,17 +209,15 @@ void ClothSurface::take(const haptex::ContactForces& forces) {
 
 void ClothSurface::take(const haptex::ClothState& state) {
   readPositions(state);
-  computeNormals();
-  computeValues();
+  sumTriangles();
   colourVertices(state);
 }
 
 void ClothSurface::readPositions(const haptex::ClothState& state) {
   requireCount("positions", state.positions.size(), points_.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const geometry_msgs::Point& point = state.positions[i];
-    points_[i] = fromMessage(point);
-    if (!points_[i].allFinite() || points_[i].cwiseAbs().maxCoeff() > kFarthest) {
+    points_[i] = fromMessage(state.positions[i]);
+    if (!isDrawable(points_[i])) {
       std::ostringstream message;
       message << "positions[" << i << "] = (" << points_[i].transpose()
               << "): allowed are finite numbers, at most " << kFarthest << " m";
@@ -215,23 +233,29 @@ void ClothSurface::readPositions(const haptex::ClothState& state) {
   }
 }
 
-void ClothSurface::computeNormals() {
-  std::fill(normals_.begin(), normals_.end(), Eigen::Vector3d::Zero());
-  for (const Triangle& triangle : triangles_) {
-    const Eigen::Vector3d& first = points_[triangle[0]];
-    const Eigen::Vector3d normal =
-        (points_[triangle[1]] - first).cross(points_[triangle[2]] - first);
-    for (const int particle : triangle) normals_[particle] += normal;
+/// One pass over the triangles, whose edges give both the normals and the strains.
+void ClothSurface::sumTriangles() {
+  std::fill(sums_.begin(), sums_.end(), Eigen::Vector4f::Zero());
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const auto& [a, b, c] = triangles_[t];
+    const Eigen::Vector3d first = points_[b] - points_[a];
+    const Eigen::Vector3d second = points_[c] - points_[a];
+    Eigen::Vector4f share = Eigen::Vector4f::Zero();
+    share.head<3>() = first.cross(second).cast<float>();
+    if (!at_rest_.empty()) {
+      const auto& [weft, warp, area] = at_rest_[t];
+      const cloth::ElementFrame frame{weft[1] * first + weft[2] * second,
+                                      warp[1] * first + warp[2] * second};
+      share[3] = static_cast<float>(area * valueOf(t, cloth::greenStrain(frame)));
+    }
+    for (const int particle : triangles_[t]) sums_[particle] += share;
   }
-  for (Eigen::Vector3d& normal : normals_) normal.normalize();
 }
 
-/// Of an element that restElements() made, whose order is that of the triangles.
-double ClothSurface::valueOf(std::size_t element) const {
-  const cloth::MembraneStrain strain = cloth::greenStrain(elements_[element], points_);
+double ClothSurface::valueOf(std::size_t triangle, const cloth::MembraneStrain& strain) const {
   if (colour_by_ == ColourBy::kStrain) return largestPrincipalStrain(strain);
   const material::Fabric& fabric =
-      fabrics_[triangle_fabrics_.empty() ? 0 : triangle_fabrics_[element]];
+      fabrics_[triangle_fabrics_.empty() ? 0 : triangle_fabrics_[triangle]];
   // Shear stress belongs to U.V: its tensor has it whole beside the diagonal.
   const Eigen::Vector3d stress(fabric.weft.elastic.evaluate(strain[0]).stress,
                                fabric.warp.elastic.evaluate(strain[1]).stress,
@@ -239,19 +263,10 @@ double ClothSurface::valueOf(std::size_t element) const {
   return largestPrincipalStrain(stress);
 }
 
-void ClothSurface::computeValues() {
-  if (colour_by_ == ColourBy::kContactForce) values_ = contact_forces_;
-  if (!needsElements(colour_by_)) return;
-  std::fill(values_.begin(), values_.end(), 0.0);
-  std::fill(areas_.begin(), areas_.end(), 0.0);
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const double value = valueOf(e);
-    for (const int particle : elements_[e].particles) {
-      values_[particle] += elements_[e].area * value;
-      areas_[particle] += elements_[e].area;
-    }
-  }
-  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] /= areas_[i];
+/// What its colour tells of a particle.
+double ClothSurface::valueAt(int particle) const {
+  if (colour_by_ == ColourBy::kContactForce) return contact_forces_[particle];
+  return sums_[particle][3] / areas_[particle];
 }
 
 void ClothSurface::colourVertices(const haptex::ClothState& state) {
@@ -263,9 +278,10 @@ void ClothSurface::colourVertices(const haptex::ClothState& state) {
   for (std::size_t vertex = 0; vertex < particles_.size(); ++vertex) {
     const int particle = particles_[vertex];
     const Eigen::Vector3f colour = excluded_[particle] != 0 ? kExcludedColour
-                                   : by_quantity ? viridis(scale_.fraction(values_[particle]))
+                                   : by_quantity ? viridis(scale_.fraction(valueAt(particle)))
                                                  : distinctColour(vertex_groups_[vertex]);
-    colours_[vertex] = colourOf(colour, shade(normals_[particle]), opacity_);
+    const Eigen::Vector3d normal = sums_[particle].head<3>().cast<double>().normalized();
+    colours_[vertex] = colourOf(colour, shade(normal), opacity_);
   }
 }
 

@@ -9,7 +9,10 @@ namespace haptex::nodes {
 
 double ColourScale::fraction(double value) const {
   if (!(value > 0.0)) return 0.0;
-  return std::clamp(1.0 + std::log10(value / full) / decades, 0.0, 1.0);
+  constexpr float kDecade = 3.32192809F;  // log2(10)
+  // In single precision: its logarithm is faster, and errs by far less than a colour has steps.
+  const float octaves = std::log2(static_cast<float>(value / full));
+  return std::clamp(1.0F + octaves / (kDecade * static_cast<float>(decades)), 0.0F, 1.0F);
 }
 
 std::vector<ScaleTick> ColourScale::ticks() const {

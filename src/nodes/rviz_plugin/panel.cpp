@@ -263,9 +263,11 @@ void Panel::addArrays() {
 }
 
 void Panel::subscribe() {
-  subscriptions_.add<diagnostic_msgs::DiagnosticArray>(
+  subscriptions_.addEvents<diagnostic_msgs::DiagnosticArray>(
       "/diagnostics", 50,
-      [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { receive(*message); });
+      [this](const ros::MessageEvent<const diagnostic_msgs::DiagnosticArray>& event) {
+        receive(*event.getConstMessage(), event.getPublisherName());
+      });
   subscriptions_.add<OperatingState>(
       "exoskeleton/operating_state", 1, [this](const OperatingStateConstPtr& message) {
         status_.hear(DeviceState{message->state, message->is_homed != 0, message->is_busy != 0,
@@ -295,12 +297,13 @@ void Panel::subscribe() {
   subscriptions_.begin();
 }
 
-void Panel::receive(const diagnostic_msgs::DiagnosticArray& diagnostics) {
+void Panel::receive(const diagnostic_msgs::DiagnosticArray& diagnostics,
+                    const std::string& sender) {
   const base::Time now = realtime::steadyNow();
   const double stamp = diagnostics.header.stamp.toSec();
   for (const diagnostic_msgs::DiagnosticStatus& status : diagnostics.status) {
     const std::string name = statusOfNamespace(status.name, ros::this_node::getNamespace());
-    if (!name.empty()) status_.hear(name, diagnosisOf(status, stamp), now);
+    if (!name.empty()) status_.hear(name, diagnosisOf(status, stamp, sender), now);
   }
 }
 

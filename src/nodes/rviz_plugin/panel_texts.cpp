@@ -21,7 +21,8 @@ std::string statusOfNamespace(const std::string& name, const std::string& space)
   return inside ? name.substr(end + 2) : "";
 }
 
-Diagnosis diagnosisOf(const diagnostic_msgs::DiagnosticStatus& status, double stamp) {
+Diagnosis diagnosisOf(const diagnostic_msgs::DiagnosticStatus& status, double stamp,
+                      const std::string& sender) {
   using Status = diagnostic_msgs::DiagnosticStatus;
   Diagnosis diagnosis;
   diagnosis.level = status.level == Status::OK     ? Diagnosis::Level::kOk
@@ -29,6 +30,8 @@ Diagnosis diagnosisOf(const diagnostic_msgs::DiagnosticStatus& status, double st
                                                    : Diagnosis::Level::kError;
   diagnosis.stamp = stamp;
   diagnosis.message = cut(status.message);
+  const std::string node = status.name.substr(0, status.name.find(": "));
+  if (sender != "/" + node) diagnosis.replayed_by = cut(sender);
   for (const diagnostic_msgs::KeyValue& pair : status.values) {
     diagnosis.values[cut(pair.key)] = cut(pair.value);
   }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <utility>
 
 namespace haptex::nodes {
@@ -69,7 +70,15 @@ void SystemStatus::hear(const std::string& name, Diagnosis diagnosis, Time now) 
     const double missed = since("periods missed");
     if (missed > 0.0) heard.missed_lately = missed;
   }
+  if (heard.diagnosis.replayed_by.empty()) forgetReplay();
   heard_[name] = std::move(heard);
+}
+
+/// When nodes speak themselves.
+void SystemStatus::forgetReplay() {
+  for (auto entry = heard_.begin(); entry != heard_.end();) {
+    entry = entry->second.diagnosis.replayed_by.empty() ? std::next(entry) : heard_.erase(entry);
+  }
 }
 
 void SystemStatus::hear(DeviceState state, Time now) {
@@ -92,10 +101,26 @@ StatusLine SystemStatus::line(Time now) const {
     return {Mood::kTrouble,
             "Nothing is heard from haptex: is a launch file running, and rviz in its namespace?"};
   }
+  if (const auto line = replay(now)) return *line;
   if (const auto trouble = clothTrouble(now)) return *trouble;
   if (const auto trouble = deviceTrouble(now)) return *trouble;
   if (const auto trouble = forceTrouble(now)) return *trouble;
   return allIsWell(now);
+}
+
+/// If the newest that was heard is replayed.
+std::optional<StatusLine> SystemStatus::replay(Time now) const {
+  const auto earlier = [](const auto& a, const auto& b) { return a.second.time < b.second.time; };
+  const auto newest = std::max_element(heard_.begin(), heard_.end(), earlier);
+  if (newest == heard_.end() || newest->second.diagnosis.replayed_by.empty()) return std::nullopt;
+  const Time silent = now - newest->second.time;
+  const std::string felt = feelings();
+  return StatusLine{
+      Mood::kAttention,
+      "A bag is replayed by " + newest->second.diagnosis.replayed_by +
+          ", and no node answers the buttons." +
+          (felt.empty() ? "" : " It recorded: " + felt + ".") +
+          (silent > kSilent ? " Nothing has come for " + secondsText(silent) + "." : "")};
 }
 
 std::optional<StatusLine> SystemStatus::clothTrouble(Time now) const {

@@ -25,10 +25,18 @@ TEST(DiagnosisOf, CutsWhatIsTooLong) {
   status.values.resize(1);
   status.values[0].key = "key";
   status.values[0].value = std::string(5000, 'y');
-  const Diagnosis diagnosis = diagnosisOf(status, 3.0);
+  const Diagnosis diagnosis = diagnosisOf(status, 3.0, std::string(5000, 'z'));
   EXPECT_EQ(diagnosis.level, Diagnosis::Level::kWarn);
   EXPECT_EQ(diagnosis.message.size(), kLongest);
   EXPECT_EQ(diagnosis.values.at("key").size(), kLongest);
+  EXPECT_EQ(diagnosis.replayed_by.size(), kLongest);
+}
+
+TEST(DiagnosisOf, TellsANodeThatSpeaksItselfFromARecordedOne) {
+  diagnostic_msgs::DiagnosticStatus status;
+  status.name = "left/haptex/force_renderer: force loop";
+  EXPECT_EQ(diagnosisOf(status, 3.0, "/left/haptex/force_renderer").replayed_by, "");
+  EXPECT_EQ(diagnosisOf(status, 3.0, "/play_1717").replayed_by, "/play_1717");
 }
 
 TEST(QualityText, SaysTheErrorToExpect) {

@@ -138,6 +138,35 @@ TEST(SystemStatus, WarningsDoNotHideThatForcesAreFelt) {
             "simulation: 3.0 % slower than real time.");
 }
 
+TEST(SystemStatus, AReplayedBagIsSaidInsteadOfSilentNodes) {
+  SystemStatus status;
+  Diagnosis recorded{Level::kOk, "in real time", {}};
+  recorded.replayed_by = "/play_17";
+  status.hear("cloth simulation", recorded, kNow);
+  recorded.message = "touches";
+  recorded.values = {{"force (N)", "0.314"}};
+  status.hear("contact force of the index", recorded, kNow);
+  StatusLine line = status.line(kNow);
+  EXPECT_EQ(line.mood, Mood::kAttention);
+  EXPECT_EQ(line.text,
+            "A bag is replayed by /play_17, and no node answers the buttons. It recorded: the "
+            "index feels 0.31 N.");
+  line = status.line(kNow + milliseconds(8000));
+  EXPECT_EQ(line.text,
+            "A bag is replayed by /play_17, and no node answers the buttons. It recorded: the "
+            "index feels 0.31 N. Nothing has come for 8 s.");
+}
+
+TEST(SystemStatus, NothingOfABagStaysWhenNodesSpeakThemselves) {
+  SystemStatus status;
+  Diagnosis recorded{Level::kError, "connection lost", {}};
+  recorded.replayed_by = "/play_17";
+  status.hear("exoskeleton link", recorded, kNow);
+  status.hear("cloth simulation", {Level::kOk, "in real time", {}}, kNow + milliseconds(1));
+  EXPECT_EQ(status.line(kNow + milliseconds(8)).text,
+            "There is a cloth and no exoskeleton: nothing is felt.");
+}
+
 TEST(SystemStatus, MissingSchedFifoIsNoTrouble) {
   SystemStatus status = wellStatus();
   status.hear("force loop", {Level::kWarn, "in time, but without SCHED_FIFO: not permitted", {}},

@@ -32,10 +32,21 @@ class BackgroundSubscriptions {
   template <typename Message>
   void add(const std::string& topic, std::uint32_t queue,
            std::function<void(const boost::shared_ptr<const Message>&)> callback) {
+    addEvents<Message>(topic, queue, [callback](const ros::MessageEvent<const Message>& event) {
+      callback(event.getConstMessage());
+    });
+  }
+
+  /// The same for who wants to know the sender of a message, too.
+  template <typename Message>
+  void addEvents(const std::string& topic, std::uint32_t queue,
+                 std::function<void(const ros::MessageEvent<const Message>&)> callback) {
     wanted_.push_back([topic, queue, callback](ros::NodeHandle& node) {
-      const boost::function<void(const boost::shared_ptr<const Message>&)> receive = callback;
-      return node.subscribe<Message>(topic, queue, receive, ros::VoidConstPtr(),
-                                     ros::TransportHints().tcpNoDelay());
+      ros::SubscribeOptions options;
+      options.initByFullCallbackType<const ros::MessageEvent<const Message>&>(topic, queue,
+                                                                              callback);
+      options.transport_hints = ros::TransportHints().tcpNoDelay();
+      return node.subscribe(options);
     });
   }
 

@@ -77,20 +77,21 @@ class ClothSurface {
   std::vector<int> groupsOfTriangles(const haptex::ClothMesh& mesh, const RestMesh& rest);
   void makeVertices(const std::vector<int>& groups);
   void findGrainLines(const RestMesh& rest);
+  void shareOutAreas();
   void readPositions(const haptex::ClothState& state);
-  void computeNormals();
-  void computeValues();
-  double valueOf(std::size_t element) const;
+  void sumTriangles();
+  double valueOf(std::size_t triangle, const cloth::MembraneStrain& strain) const;
+  double valueAt(int particle) const;
   void colourVertices(const haptex::ClothState& state);
 
   std::uint32_t mesh_;
   ColourBy colour_by_;
   ColourScale scale_;
   double opacity_ = 1.0;
-  std::vector<Triangle> triangles_;               // of particles
-  std::vector<int> triangle_fabrics_;             // empty: all are of the first
-  std::vector<cloth::MembraneElement> elements_;  // only for strain and stress
-  std::vector<material::Fabric> fabrics_;         // only for stress
+  std::vector<Triangle> triangles_;           // of particles
+  std::vector<int> triangle_fabrics_;         // empty: all are of the first
+  std::vector<cloth::RestTriangle> at_rest_;  // of every triangle, only for strain and stress
+  std::vector<material::Fabric> fabrics_;     // only for stress
   std::vector<std::string> groups_;
 
   std::vector<int> particles_;                 // of every vertex
@@ -98,11 +99,13 @@ class ClothSurface {
   std::vector<std::uint32_t> first_vertices_;  // of every particle
   std::vector<std::uint32_t> triangle_vertices_, grain_lines_;
 
-  std::vector<Eigen::Vector3d> points_;   // of every particle, m
-  std::vector<Eigen::Vector3d> normals_;  // likewise, unit length or zero
-  std::vector<double> values_, areas_;    // likewise, and what the values are averaged by, m^2
-  std::vector<char> excluded_;            // likewise
-  std::vector<double> contact_forces_;    // likewise, N
+  std::vector<Eigen::Vector3d> points_;  // of every particle, m
+  // Likewise, over the triangles around it: a normal as long as twice their area now, m^2, and
+  // their values times their areas at rest.
+  std::vector<Eigen::Vector4f> sums_;
+  std::vector<double> areas_;           // likewise, of the triangles at rest, m^2
+  std::vector<char> excluded_;          // likewise
+  std::vector<double> contact_forces_;  // likewise, N
   std::vector<float> positions_;
   std::vector<VertexColour> colours_;
   Eigen::Vector3f low_ = Eigen::Vector3f::Zero(), high_ = Eigen::Vector3f::Zero();

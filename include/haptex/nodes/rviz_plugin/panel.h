@@ -58,7 +58,7 @@ class Panel : public rviz::Panel {
   void addArrays();
 
   void subscribe();
-  void receive(const diagnostic_msgs::DiagnosticArray& diagnostics);
+  void receive(const diagnostic_msgs::DiagnosticArray& diagnostics, const std::string& sender);
   void receive(const haptex::ClothQuality& quality);
   void refresh();
   void showStatus();

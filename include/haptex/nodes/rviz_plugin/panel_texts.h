@@ -16,7 +16,9 @@ namespace haptex::nodes {
 std::string statusOfNamespace(const std::string& name, const std::string& space);
 
 /// Texts are cut off after kLongest characters. @param stamp of the array, s
-Diagnosis diagnosisOf(const diagnostic_msgs::DiagnosticStatus& status, double stamp);
+/// @param sender the node that sent it, for example "/haptex/force_renderer"
+Diagnosis diagnosisOf(const diagnostic_msgs::DiagnosticStatus& status, double stamp,
+                      const std::string& sender);
 constexpr std::size_t kLongest = 400;
 
 /// What runs and the errors to expect, in lines.

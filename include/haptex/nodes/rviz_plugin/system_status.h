@@ -19,6 +19,7 @@ struct Diagnosis {
   std::string message;
   std::map<std::string, std::string> values;
   double stamp = 0.0;  ///< s, when the node said so, by its clock: messages may arrive together
+  std::string replayed_by = "";  ///< who sent it, if not the node that it is of: rosbag
 };
 
 /// exoskeleton/operating_state.
@@ -44,7 +45,7 @@ struct Figure {
 
 /// Collects what nodes say of themselves, and says in words why a finger feels no force, or that
 /// all is well: of several reasons the one to be mended first. Knows neither ROS nor Qt and reads
-/// no clock: times are of a steady one.
+/// no clock: times are of a steady one. What a bag replays is told apart from what nodes say.
 class SystemStatus {
  public:
   using Time = base::Time;
@@ -71,8 +72,10 @@ class SystemStatus {
     double missed_lately = 0.0;  // periods, since the one before
   };
 
+  void forgetReplay();
   bool isLive(const std::string& name, Time now) const;
   const Heard* find(const std::string& name) const;
+  std::optional<StatusLine> replay(Time now) const;
   std::optional<StatusLine> clothTrouble(Time now) const;
   std::optional<StatusLine> deviceTrouble(Time now) const;
   std::optional<StatusLine> stateTrouble() const;
