@@ -180,7 +180,7 @@ double simulatedDropOverReach(const Cantilever& cantilever) {
   return -tip.z() / tip.y();
 }
 
-double simulatedTwistTorque(const material::Fabric& fabric, Elasticity elasticity,
+double simulatedTwistTorque(const material::Fabric& fabric, cloth::Elasticity elasticity,
                             mesh::Triangulation triangulation, int cells, double angle) {
   constexpr double kLength = 0.2, kWidth = 0.05;  // m
   cloth::ModelledEffects effects;

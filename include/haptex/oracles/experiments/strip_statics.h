@@ -6,6 +6,7 @@
 #include "haptex/cloth/forces/bending/bending.h"
 #include "haptex/cloth/forces/modelled_effects.h"
 #include "haptex/kes/virtual_test.h"
+#include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::oracles {
