@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/kes/equilibrium.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/exact/elastica.h"
 #include "haptex/oracles/experiments/strip_statics.h"
@@ -27,34 +26,6 @@ using Eigen::Vector3d;
 constexpr std::array<std::pair<Elasticity, const char*>, 2> kElements = {
     {{Elasticity::kGreenLagrange, "green_lagrange"}, {Elasticity::kBilinear, "bilinear"}}};
 
-/// N.m
-double twistTorque(const material::Fabric& fabric, Elasticity elasticity,
-                   mesh::Triangulation triangulation, int cells) {
-  constexpr double kLength = 0.2, kWidth = 0.05, kAngle = 0.5 * M_PI;
-  cloth::ModelledEffects effects;
-  effects.elasticity = elasticity;
-  effects.bending = true;
-  cloth::Cloth cloth(mesh::makeRectangle(kWidth, kLength, cells / 4, cells, triangulation), fabric,
-                     effects);
-  cloth::ClothState state = cloth.initialState();
-  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    const Eigen::Vector2d& rest = cloth.mesh().rest_coordinates[i];
-    const double angle = kAngle * rest.y() / kLength, radius = rest.x() - 0.5 * kWidth;
-    state.positions[i] = {radius * std::cos(angle), radius * std::sin(angle), rest.y()};
-    if (std::min(rest.y(), kLength - rest.y()) > 1e-9) continue;
-    cloth::AttachmentPath path;
-    path.start = state.positions[i];
-    cloth.attach(static_cast<int>(i), path);
-  }
-  kes::Equilibrium equilibrium(cloth);
-  equilibrium.settle(cloth, state, 0.02);
-  double torque = 0.0;
-  for (int particle : sideParticles(cloth.mesh(), mesh::Side::kTop)) {
-    torque -= state.positions[particle].cross(equilibrium.forces()[particle]).z();
-  }
-  return torque;
-}
-
 void printTwist(const material::Fabric& wool) {
   for (const auto& [elasticity, name] : kElements) {
     for (const auto& [triangulation, cut] :
@@ -63,7 +34,8 @@ void printTwist(const material::Fabric& wool) {
       for (int cells : {16, 32, 64}) {
         bench::printLine(
             std::string("locking/twist/") + name + "/" + cut + "/" + std::to_string(cells),
-            1e3 * twistTorque(wool, elasticity, triangulation, cells), "mN.m");
+            1e3 * oracles::simulatedTwistTorque(wool, elasticity, triangulation, cells, 0.5 * M_PI),
+            "mN.m");
       }
     }
   }
@@ -72,8 +44,14 @@ void printTwist(const material::Fabric& wool) {
 void printOblique() {
   constexpr double kGamma = 10.0;
   const double exact = oracles::exactDropOverReach(kGamma);
-  // Moduli as those of 16 kN/m and 300 N/m to a rigidity of 6.6e-6 N.m and a length of 0.2 m.
-  for (const auto& [modulus, threads] : {std::pair(9.7e4, "stiff"), std::pair(1.8e3, "soft")}) {
+  struct Threads {
+    const char* name;
+    double modulus, warp_over_weft;
+  };
+  // As those of 16 kN/m and 300 N/m to a rigidity of 6.6e-6 N.m and a length of 0.2 m; and as
+  // those of wool, 366 and 16448 N/m.
+  for (const auto& [threads, modulus, warp_over_weft] :
+       {Threads{"stiff", 9.7e4, 1.0}, Threads{"soft", 1.8e3, 1.0}, Threads{"wool", 2.2e3, 45.0}}) {
     for (const auto& [elasticity, name] : kElements) {
       for (int cells : {16, 32}) {
         double sum = 0.0, largest = 0.0;
@@ -85,6 +63,7 @@ void printOblique() {
           cantilever.seed = seed;
           cantilever.elasticity = elasticity;
           cantilever.modulus = modulus;
+          cantilever.warp_over_weft = warp_over_weft;
           const double less = 1.0 - oracles::simulatedDropOverReach(cantilever) / exact;
           sum += less;
           largest = std::max(largest, std::abs(less));

@@ -159,6 +159,8 @@ double simulatedDropOverReach(const Cantilever& cantilever) {
       makeStrip(cantilever.mesh, cantilever.along, cantilever.cells, kRows, cell, cantilever.seed);
   strip.mesh.panels = {{0, cantilever.grain}};
   material::Fabric fabric = material::linearFabric(cantilever.modulus);
+  fabric.warp.elastic =
+      material::StrainStressCurve::linear(cantilever.warp_over_weft * cantilever.modulus);
   const double rigidity = fabric.areal_density * kGravity * std::pow(kLength, 3) / cantilever.gamma;
   fabric.bending = {cantilever.across * rigidity, cantilever.across * rigidity};
   (cantilever.along == kes::Direction::kWeft ? fabric.bending->weft : fabric.bending->warp) =
@@ -176,6 +178,33 @@ double simulatedDropOverReach(const Cantilever& cantilever) {
   kes::Equilibrium(cloth).settle(cloth, state, kFirstStep);
   const Vector3d tip = meanOf(strip, state, strip.cells);
   return -tip.z() / tip.y();
+}
+
+double simulatedTwistTorque(const material::Fabric& fabric, cloth::Elasticity elasticity,
+                            mesh::Triangulation triangulation, int cells, double angle) {
+  constexpr double kLength = 0.2, kWidth = 0.05;  // m
+  cloth::ModelledEffects effects;
+  effects.elasticity = elasticity;
+  effects.bending = true;
+  cloth::Cloth cloth(mesh::makeRectangle(kWidth, kLength, cells / 4, cells, triangulation), fabric,
+                     effects);
+  cloth::ClothState state = cloth.initialState();
+  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
+    const Eigen::Vector2d& rest = cloth.mesh().rest_coordinates[i];
+    const double turn = angle * rest.y() / kLength, radius = rest.x() - 0.5 * kWidth;
+    state.positions[i] = {radius * std::cos(turn), radius * std::sin(turn), rest.y()};
+    if (std::min(rest.y(), kLength - rest.y()) > 1e-9) continue;
+    cloth::AttachmentPath path;
+    path.start = state.positions[i];
+    cloth.attach(static_cast<int>(i), path);
+  }
+  kes::Equilibrium equilibrium(cloth);
+  equilibrium.settle(cloth, state, kFirstStep);
+  double torque = 0.0;
+  for (int particle : sideParticles(cloth.mesh(), mesh::Side::kTop)) {
+    torque -= state.positions[particle].cross(equilibrium.forces()[particle]).z();
+  }
+  return torque;
 }
 
 double simulatedLateralBucklingLoad(StripMesh mesh, int cells) {

@@ -1,6 +1,7 @@
 // What tells cells of two triangles from the membrane; what both promise is in test_elasticity.cpp.
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <functional>
@@ -121,50 +122,102 @@ TEST(BilinearCells, UnderAffineDeformationForcesAreThoseOfTriangles) {
   }
 }
 
-// Gauss' two points along each side are exact for the squares of derivatives that are linear.
-TEST(BilinearCells, MeanStrainIsThatOfTheBilinearMap) {
-  const mesh::ClothMesh mesh = mesh::makeRectangle(0.02, 0.03, 1, 1, Triangulation::kOneWay);
-  const BilinearCell cell = restCell(pairTriangles(mesh, 0).pairs.front());
-  constexpr double kIn = 4.0, kOut = 9.0;  // 1/m
-  const auto place = [&](const Vector2d& x) {
-    return Vector3d(x.x() + kIn * x.x() * x.y(), x.y(), kOut * x.x() * x.y());
-  };
+const Eigen::Vector3d kModuli(400.0, 16000.0, 100.0);  // N/m
+
+CellStrain strainOf(const BilinearCell& cell, const std::function<Vector3d(const Vector2d&)>& place,
+                    const mesh::ClothMesh& mesh) {
   CellStrain squares;
-  int e = 0;
-  for (const auto& [i, j] : {std::pair(1, 0), {2, 0}, {2, 1}, {3, 0}, {3, 1}, {3, 2}}) {
-    squares[e++] = (place(mesh.rest_coordinates[cell.particles[i]]) -
-                    place(mesh.rest_coordinates[cell.particles[j]]))
-                       .squaredNorm();
+  for (int e = 0; e < 6; ++e) {
+    const auto [i, j] = kCellDistances[e];
+    squares[e] = (place(mesh.rest_coordinates[cell.particles[i]]) -
+                  place(mesh.rest_coordinates[cell.particles[j]]))
+                     .squaredNorm();
   }
-  const CellStrain strain = cell.by_squares * (squares - cell.rest_squares);
-  Vector3d exact = Vector3d::Zero();
-  for (const double s : {0.5 - std::sqrt(1.0 / 12.0), 0.5 + std::sqrt(1.0 / 12.0)}) {
-    for (const double t : {0.5 - std::sqrt(1.0 / 12.0), 0.5 + std::sqrt(1.0 / 12.0)}) {
-      const double x = 0.02 * s, y = 0.03 * t;
-      const Vector3d weft(1.0 + kIn * y, 0.0, kOut * y), warp(kIn * x, 1.0, kOut * x);
-      exact += 0.25 * Vector3d(0.5 * (weft.squaredNorm() - 1.0), 0.5 * (warp.squaredNorm() - 1.0),
-                               weft.dot(warp));
-    }
-  }
-  for (int m = 0; m < 3; ++m) EXPECT_NEAR(strain[m], exact[m], 1e-14);
+  return cell.by_squares * (squares - cell.rest_squares);
 }
 
-TEST(BilinearCells, ResistWhatTheirMeanStrainDoesNotSee) {
-  // The hourglass of a cell in its plane: in it the derivatives' mean is that of rest.
-  const Cloth cloth =
-      clothOf(mesh::makeRectangle(0.02, 0.02, 1, 1, Triangulation::kOneWay), Elasticity::kBilinear);
-  for (const Vector3d& direction : {Vector3d(1, 0, 0), Vector3d(0, 1, 0)}) {
-    const ClothState state = placed(cloth, [&](const Vector2d& rest) -> Vector3d {
-      const double sign = (rest.x() > 0.01) == (rest.y() > 0.01) ? 1.0 : -1.0;
-      return Vector3d(rest.x(), rest.y(), 0.0) + 1e-4 * sign * direction;
-    });
-    EXPECT_GT(cloth.potentialEnergy(state), 0.0);
-    const ClothState reverse = placed(cloth, [&](const Vector2d& rest) -> Vector3d {
-      const double sign = (rest.x() > 0.01) == (rest.y() > 0.01) ? 1.0 : -1.0;
-      return Vector3d(rest.x(), rest.y(), 0.0) - 1e-4 * sign * direction;
-    });
-    EXPECT_GT(cloth.potentialEnergy(reverse), 0.0);
+BilinearCell onlyCell(const mesh::ClothMesh& mesh) {
+  return restCell(pairTriangles(mesh, 0).pairs.front(), kModuli);
+}
+
+// The bilinear map's strains of weft and warp at Gauss' points, and the mean of its shear.
+TEST(BilinearCells, StrainsAlongThreadsAreThoseOfTheBilinearMapAtTwoPoints) {
+  const mesh::ClothMesh mesh = mesh::makeRectangle(0.02, 0.03, 1, 1, Triangulation::kOneWay);
+  constexpr double kIn = 4.0, kOut = 9.0;  // 1/m
+  const CellStrain strain = strainOf(
+      onlyCell(mesh),
+      [&](const Vector2d& x) {
+        return Vector3d(x.x() + kIn * x.x() * x.y(), x.y(), kOut * x.x() * x.y());
+      },
+      mesh);
+  const auto weft = [&](double y) { return Vector3d(1.0 + kIn * y, 0.0, kOut * y); };
+  const auto warp = [&](double x) { return Vector3d(kIn * x, 1.0, kOut * x); };
+  const double low = 0.5 - std::sqrt(1.0 / 12.0), high = 0.5 + std::sqrt(1.0 / 12.0);
+  const auto green = [](const Vector3d& of) { return 0.5 * (of.squaredNorm() - 1.0); };
+  EXPECT_NEAR(std::min(strain[0], strain[3]), green(weft(0.03 * low)), 1e-14);
+  EXPECT_NEAR(std::max(strain[0], strain[3]), green(weft(0.03 * high)), 1e-14);
+  EXPECT_NEAR(std::min(strain[1], strain[4]), green(warp(0.02 * low)), 1e-14);
+  EXPECT_NEAR(std::max(strain[1], strain[4]), green(warp(0.02 * high)), 1e-14);
+  // The shear is bilinear in x and y: its mean is that of Gauss' four points.
+  double shear = 0.0;
+  for (const double s : {low, high}) {
+    for (const double t : {low, high}) shear += 0.25 * weft(0.03 * t).dot(warp(0.02 * s));
   }
+  EXPECT_NEAR(strain[2], shear, 1e-14);
+  EXPECT_NEAR(strain[5], shear, 1e-14);
+}
+
+// In its plane a strip of one cell of linear threads at any angle, bent about its middle, stores
+// what Young's modulus along its sides does under a strain that varies from -e to e.
+TEST(BilinearCells, BentInTheirPlaneTheyResistByTheModulusAlongTheirSides) {
+  constexpr double kSide = 0.02, kBend = 1e-7;
+  for (const double grain : {0.0, 0.3, 0.7, 1.2}) {
+    mesh::ClothMesh mesh = mesh::makeRectangle(kSide, kSide, 1, 1, Triangulation::kOneWay);
+    mesh.panels = {{0, grain}};
+    const TrianglePair pair = pairTriangles(mesh, 0).pairs.front();
+    const CellStrain strain = strainOf(
+        restCell(pair, kModuli),
+        [&](const Vector2d& x) {
+          const double sign = (x.x() > 0.5 * kSide) == (x.y() > 0.5 * kSide) ? 1.0 : -1.0;
+          return Vector3d(x.x() + 0.5 * kBend * kSide * sign, x.y(), 0.0);
+        },
+        mesh);
+    // The top is pulled by the strain kBend, and the bottom pressed.
+    const double along = std::cos(grain), across = std::sin(grain);
+    const double modulus =
+        1.0 / (std::pow(along, 4) / kModuli[0] + std::pow(across, 4) / kModuli[1] +
+               std::pow(along * across, 2) / kModuli[2]);
+    double density = 0.0;
+    for (int m = 0; m < 6; ++m) density += 0.25 * kModuli[m % 3] * strain[m] * strain[m];
+    EXPECT_NEAR(density, 0.5 * modulus * kBend * kBend / 3.0, 1e-5 * density) << grain;
+  }
+}
+
+TEST(BilinearCells, PullsAreProjectedToTheNearestSemidefiniteMatrix) {
+  const auto matrixOf = [](const CellStrain& pulls) {
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
+    for (int e = 0; e < 6; ++e) {
+      const auto [i, j] = kCellDistances[e];
+      matrix(i, j) = matrix(j, i) = -pulls[e];
+      matrix(i, i) += pulls[e];
+      matrix(j, j) += pulls[e];
+    }
+    return matrix;
+  };
+  int changed = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    CellStrain pulls;
+    for (int e = 0; e < 6; ++e) pulls[e] = 0.4 + std::sin(1.0 + 7.3 * trial + 2.1 * e * e);
+    const Eigen::Matrix4d before = matrixOf(pulls), after = matrixOf(projectPulls(pulls));
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(before);
+    const Eigen::Matrix4d nearest = solver.eigenvectors() *
+                                    solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
+                                    solver.eigenvectors().transpose();
+    EXPECT_LT((after - nearest).norm(), 1e-6);  // of the eigenvalues' closed form
+    if ((after - before).norm() > 1e-6) ++changed;
+  }
+  EXPECT_GT(changed, 10);
+  EXPECT_LT(changed, 90);
 }
 
 TEST(BilinearCells, RefuseContractionAndHysteresisByName) {

@@ -6,6 +6,7 @@
 #include "haptex/cloth/forces/bending/bending.h"
 #include "haptex/cloth/forces/modelled_effects.h"
 #include "haptex/kes/virtual_test.h"
+#include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::oracles {
@@ -38,6 +39,7 @@ struct Cantilever {
   cloth::Elasticity elasticity = cloth::Elasticity::kGreenLagrange;
   /// N/m, of a strip of 0.1 m and 0.1 N/m^2: its threads stretch by 3e-5 unless it is less.
   double modulus = 300.0;
+  double warp_over_weft = 1.0;  ///< of the moduli; `modulus` is the weft's, and twice the shear's
 };
 
 /// Drop of the tip over its horizontal distance from the clamp, mean of the tip's particles; exact:
@@ -68,6 +70,13 @@ double simulatedRestCurvature(StripMesh mesh, kes::Direction along, cloth::Bendi
 /// @throws std::runtime_error if the equilibrium is not reached
 double simulatedResidualCurvature(StripMesh mesh, kes::Direction along, cloth::BendingModel model,
                                   double held);
+
+/// A strip of 50 x 200 mm without weight, warp along it, whose ends are held at the distance of its
+/// length and turned against each other: the torque (N.m) about its axis.
+/// @param cells along the strip, >= 4; a quarter of them across
+/// @throws std::runtime_error if the equilibrium is not reached
+double simulatedTwistTorque(const material::Fabric& fabric, cloth::Elasticity elasticity,
+                            mesh::Triangulation triangulation, int cells, double angle);
 
 constexpr double kSlack = 5.0 / 3.0;  ///< length over span of a hanging strip
 
