@@ -30,7 +30,8 @@ struct LatticeSpring {
 /// exist. Sorted by kind.
 /// @param mesh without defects
 /// @throws std::invalid_argument naming a triangle if the mesh does not consist of rectangles along
-///   weft and warp of two triangles each, to 1e-9 of their sides; or if it has seams that are merged
+///   weft and warp of two triangles each, to 1e-9 of their sides; or if it has seams that are
+///   merged
 std::vector<LatticeSpring> findLatticeSprings(const mesh::ClothMesh& mesh, bool bend);
 
 }  // namespace haptex::cloth
