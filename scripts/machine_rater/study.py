@@ -215,7 +215,9 @@ def draw_picture(path, fabrics, judged, files):
     import matplotlib
     matplotlib.use('Agg')
     from matplotlib import pyplot
+    from haptex_evaluation.plots import label_points
     picture, panels = pyplot.subplots(3, 3, figsize=(11, 10), constrained_layout=True)
+    points = []
     for panel, (name, (unit, same)) in zip(panels.flat, PROPERTIES.items()):
         known = [fabric for fabric in fabrics if name in judged[fabric] and name in files[fabric]]
         file = [files[fabric][name] for fabric in known]
@@ -223,14 +225,17 @@ def draw_picture(path, fabrics, judged, files):
         panel.plot(file, estimates, 'o', ms=4, color='#1f6fb4')
         if max(file) > 5.0 * min(file):
             panel.set(xscale='log', yscale='log')
-        for fabric, x, y in zip(known, file, estimates):
-            panel.annotate(fabric.replace('_', ' '), (x, y), fontsize=6, xytext=(3, 2),
-                           textcoords='offset points')
+        else:
+            panel.locator_params(axis='x', nbins=5)
+        points.append([(fabric.replace('_', ' '), x, y) for fabric, x, y in zip(known, file, estimates)])
         if same:
             ends = np.array([min(file), max(file)])
             panel.plot(ends, ends, color='#555', lw=0.8)
         panel.set(title=name.replace('_', ' '), xlabel='fabric file', ylabel=f'judged, {unit}')
-        panel.margins(x=0.2)
+        panel.margins(x=0.2, y=0.15)
+    picture.canvas.draw()  # gives the panels their places
+    for panel, named in zip(panels.flat, points):
+        label_points(panel, named, 7)
     picture.savefig(path, dpi=110)
 
 

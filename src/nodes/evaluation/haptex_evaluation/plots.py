@@ -11,10 +11,11 @@ from .protocol import REAL, VIRTUAL  # noqa: E402
 
 LOOKS = {VIRTUAL: ('o', 'tab:blue'), REAL: ('s', 'tab:orange')}
 WIDE_RANGE = 20.0  # of KES values: a logarithmic axis
-FONT, LETTER, LINE, GAP = 8, 4.6, 9.0, 6.0  # points: size, width and height of a letter, from a point
+FONT = 8  # points
+LETTER, LINE, GAP = 0.58, 1.1, 0.75  # of the font: width and height of a letter, from a point
 
 
-def _label(axes, points):
+def label_points(axes, points, font=FONT):
     """Names points, once the axes have their limits: to the left of those on the right, and above
     labels that would be in the way. @param points (text, x, y)"""
     scale = 72.0 / axes.figure.dpi  # of pixels in points
@@ -22,15 +23,15 @@ def _label(axes, points):
     taken = []
     for text, x, y in sorted(points, key=lambda point: point[2]):
         across, up = axes.transData.transform((x, y)) * scale
-        width = LETTER * len(text)
-        begin = across - width - GAP if across > middle else across + GAP
-        base = up - 0.4 * LINE
-        while any(begin < end and begin + width > start and abs(base - other) < LINE
+        width = LETTER * font * len(text)
+        begin = across - width - GAP * font if across > middle else across + GAP * font
+        base = up - 0.4 * LINE * font
+        while any(begin < end and begin + width > start and abs(base - other) < LINE * font
                   for start, end, other in taken):
             base += 1.0
         taken.append((begin, begin + width, base))
         axes.annotate(text, (x, y), xytext=(begin - across, base - up), textcoords='offset points',
-                      fontsize=FONT)
+                      fontsize=font)
 
 
 def _title(group, between):
@@ -115,8 +116,8 @@ def plot_group(group, folder):
     raters = f'{len(group.raters)} rater' + ('s' if len(group.raters) > 1 else '')
     figure.suptitle(f'{group.property.replace("_", " ").capitalize()}{picture}: {raters}{agreement}')
     figure.tight_layout()
-    _label(axes[0][0], _highest(group))
+    label_points(axes[0][0], _highest(group))
     if has_real:
-        _label(axes[0][1], _both_kinds(group))
+        label_points(axes[0][1], _both_kinds(group))
     figure.savefig(folder / f'{group.property}{"" if group.with_picture else "_hidden"}.png', dpi=110)
     plt.close(figure)
