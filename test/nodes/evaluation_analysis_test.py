@@ -66,7 +66,7 @@ class KesValues(unittest.TestCase):
 
     def test_values_of_all_properties_but_those_that_a_file_lacks(self):
         self.assertEqual(set(values_of('denim').properties), set(PROPERTIES))
-        self.assertEqual(set(PROPERTIES) - set(values_of('acrylic_knit').properties), {'roughness'})
+        self.assertEqual(set(PROPERTIES) - set(values_of('linear').properties), {'roughness', 'compressibility'})
 
     def test_the_drape_is_the_bending_length(self):
         drape = values_of('denim').properties['drape']
@@ -224,12 +224,12 @@ class Analysis(Folder):
     def test_says_of_which_fabrics_there_is_no_kes_value(self):
         def result(fabric, rating):
             return Result('P1', 1, 1, 'roughness', VIRTUAL, fabric, '100', 1, rating, 1.0, 2.0, True, '')
-        values = {name: values_of(name) for name in ('wool', 'acrylic_knit')}
-        group = analysis.make_group('roughness', True, [result('wool', 1.0), result('acrylic_knit', 2.0)],
+        values = {name: values_of(name) for name in ('wool', 'linear')}
+        group = analysis.make_group('roughness', True, [result('wool', 1.0), result('linear', 2.0)],
                                     values)
         self.assertEqual(group.kes, [None, values['wool'].properties['roughness']])
         self.assertIsNone(group.correlations[0].rho)
-        self.assertIn('roughness: the files of acrylic_knit have no value for it.',
+        self.assertIn('roughness: the files of linear have no value for it.',
                       analysis.remarks([group]))
 
     def test_ratings_with_and_without_the_picture_are_apart(self):
