@@ -24,10 +24,10 @@ RECORDING = 3.0  # s
 
 # What stands for something of the reader's own.
 EXAMPLES = {'/path/to/scene.yaml': str(ROOT / 'config/scenes/wool_in_wind.yaml'), 'NAME': 'denim',
-                'CSV': str(ROOT / 'config/readings/wool_readings.csv'),
-                'PATTERN.json': str(ROOT / 'test/garment/patterns/shirt_mean_specification.json'),
-                'GARMENT.yaml': str(ROOT / 'config/garments/fitted_shirt.yaml'),
-                'BODY.yaml': str(ROOT / 'config/bodies/woman.yaml')}
+            'CSV': str(ROOT / 'config/readings/wool_readings.csv'),
+            'PATTERN.json': str(ROOT / 'test/garment/patterns/shirt_mean_specification.json'),
+            'GARMENT.yaml': str(ROOT / 'config/garments/fitted_shirt.yaml'),
+            'BODY.yaml': str(ROOT / 'config/bodies/woman.yaml')}
 
 CLOTH = 'roslaunch haptex cloth.launch quality:=balanced'
 TOUCH = 'roslaunch haptex haptex.launch path:=demo'
@@ -52,7 +52,7 @@ ELSEWHERE = {
     'scripts/validate contact': 'test_oracles makes the same checks',
     'scripts/validate cloth': 'test_oracles makes the same checks',
     'scripts/validate exoskeleton': 'test_oracles makes the same checks',
-    **{f'scripts/bench {name}': MEASURES for name in ('cloth_step', 'folded', 'loop', 'stability')},
+    **{f'scripts/bench {name}': MEASURES for name in ('cloth_step', 'folded', 'locking', 'loop', 'stability')},
 }
 
 
