@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <sstream>
-#include <stdexcept>
 #include <vector>
 
+#include "haptex/base/require.h"
 #include "haptex/tactile/yarn_irregularity.h"
 
 namespace haptex::tactile {
@@ -14,16 +12,11 @@ namespace {
 
 using material::Knit;
 
-constexpr double kSampleSpacing = 1e-4;  // m, aimed at
-constexpr int kMinSamples = 8;           // of a loop: its shape needs them
-constexpr int kMaxTileSamples = 128;     // along a side
+constexpr int kMinSamples = 8;  // of a loop: its shape needs them
 constexpr double kYarnPerWale = 3.8;
 
 void require(bool holds, const char* name, double value, const char* allowed) {
-  if (holds) return;
-  std::ostringstream message;
-  message << "the " << name << " of the knit is " << value << ": allowed are " << allowed;
-  throw std::invalid_argument(message.str());
+  if (!holds) base::refuse("the ", name, " of the knit is ", value, ": allowed are ", allowed);
 }
 
 void requireSound(const Knit& knit) {
@@ -56,8 +49,8 @@ struct Side {
 
 Side sideOf(double spacing) {
   const int per_loop =
-      std::max(kMinSamples, static_cast<int>(std::lround(spacing / kSampleSpacing)));
-  return {kMaxTileSamples / per_loop, per_loop};
+      std::max(kMinSamples, static_cast<int>(std::lround(spacing / kReliefSpacing)));
+  return {kReliefSamples / per_loop, per_loop};
 }
 
 double squaredCosine(double angle) {
@@ -99,18 +92,10 @@ HeightField knitRelief(const Knit& knit) {
     loops.push_back(yarnNoise(numbers, wales.loops, kYarnPerWale * wales.loops * knit.wale));
     for (double& loop : loops.back()) loop = variation(loop, knit.irregularity);
   }
-  HeightField field;
-  field.columns = wales.samples();
-  field.rows = courses.samples();
-  field.weft_spacing = knit.wale / wales.per_loop;
-  field.warp_spacing = knit.course / courses.per_loop;
-  field.heights.reserve(static_cast<std::size_t>(field.columns) * field.rows);
-  for (int row = 0; row < field.rows; ++row) {
-    for (int column = 0; column < field.columns; ++column) {
-      field.heights.push_back(highestLeg(loops, wales.at(column), courses.at(row)));
-    }
-  }
-  return field;
+  return makeField(wales.samples(), courses.samples(), knit.wale / wales.per_loop,
+                   knit.course / courses.per_loop, [&](int column, int row) {
+                     return highestLeg(loops, wales.at(column), courses.at(row));
+                   });
 }
 
 AmplitudeMap knitUnevenness(const Knit& knit) {

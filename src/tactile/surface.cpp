@@ -17,7 +17,6 @@
 namespace haptex::tactile {
 namespace {
 
-constexpr int kMaxPieceSamples = 128;        // along a side, as a weave's relief
 constexpr double kShortestMap = 1e-2;        // m, side of a field that shows a large scale
 constexpr double kCoarsestSpacing = 2.5e-4;  // m, for 4 x 4 samples in a cell of the map
 constexpr double kFlat = 1e-12;  // of the farthest height: what rounding leaves of it is less
@@ -91,8 +90,8 @@ class PowerSum {
 
 /// The k-space of a field from a file, no larger than that of a weave.
 KSpace kSpaceOf(const HeightField& field, bool periodic) {
-  const int columns = std::min(field.columns, kMaxPieceSamples);
-  const int rows = std::min(field.rows, kMaxPieceSamples);
+  const int columns = std::min(field.columns, kReliefSamples);
+  const int rows = std::min(field.rows, kReliefSamples);
   if (periodic && columns == field.columns && rows == field.rows) return kSpaceOfPeriodic(field);
   PowerSum sum(columns, rows, field.weft_spacing, field.warp_spacing);
   for (const int row : beginsOfPieces(field.rows, rows)) {

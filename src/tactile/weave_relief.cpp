@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "haptex/base/require.h"
 #include "haptex/tactile/yarn_irregularity.h"
 
 namespace haptex::tactile {
@@ -16,14 +15,10 @@ namespace {
 using material::Weave;
 using material::WeaveKind;
 
-constexpr double kSampleSpacing = 1e-4;  // m, aimed at
-constexpr int kMinSamples = 4;           // across a yarn: its shape needs them
-constexpr int kMaxTileSamples = 128;     // along a side
+constexpr int kMinSamples = 4;  // across a yarn: its shape needs them
 
 [[noreturn]] void refuse(const char* name, double value, const char* allowed) {
-  std::ostringstream message;
-  message << "the " << name << " of the weave is " << value << ": allowed are " << allowed;
-  throw std::invalid_argument(message.str());
+  base::refuse("the ", name, " of the weave is ", value, ": allowed are ", allowed);
 }
 
 void requireSound(const Weave& weave) {
@@ -101,9 +96,9 @@ struct Side {
 
 Side sideAcross(const material::Yarns& yarns, int repeat) {
   Side side;
-  side.per_yarn = std::clamp(static_cast<int>(std::lround(yarns.spacing / kSampleSpacing)),
-                             kMinSamples, kMaxTileSamples / repeat);
-  side.yarns = repeat * (kMaxTileSamples / (repeat * side.per_yarn));
+  side.per_yarn = std::clamp(static_cast<int>(std::lround(yarns.spacing / kReliefSpacing)),
+                             kMinSamples, kReliefSamples / repeat);
+  side.yarns = repeat * (kReliefSamples / (repeat * side.per_yarn));
   side.yarn_spacing = yarns.spacing;
   for (int i = 0; i < side.per_yarn; ++i) {
     const double cosine = std::cos(M_PI * i / side.per_yarn);
@@ -155,19 +150,12 @@ HeightField weaveRelief(const material::Weave& asked) {
   const std::vector<double> weft =
       crowns(numbers, along_warp, along_weft, weave.weft.height, weave.irregularity,
              [&](int yarn, int crossing) { return !warpIsOnTop(weave.kind, crossing, yarn); });
-  HeightField field;
-  field.columns = along_weft.samples();
-  field.rows = along_warp.samples();
-  field.weft_spacing = along_weft.yarn_spacing / along_weft.per_yarn;
-  field.warp_spacing = along_warp.yarn_spacing / along_warp.per_yarn;
-  field.heights.reserve(static_cast<std::size_t>(field.columns) * field.rows);
-  for (int row = 0; row < field.rows; ++row) {
-    for (int column = 0; column < field.columns; ++column) {
-      field.heights.push_back(yarnHeight(warp, along_weft, column, along_warp, row) +
-                              yarnHeight(weft, along_warp, row, along_weft, column));
-    }
-  }
-  return field;
+  return makeField(along_weft.samples(), along_warp.samples(),
+                   along_weft.yarn_spacing / along_weft.per_yarn,
+                   along_warp.yarn_spacing / along_warp.per_yarn, [&](int column, int row) {
+                     return yarnHeight(warp, along_weft, column, along_warp, row) +
+                            yarnHeight(weft, along_warp, row, along_weft, column);
+                   });
 }
 
 AmplitudeMap weaveUnevenness(const material::Weave& asked) {
