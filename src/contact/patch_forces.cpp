@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "haptex/cloth/forces/aerodynamics.h"
@@ -48,7 +49,13 @@ std::vector<T> firstOf(const std::vector<T>& of_triangles, std::ptrdiff_t count)
   return {of_triangles.begin(), of_triangles.begin() + count};
 }
 
+/// The elements that are refined; unless others surround them, all of the cut as it is.
 Part refinedPart(const RefinedCut& cut) {
+  if (!cut.isSurrounded()) {
+    Part part{cut.mesh, std::vector<int>(cut.mesh.rest_coordinates.size())};
+    std::iota(part.particles.begin(), part.particles.end(), 0);
+    return part;
+  }
   const auto count = static_cast<std::ptrdiff_t>(cut.refined_count) << (2 * cut.refinement);
   mesh::ClothMesh mesh;
   mesh.panels = cut.mesh.panels;
