@@ -45,6 +45,14 @@ CommandLine readCommandLine(const std::vector<std::string>& arguments,
   return line;
 }
 
+void requireTwoFiles(const CommandLine& line, const char* what) {
+  const std::vector<std::string>& files = line.files;
+  if (files.size() < 2) refuse("two files are needed, the ", what, " and the one to write");
+  if (files.size() > 2) {
+    refuse(files[2], ": two files are allowed, ", files[0], " and ", files[1]);
+  }
+}
+
 int runProgram(const char* usage, std::ostream& err, const std::function<void()>& read,
                const std::function<int()>& work) {
   try {

@@ -33,10 +33,7 @@ struct Request {
 
 Request parse(const std::vector<std::string>& arguments) {
   const base::CommandLine line = base::readCommandLine(arguments, {"--body", "--edge"});
-  if (line.files.size() < 2) base::refuse("two files are needed, the garment and the one to write");
-  if (line.files.size() > 2) {
-    base::refuse(line.files[2], ": two files are allowed, ", line.files[0], " and ", line.files[1]);
-  }
+  base::requireTwoFiles(line, "garment");
   Request request = {line.files[0], line.files[1], line.value("--body")};
   if (request.body.empty()) base::refuse("a body is needed: --body BODY.obj");
   if (line.options.count("--edge") > 0) {

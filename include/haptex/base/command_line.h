@@ -24,6 +24,11 @@ struct CommandLine {
 CommandLine readCommandLine(const std::vector<std::string>& arguments,
                             const std::vector<std::string>& options);
 
+/// For a program that makes one file of another.
+/// @param what the first is, for example "pattern"
+/// @throws std::invalid_argument naming what lacks or is too much, unless there are two files
+void requireTwoFiles(const CommandLine& line, const char* what);
+
 /// A program that first reads its arguments and then works.
 /// @returns its exit status: 2 if `read` throws, which `err` tells with the usage, 1 if `work`
 ///   throws, which `err` tells, otherwise what `work` returns

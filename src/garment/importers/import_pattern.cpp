@@ -29,10 +29,7 @@ struct Request {
 
 Request parse(const std::vector<std::string>& arguments) {
   const base::CommandLine line = base::readCommandLine(arguments, {"--fabric"});
-  if (line.files.size() < 2) base::refuse("two files are needed, the pattern and the one to write");
-  if (line.files.size() > 2) {
-    base::refuse(line.files[2], ": two files are allowed, ", line.files[0], " and ", line.files[1]);
-  }
+  base::requireTwoFiles(line, "pattern");
   const Request request = {line.files[0], line.files[1], line.value("--fabric", "wool")};
   if (request.fabric.empty()) base::refuse("--fabric needs a name");
   return request;
