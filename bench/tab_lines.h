@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <functional>
 #include <limits>
 #include <map>
@@ -20,6 +21,9 @@ inline void printLine(const std::string& name, double value, const char* unit) {
   std::printf("%s\t%.6g\t%s\n", name.c_str(), value, unit);
   std::fflush(stdout);
 }
+
+/// s, that this process has computed.
+inline double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Prints the time per iteration of "<bench>/<case>/<triangles>" in ms, of several repetitions the
 /// shortest: the others were disturbed. Every other quantity is the benchmark's own to print.

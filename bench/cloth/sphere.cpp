@@ -6,7 +6,6 @@
 // Runge-Kutta, particles brought back with Runge-Kutta, and constraints in the implicit step.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <string>
 #include <variant>
 #include <vector>
@@ -65,9 +64,9 @@ Outcome run(const Response& response, double time_step) {
   Outcome outcome;
   double least = energyOf(simulation), seconds = 0.0;
   while (simulation.state().time < kDuration - 0.5 * time_step) {
-    const std::clock_t begin = std::clock();
+    const double begin = bench::processorSeconds();
     const bool accepted = simulation.step();
-    seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    seconds += bench::processorSeconds() - begin;
     const double energy = energyOf(simulation);
     if (!accepted || !(energy < 1.0)) {  // of millijoules
       outcome.blown_up = true;

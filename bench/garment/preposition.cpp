@@ -5,7 +5,6 @@
 #include "haptex/garment/placement/preposition.h"
 
 #include <algorithm>
-#include <ctime>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -42,9 +41,9 @@ void measure(const std::string& garment, const std::string& body_name, double ed
   double shortest = 1e9;
   for (int i = 0; i < 5; ++i) {
     std::vector<garment::PanelMesh> laid = flat;
-    const std::clock_t begin = std::clock();
+    const double begin = bench::processorSeconds();
     benchmark::DoNotOptimize(garment::preposition(pattern, body, laid));
-    shortest = std::min(shortest, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+    shortest = std::min(shortest, bench::processorSeconds() - begin);
   }
   bench::printLine(name, 1e3 * shortest, "ms");
 }

@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <optional>
 #include <string>
 #include <vector>
@@ -87,8 +86,6 @@ void printError(const MovedPinch& motion, const MovedPinch& exact, double rate) 
   bench::printLine(nameOf(motion, "error_rms", rate), error.root_mean_square, "N");
 }
 
-double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
 /// s, mean over the motions of movePinch().
 double timeOfTick(const oracles::HapticLoopSettings& sample) {
   oracles::HapticLoop loop(sample);
@@ -96,9 +93,9 @@ double timeOfTick(const oracles::HapticLoopSettings& sample) {
   double sum = 0.0;
   long ticks = 0, counted = 0;
   oracles::movePinch([&](const Fingertips& fingertips) {
-    const double begin = processorSeconds();
+    const double begin = bench::processorSeconds();
     loop.step(fingertips);
-    const double seconds = processorSeconds() - begin;
+    const double seconds = bench::processorSeconds() - begin;
     if (++ticks > 300 && ticks % period > 2) {
       sum += seconds;
       ++counted;
