@@ -14,6 +14,7 @@
 #include "haptex/base/yaml_reader.h"
 #include "haptex/cloth/forces/lattice_springs.h"
 #include "haptex/mesh/obj_file.h"
+#include "haptex/scene/attachment_values.h"
 #include "haptex/scene/body_values.h"
 #include "haptex/scene/cloth_state_file.h"
 #include "haptex/scene/obstacle_file.h"
@@ -105,41 +106,6 @@ mesh::ClothMesh readMesh(const YamlValue& scene, const OtherSheet& other,
   return mesh::loadObj(resolveFile(scene.at("mesh"), "meshes", ".obj"), groups);
 }
 
-mesh::Side readSide(const YamlValue& value) {
-  const std::string side = value.oneOf({"top", "bottom", "left", "right"});
-  if (side == "top") return mesh::Side::kTop;
-  if (side == "bottom") return mesh::Side::kBottom;
-  return side == "left" ? mesh::Side::kLeft : mesh::Side::kRight;
-}
-
-int readParticle(const YamlValue& value, const mesh::ClothMesh& mesh) {
-  const int particle = value.integer();
-  const int count = static_cast<int>(mesh.rest_coordinates.size());
-  if (particle < 0 || particle >= count) {
-    value.refuse("must be a particle from 0 to " + std::to_string(count - 1));
-  }
-  return particle;
-}
-
-// Ascending, each particle once: sides share their corners.
-std::vector<int> readAttachedParticles(const YamlValue& value, const mesh::ClothMesh& mesh) {
-  std::set<int> attached;
-  for (const YamlValue& item : value.items()) {
-    if (item.isMap()) {
-      item.requireKeys({"particles"});
-      for (const YamlValue& particle : item.at("particles").items()) {
-        attached.insert(readParticle(particle, mesh));
-      }
-    } else {
-      if (!mesh.corner_coordinates.empty())
-        item.refuse("must be {particles: [...]}: the mesh has seams");
-      const std::vector<int> side = mesh::sideParticles(mesh, readSide(item));
-      attached.insert(side.begin(), side.end());
-    }
-  }
-  return std::vector<int>(attached.begin(), attached.end());
-}
-
 /// Lets the scene start from a saved state.
 void startFrom(const YamlValue& value, Scene& scene) {
   const std::string path = resolveFile(value, "states", kStateExtension);
@@ -151,7 +117,12 @@ void startFrom(const YamlValue& value, Scene& scene) {
                         " particles: allowed are " + std::to_string(count) +
                         ", those of the scene's cloth");
   }
+  std::set<int> carried;
+  for (const CarryingFrame& frame : scene.frames) {
+    carried.insert(frame.particles.begin(), frame.particles.end());
+  }
   for (const int particle : scene.attached_particles) {
+    if (carried.count(particle) > 0) continue;
     const Eigen::Vector3d& held = mesh.initial_positions[particle];
     const double way = (state.positions[particle] - held).norm();
     if (way <= kHeldTolerance) continue;
@@ -312,16 +283,19 @@ void readTimeSteps(const YamlValue& value, Scene& scene) {
 
 Scene readScene(const std::string& path, OtherSheet other) {
   const YamlValue file = YamlValue::load(path);
-  file.requireKeys({"fabric", "attach", "model", "time_step"},
-                   {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind",
-                    "integrator", "solver", "obstacles", "penalty", "haptics", "state", "regions"});
+  file.requireKeys(
+      {"fabric", "attach", "model", "time_step"},
+      {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind", "integrator", "solver",
+       "obstacles", "penalty", "haptics", "state", "regions", "frames"});
   Scene scene;
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.any_cells = allowsAnyCells(file);
   mesh::MeshGroups groups;
   if (!scene.any_cells) other.cell_size = 0.0;
   scene.mesh = readMesh(file, other, groups);
-  scene.attached_particles = readAttachedParticles(file.at("attach"), scene.mesh);
+  Attachments attachments = readAttachments(file, scene.mesh);
+  scene.attached_particles = std::move(attachments.particles);
+  scene.frames = std::move(attachments.frames);
   if (file.has("state")) startFrom(file.at("state"), scene);
   const Listed listed = readModel(file);
   requireListedKeys(file, listed);

@@ -52,6 +52,7 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, std::vector<material::Fabric>
       state_(startState()),
       plans_(std::move(plans)),
       initially_attached_(std::move(scene.attached_particles)),
+      frames_(std::move(scene.frames), cloth_.particleCount()),
       time_step_(scene.time_step),
       last_duration_(scene.time_step),
       disturbed_(scene.effects.contacts &&
@@ -114,11 +115,13 @@ bool SimulatedCloth::stepInRealTime(double waited) {
 
 bool SimulatedCloth::run(double duration, int cycles, double waited) {
   last_duration_ = duration;
+  if (asleep_ && frames_.moves(cloth_, state_)) wake();
   if (asleep_) {
     state_.time += duration;
     ++steps_;
     return true;
   }
+  frames_.beginStep(cloth_, state_, duration, excluded_);
   if (!controller_) {
     runSubsteps(duration);
   } else {
@@ -251,6 +254,7 @@ void SimulatedCloth::reset() {
   }
   pushed_ = false;
   attachInitially();
+  frames_.reset();
   state_ = startState();
   if (!start_bodies_.empty()) collision_->setBodies(start_bodies_);
   makeIntegrators();  // the old ones remember their last solutions and factors

@@ -115,9 +115,32 @@ void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
   requireIncluded(indices);
   for (const int particle : indices) cloth_.requireAttachable(particle);
   for (const int particle : indices) {
+    frames_.drop(particle);
     cloth_.attach(particle, {state_.positions[particle], Eigen::Vector3d::Zero(), state_.time, 0});
   }
   wake();
+}
+
+void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles, const std::string& frame,
+                            const Eigen::Isometry3d& pose) {
+  requirePose(frame, pose);
+  attach(particles);
+  frames_.carry(frame, pose, {particles.begin(), particles.end()}, state_);
+}
+
+void SimulatedCloth::moveFrame(std::size_t frame, const Eigen::Isometry3d& pose) {
+  requirePose(frames_.name(frame), pose);
+  frames_.move(frame, pose);
+}
+
+void SimulatedCloth::requirePose(const std::string& frame, const Eigen::Isometry3d& pose) const {
+  const Eigen::Vector3d& place = pose.translation();
+  if (!pose.matrix().allFinite()) {
+    refuse("the pose of frame ", frame, " is not finite: allowed are finite numbers");
+  }
+  if (place.cwiseAbs().maxCoeff() <= kMaxCoordinate) return;
+  refuse("frame ", frame, " is at (", place.x(), ", ", place.y(), ", ", place.z(),
+         ") m: allowed are coordinates from -", kMaxCoordinate, " to ", kMaxCoordinate, " m");
 }
 
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,
@@ -128,6 +151,7 @@ void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,
   requireAllWithin("positions", places, kMaxCoordinate, "m");
   for (const int particle : indices) cloth_.requireAttachable(particle);
   for (std::size_t i = 0; i < places.size(); ++i) {
+    frames_.drop(indices[i]);
     cloth_.attach(indices[i], {places[i], Eigen::Vector3d::Zero(), state_.time, 0});
   }
   wake();
@@ -150,13 +174,17 @@ void SimulatedCloth::move(const std::vector<std::uint32_t>& particles,
                   kMaxCoordinate, "m");
   }
   for (std::size_t i = 0; i < indices.size(); ++i) {
+    frames_.drop(indices[i]);
     cloth_.attach(indices[i], {starts[i], displacement, state_.time, duration});
   }
   wake();
 }
 
 void SimulatedCloth::release(const std::vector<std::uint32_t>& particles) {
-  for (const int particle : requireAttached(particles)) cloth_.release(particle);
+  for (const int particle : requireAttached(particles)) {
+    frames_.drop(particle);
+    cloth_.release(particle);
+  }
   wake();
 }
 

@@ -20,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"UnknownKey", "fabric: silk", "fabric: silk\nwaves: 3",
                 "waves: unknown key, allowed here: fabric, attach, model, time_step, sheet, mesh, "
                 "elasticity, gravity, bending, air, wind, integrator, solver, obstacles, "
-                "penalty, haptics, state, regions"},
+                "penalty, haptics, state, regions, frames"},
         Refusal{"MissingModel", "model: [gravity, viscosity]\n", "",
                 "the key 'model' is missing, required here: fabric, attach, model, time_step"},
         Refusal{"MissingAttach", "attach: [top]\n", "",
@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "solver.iterations: unknown key, allowed here: method, tolerance, "
                 "newton_iterations, error, threads"},
         Refusal{"UnknownAttachKey", "[top]", "[{corner: 1}]",
-                "attach[0].corner: unknown key, allowed here: particles"},
+                "attach[0].corner: unknown key, allowed here: particles, side, from, to, frame"},
         Refusal{"MissingMesh", kSheet, "mesh: ./none.obj\n",
                 "mesh: './none.obj' must be a name in " + testing::TempDir() + "haptex_scene_" +
                     std::to_string(getpid()) +

@@ -51,6 +51,21 @@ TEST(StepPlanAllocation, AdaptiveStepsAllocateNothing) {
   }
 }
 
+TEST(StepPlanAllocation, StepsWithFramesThatMoveAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  SimulatedCloth simulation = plannedSimulation(severalPlans(), true);
+  simulation.attach({0, 1}, "hand", Eigen::Isometry3d::Identity());
+  simulation.step();
+  const long before = allocations;
+  for (int i = 1; i <= 40; ++i) {
+    simulation.moveFrame(0, Eigen::Isometry3d(Eigen::Translation3d(1e-4 * i, 0.0, 0.0)));
+    simulation.step();
+  }
+  EXPECT_EQ(allocations - before, 0);
+}
+
 TEST(StepPlanAllocation, StepsOfAPartAllocateNothing) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer brings its own malloc";

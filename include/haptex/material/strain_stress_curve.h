@@ -102,6 +102,7 @@ class StrainStressCurve {
   /// largest slope) if the curve falls somewhere.
   double minimumSlope() const;
 
+  const std::vector<double>& knots() const { return knots_; }
   /// Outermost knots: outside of them the curve is a straight line.
   double firstKnot() const;
   double lastKnot() const;

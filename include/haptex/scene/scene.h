@@ -13,6 +13,7 @@
 #include "haptex/contact/obstacles/start_outside.h"
 #include "haptex/mesh/mesh.h"
 #include "haptex/mesh/obstacle.h"
+#include "haptex/scene/attachment_values.h"
 
 namespace haptex::scene {
 
@@ -23,6 +24,7 @@ struct Scene {
   mesh::ClothMesh mesh;
   cloth::ModelledEffects effects;
   std::vector<int> attached_particles;  ///< at their initial positions
+  std::vector<CarryingFrame> frames;    ///< that carry some of them
   double time_step = 0.0;               ///< s
   /// Taken in shorter steps where their error asks for them; time_step is the longest then.
   std::optional<cloth::AdaptiveSteps> adaptive_steps;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
@@ -15,6 +16,7 @@
 #include "haptex/contact/obstacles/obstacle_collision.h"
 #include "haptex/material/fabric.h"
 #include "haptex/scene/scene.h"
+#include "haptex/simulation/carrying_frames.h"
 #include "haptex/simulation/quality_controller.h"
 
 namespace haptex::simulation {
@@ -176,6 +178,20 @@ class SimulatedCloth {
   /// @throws std::invalid_argument also if one is not attached
   void release(const std::vector<std::uint32_t>& particles);
 
+  /// Attaches particles to a frame where they are now: they go with it.
+  /// @param frame one that carries others already, or a new one
+  /// @param pose  of the frame in the world
+  /// @throws std::invalid_argument if there is none, one does not exist or is named twice, or the
+  ///   pose is not finite or beyond kMaxCoordinate
+  void attach(const std::vector<std::uint32_t>& particles, const std::string& frame,
+              const Eigen::Isometry3d& pose);
+
+  /// The frame is in this pose at the end of the next step, and stays there. Allocates nothing.
+  /// @param frame < frames().size()
+  /// @throws std::invalid_argument if the pose is not finite or beyond kMaxCoordinate
+  void moveFrame(std::size_t frame, const Eigen::Isometry3d& pose);
+  const CarryingFrames& frames() const { return frames_; }
+
   /// Takes particles out of the computation: they stand still where they are, attached, and what
   /// only they would need is not computed. Obstacles and loads go through them. Those that are
   /// excluded stay so.
@@ -215,6 +231,7 @@ class SimulatedCloth {
   void attachInitially();
   void makeIntegrators();
   void setPenalty(double stiffness);
+  void requirePose(const std::string& frame, const Eigen::Isometry3d& pose) const;
   bool run(double duration, int cycles, double waited);
   void runSubsteps(double duration);
   void runAdaptiveSubsteps(double duration);
@@ -241,6 +258,7 @@ class SimulatedCloth {
   std::optional<contact::ObstacleCollision> collision_;
   std::vector<contact::FreeBody> start_bodies_;  // of collision_
   std::vector<int> initially_attached_;
+  CarryingFrames frames_;
   double time_step_;
   double last_duration_;  // s
   cloth::StepReport report_;

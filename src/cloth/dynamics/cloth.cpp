@@ -45,10 +45,16 @@ Eigen::Vector3d AttachmentPath::position(double time) const {
   if (time < start_time) return start;
   if (time >= start_time + duration) return start + displacement;
   const double s = (time - start_time) / duration;
+  if (at_constant_speed) return start + s * displacement;
   return start + s * s * s * (10.0 + s * (-15.0 + 6.0 * s)) * displacement;
 }
 
 Eigen::Vector3d AttachmentPath::velocity(double time) const {
+  // The time of the last moment is a sum of substeps.
+  const double end = start_time + (1.0 + 1e-9) * duration;
+  if (at_constant_speed && duration > 0.0 && time >= start_time && time <= end) {
+    return displacement / duration;
+  }
   if (time < start_time || time >= start_time + duration) return Eigen::Vector3d::Zero();
   const double s = (time - start_time) / duration;
   return 30.0 * s * s * (1.0 - s) * (1.0 - s) / duration * displacement;

@@ -14,6 +14,7 @@
 #include "haptex/nodes/common/diagnostics_timer.h"
 #include "haptex/nodes/common/loop_diagnostics.h"
 #include "haptex/nodes/common/node_parameters.h"
+#include "haptex/nodes/wire/frame_names.h"
 #include "haptex/proximity/intersections.h"
 #include "haptex/realtime/steady_clock.h"
 #include "haptex/scene/scene_fabric.h"
@@ -136,6 +137,7 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       force_input_(node, particle_count_),
       contact_input_(scene.fingers ? std::make_unique<ContactInput>(node, triangle_count_)
                                    : nullptr),
+      frames_(node),
       heartbeat_(node, "cloth/heartbeat"),
       loop_(
           simulate(parameters, quality, scene),
@@ -204,6 +206,7 @@ void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double
       obstacle_publisher_.getNumSubscribers() > 0) {
     obstacle_publisher_.publish(markers_.updateMovingObstacles(simulation, state_stamp_));
   }
+  frames_.publish(simulation, state_stamp_);
   publishQualityIfDue(simulation);
 }
 
@@ -238,6 +241,7 @@ void ClothNode::publishState(const simulation::SimulatedCloth& simulation, doubl
 void ClothNode::takeForces(simulation::SimulatedCloth& simulation) {
   // They have been checked when they came, so that this does not throw.
   force_input_.sources().apply(simulation);
+  frames_.follow(simulation);
   if (!contact_input_) return;
   if (contact_input_->loads().take(loads_, realtime::steadyNow())) simulation.setPointLoads(loads_);
 }
@@ -309,9 +313,22 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("particles", particle_count_.load());
   status.add("triangles", triangle_count_.load());
   if (quality_) diagnoseQuality(status);
+  diagnoseFrames(status);
   addInput(status, "external forces", force_input_.status());
   status.add("sources of external forces", force_input_.sources().size());
   if (contact_input_) addInput(status, "contact forces", contact_input_->status());
+}
+
+void ClothNode::diagnoseFrames(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  for (const FrameStatus& frame : frames_.status()) {
+    const std::string name = frameCalled(frame.name);
+    if (!frame.known) {
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
+                          "tf does not connect " + name + " with " + fixedFrame() +
+                              ": what it carries stays where it was");
+    }
+    status.addf("age of frame " + name + " (s)", "%.3g%s", frame.age, frame.known ? "" : ", none");
+  }
 }
 
 void ClothNode::diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& status) const {

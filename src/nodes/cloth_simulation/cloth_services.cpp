@@ -93,7 +93,19 @@ bool ClothNode::step(StepCloth::Request& request, StepCloth::Response& response)
 
 bool ClothNode::attach(AttachParticles::Request& request, AttachParticles::Response& response) {
   return answer("attach", response, [&] {
-    requireFixedFrame(request.header);
+    const std::string attached = "attached " + counted(request.particles.size(), "particle");
+    if (request.header.frame_id != fixedFrame()) {
+      const std::string frame = FrameLinks::nameOf(request.header);
+      if (!request.positions.empty()) {
+        throw std::invalid_argument("positions has " + counted(request.positions.size(), "item") +
+                                    ": with a frame that carries the particles allowed are none");
+      }
+      const Eigen::Isometry3d pose = frames_.poseOf(request.header);
+      loop_.execute([&](simulation::SimulatedCloth& simulation) {
+        simulation.attach(request.particles, frame, pose);
+      });
+      return attached + " to " + request.header.frame_id;
+    }
     loop_.execute([&](simulation::SimulatedCloth& simulation) {
       if (request.positions.empty()) {
         simulation.attach(request.particles);
@@ -101,7 +113,7 @@ bool ClothNode::attach(AttachParticles::Request& request, AttachParticles::Respo
         simulation.attach(request.particles, fromMessage(request.positions));
       }
     });
-    return "attached " + counted(request.particles.size(), "particle");
+    return attached;
   });
 }
 

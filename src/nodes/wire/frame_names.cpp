@@ -10,14 +10,14 @@ namespace {
 
 struct FrameNames {
   explicit FrameNames(const std::string& before)
-      : fixed(before + "world"), hand(before + "hand_base") {
+      : prefix(before), fixed(before + "world"), hand(before + "hand_base") {
     for (const base::Finger finger : base::kFingers) {
       tip[finger] = before + base::name(finger) + "_tip";
       array[finger] = before + base::name(finger) + "_tactile";
     }
   }
 
-  std::string fixed, hand;
+  std::string prefix, fixed, hand;
   base::PerFinger<std::string> tip, array;
 };
 
@@ -38,6 +38,10 @@ void setFramePrefix(const std::string& prefix) {
   }
   names() = FrameNames(prefix.empty() ? "" : prefix + "/");
 }
+
+std::string frameCalled(const std::string& name) { return names().prefix + name; }
+
+const std::string& framePrefix() { return names().prefix; }
 
 const std::string& fixedFrame() { return names().fixed; }
 

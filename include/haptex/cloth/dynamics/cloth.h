@@ -33,13 +33,14 @@ struct ClothState {
 };
 
 /// The place of an attached particle: it rests at `start` until `start_time`, then follows a
-/// straight minimum-jerk path (Flash and Hogan 1985) by `displacement` over `duration`, and rests
-/// at its end.
+/// straight minimum-jerk path (Flash and Hogan 1985), or one at constant speed, by `displacement`
+/// over `duration`, and rests at its end.
 struct AttachmentPath {
   Eigen::Vector3d start = Eigen::Vector3d::Zero();         ///< m
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m
   double start_time = 0.0;                                 ///< s, simulated
   double duration = 0.0;                                   ///< s, 0: at once
+  bool at_constant_speed = false;                          ///< and still so in its last moment
 
   Eigen::Vector3d position(double time) const;
   /// m/s; zero in the moment of a jump, where `duration` is 0.

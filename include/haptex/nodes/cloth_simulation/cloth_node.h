@@ -36,6 +36,7 @@
 #include "haptex/nodes/cloth_simulation/cloth_markers.h"
 #include "haptex/nodes/cloth_simulation/contact_input.h"
 #include "haptex/nodes/cloth_simulation/external_force_input.h"
+#include "haptex/nodes/cloth_simulation/frame_links.h"
 #include "haptex/nodes/cloth_simulation/heartbeat.h"
 #include "haptex/nodes/cloth_simulation/runtime_quality.h"
 #include "haptex/scene/scene.h"
@@ -65,6 +66,7 @@ struct ClothNodeParameters {
 ///   the simulation is paused or its steps are rejected ten times a second;
 ///   cloth/heartbeat (std_msgs/Header, 200 Hz), whether it is paused or not;
 ///   cloth/quality (ClothQuality, latched), with ~quality or ~budget_ms;
+///   cloth/frames/<name> (geometry_msgs/WrenchStamped) of each frame that carries particles;
 ///   services cloth/reset (std_srvs/Trigger), cloth/pause (std_srvs/SetBool), cloth/step,
 ///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian,
 ///   cloth/query_budget, cloth/set_quality, cloth/set_state, cloth/save_state, cloth/set_sheet,
@@ -103,6 +105,7 @@ class ClothNode {
   void publishQualityIfDue(const simulation::SimulatedCloth& simulation);
   void takeForces(simulation::SimulatedCloth& simulation);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnoseFrames(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void diagnoseQuality(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   bool reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
@@ -170,6 +173,7 @@ class ClothNode {
 
   ExternalForceInput force_input_;
   std::unique_ptr<ContactInput> contact_input_;  // null in a scene without fingers
+  FrameLinks frames_;
   Heartbeat heartbeat_;
 
   simulation::RealTimeLoop loop_;  // its thread uses the members above

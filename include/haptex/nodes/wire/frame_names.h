@@ -14,6 +14,10 @@ namespace haptex::nodes {
 /// slashes
 void setFramePrefix(const std::string& prefix);
 
+/// What all frames of this process begin with, with its slash; empty if there is no prefix.
+const std::string& framePrefix();
+/// One that a scene names.
+std::string frameCalled(const std::string& name);
 /// The frame of the cloth and of everything that is not said otherwise, z up.
 const std::string& fixedFrame();
 /// The frame of everything that the exoskeleton measures and is commanded; its root in the URDF.

@@ -25,4 +25,8 @@ void validateBodies(const std::string& config_directory, const Sink& sink);
 /// Panels on a cone; the shipped garments with carriers on the shipped bodies.
 void validatePreposition(const std::string& config_directory, const Sink& sink);
 
+/// A sheet between a bar that stands and one that turns about a hinge: the reaction on the bars
+/// against virtual work, and the sheet after 100 turns to and fro.
+void validateLinkage(const std::string& config_directory, const Sink& sink);
+
 }  // namespace haptex::oracles

@@ -43,6 +43,7 @@ const std::vector<RandomCheck>& randomChecks() {
       {"body", "roll", randomRoll},
       {"garment", "patch", randomPatch},
       {"garment", "cone", randomCone},
+      {"garment", "linkage", randomLinkage},
       {"exoskeleton", "pose", randomPose},
       {"exoskeleton", "static_force", randomStaticForce},
       {"tactile", "grating", randomGrating},
