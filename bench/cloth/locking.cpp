@@ -2,8 +2,9 @@
 // with cells? Prints the torque (mN.m) of a strip of wool, 50 x 200 mm, whose ends are held at the
 // distance of its length and turned against each other by 90 degrees; by how much less than the
 // elastica a cantilever drops whose threads lie at 30 degrees to it, mean and largest of five
-// irregular meshes; and the processor time of a step of 12.5 ms of a hanging sheet that bends,
-// relative to triangles.
+// irregular meshes; how far places of wool that hangs obliquely to its threads, and its energies,
+// are apart when its cells are cut in three ways; and the processor time of a step of 12.5 ms of a
+// hanging sheet that bends, relative to triangles.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +14,7 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/exact/elastica.h"
+#include "haptex/oracles/experiments/hung_square.h"
 #include "haptex/oracles/experiments/strip_statics.h"
 #include "tab_lines.h"
 
@@ -76,6 +78,14 @@ void printOblique() {
   }
 }
 
+void printCuts(const material::Fabric& wool) {
+  for (const auto& [elasticity, name] : kElements) {
+    const oracles::CutDifference difference = oracles::differenceOfCuts(wool, elasticity, 32);
+    bench::printLine(std::string("locking/cuts_apart/") + name, 1e3 * difference.apart, "mm");
+    bench::printLine(std::string("locking/cuts_energy/") + name, 100.0 * difference.energy, "%");
+  }
+}
+
 /// s of processor time, which others on the machine disturb less; mean of the steps of a second.
 double secondsOfStep(const material::Fabric& fabric, Elasticity elasticity, int cells) {
   cloth::ModelledEffects effects;
@@ -125,5 +135,6 @@ int main() {
   const material::Fabric wool = material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml");
   printCost(wool);
   printOblique();
+  printCuts(wool);
   printTwist(wool);
 }

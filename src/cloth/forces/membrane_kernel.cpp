@@ -1,44 +1,14 @@
 #include "haptex/cloth/forces/membrane_kernel.h"
 
-#include "haptex/cloth/forces/four_lanes.h"
+#include "haptex/cloth/forces/four_curves.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
 
 #include <cstddef>
 
-#define HAPTEX_AVX2 [[gnu::target("avx2,fma")]]
-
 namespace haptex::cloth::kernels {
 namespace {
-
-struct Response {
-  __m256d stress[3];
-  __m256d slope[3];
-};
-
-/// Clamps slopes to >= 0 from the first one on.
-template <int kFirst>
-HAPTEX_AVX2_INLINE void clampSlopes(__m256d* slope) {
-  // NaN is the second operand and therefore stays.
-  for (int m = kFirst; m < 3; ++m) slope[m] = _mm256_max_pd(_mm256_setzero_pd(), slope[m]);
-}
-
-/// Slopes clamped to >= 0 from the first one on.
-template <int kFirstClamped>
-HAPTEX_AVX2_INLINE Response respond(const std::array<material::StrainStressCurve, 3>& curves,
-                                    const __m256d* strain) {
-  Response result;
-  for (int m = 0; m < 3; ++m) {
-    for (int lane = 0; lane < kBatch; ++lane) {
-      const material::CurveValue value = curves[m].evaluate(strain[m][lane]);
-      result.stress[m][lane] = value.stress;
-      result.slope[m][lane] = value.slope;
-    }
-  }
-  clampSlopes<kFirstClamped>(result.slope);
-  return result;
-}
 
 /// projectStress() of four elements.
 HAPTEX_AVX2_INLINE void project(const __m256d* stress, __m256d* result) {
@@ -304,15 +274,6 @@ HAPTEX_AVX2 void addNewtonAvx2(const MembraneBatch* batches, int count,
   }
 }
 
-HAPTEX_AVX2_INLINE void addEnergies(const std::array<material::StrainStressCurve, 3>& curves,
-                                    const __m256d* strain, __m256d factor, __m256d& density) {
-  for (int m = 0; m < 3; ++m) {
-    __m256d energy;
-    for (int lane = 0; lane < kBatch; ++lane) energy[lane] = curves[m].energy(strain[m][lane]);
-    density += factor * energy;
-  }
-}
-
 HAPTEX_AVX2 double potentialAvx2(const MembraneBatch* batches, int count, const double* positions,
                                  const double* begin_strains, double interval,
                                  const MembraneLaw& law) {
@@ -355,9 +316,6 @@ double potential(const MembraneBatch* batches, int count, const double* position
 }
 
 }  // namespace haptex::cloth::kernels
-
-#undef HAPTEX_AVX2
-#undef HAPTEX_AVX2_INLINE
 
 #else
 

@@ -8,6 +8,7 @@
 #include "haptex/material/strain_measures.h"
 #include "haptex/oracles/checks/cloth_oracles.h"
 #include "haptex/oracles/exact/elastica.h"
+#include "haptex/oracles/experiments/hung_square.h"
 #include "haptex/oracles/experiments/strip_statics.h"
 
 namespace haptex::oracles {
@@ -167,6 +168,13 @@ void validateTwistOfCells(const Fabric& wool, const Sink& sink) {
   }
 }
 
+/// However cells are cut, what hangs obliquely to its threads rests in the same places.
+void validateCutsOfCells(const Fabric& wool, const Sink& sink) {
+  constexpr double kApart = 1e-3;  // m
+  const CutDifference difference = differenceOfCuts(wool, Elasticity::kBilinear, 32);
+  sink(base::relativeTo(1.0, "cloth/bilinear/hung/cuts_apart", 0.0, difference.apart, kApart));
+}
+
 /// Width times modulus times engineering strain, on an irregular mesh.
 void validateCorotationalTension(const Fabric& fabric, double weft_strain, double warp_strain,
                                  const Sink& sink) {
@@ -197,6 +205,7 @@ void validateModels(const Fabric& linear, const Fabric& wool, const Sink& sink) 
   if (!base::kSanitized) {
     validateObliqueCells(sink);
     validateTwistOfCells(wool, sink);
+    validateCutsOfCells(wool, sink);
   }
   validateCorotationalTension(linear, 0.5, 0.5, sink);
   validateCorotationalTension(wool, 0.1, 0.01, sink);

@@ -213,7 +213,7 @@ TEST(BilinearCells, PullsAreProjectedToTheNearestSemidefiniteMatrix) {
     const Eigen::Matrix4d nearest = solver.eigenvectors() *
                                     solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
                                     solver.eigenvectors().transpose();
-    EXPECT_LT((after - nearest).norm(), 1e-6);  // of the eigenvalues' closed form
+    EXPECT_LT((after - nearest).norm(), 1e-13);
     if ((after - before).norm() > 1e-6) ++changed;
   }
   EXPECT_GT(changed, 10);

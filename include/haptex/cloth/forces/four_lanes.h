@@ -4,9 +4,14 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
+#include <cstddef>
+
+#include "haptex/cloth/forces/membrane_batches.h"
+
 // Every function that touches a wide register carries the attribute and is inlined, so that no
 // wide value crosses a call: the rest of the library keeps the ABI of the baseline.
 #define HAPTEX_AVX2_INLINE [[gnu::target("avx2,fma"), gnu::always_inline]] inline
+#define HAPTEX_AVX2 [[gnu::target("avx2,fma")]]
 
 namespace haptex::cloth::kernels {
 

@@ -2,13 +2,9 @@
 // FMA.
 #pragma once
 
-#include <array>
-
-#include "haptex/material/strain_stress_curve.h"
+#include "haptex/cloth/forces/membrane_batches.h"
 
 namespace haptex::cloth::kernels {
-
-constexpr int kBatch = 4;
 
 /// Four elements of a membrane, one per lane: [which][lane]. Weights are those of the second and
 /// third particle, because the weights of a triangle sum to zero.
@@ -18,40 +14,6 @@ struct alignas(32) MembraneBatch {
   double area[kBatch];             ///< m^2
   int particles[3][kBatch];
   int slots[3][kBatch];  ///< of the matrix blocks (1,0), (2,0), (2,1)
-};
-
-struct MembraneLaw {
-  const std::array<material::StrainStressCurve, 3>* elastic;  ///< weft, warp, shear
-  const std::array<material::StrainStressCurve, 3>* viscous;  ///< null: none
-  double coupling;                                            ///< N/m, of weft and warp; 0: none
-};
-
-/// The linear system that the elements are added to: nine doubles per block (by columns), three per
-/// particle.
-struct MembraneSystem {
-  double* diagonal;
-  double* lower;
-  double* rhs;
-};
-
-/// Of Membrane::addStep(). Positions and velocities are three doubles per particle.
-struct MembraneStep {
-  const double* positions;
-  const double* velocities;
-  double a;      ///< s
-  double ahead;  ///< s
-  MembraneLaw law;
-  MembraneSystem system;
-};
-
-/// Of Membrane::addNewton().
-struct MembraneNewton {
-  const double* positions;
-  const double* begin_strains;  ///< three per element
-  double h;                     ///< s
-  bool exact;                   ///< the Hessian, not projected
-  MembraneLaw law;
-  MembraneSystem system;
 };
 
 /// Whether this processor can run the functions below.

@@ -166,7 +166,7 @@ CellStrain projectPulls(const CellStrain& pulls) {
   }
   const Eigen::Matrix<double, 4, 3> motions = relativeMotions();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(motions.transpose() * matrix * motions);
+  solver.compute(motions.transpose() * matrix * motions);
   const Eigen::Matrix<double, 4, 3> axes = motions * solver.eigenvectors();
   matrix = axes * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.transpose();
   CellStrain projected;

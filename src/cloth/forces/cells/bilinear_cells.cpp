@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptex/cloth/forces/membrane_kernel.h"
+
 namespace haptex::cloth {
 namespace {
 
@@ -122,6 +124,15 @@ void BilinearCells::bind(const linear::SymmetricBlockMatrix& matrix) {
           matrix.slot(cell.particles[kCellDistances[e][0]], cell.particles[kCellDistances[e][1]]);
     }
   }
+  batches_.clear();
+  if (!kernels::canAddBatches()) return;
+  for (std::size_t c = 0; c + kernels::kBatch <= cells_.size(); c += kernels::kBatch) {
+    batches_.push_back(kernels::batchOf(&cells_[c]));
+  }
+}
+
+kernels::MembraneLaw BilinearCells::law(bool viscosity) const {
+  return {&elastic_, viscosity ? &viscous_ : nullptr, 0.0};
 }
 
 BilinearCells::Response BilinearCells::respond(const BilinearCell& cell,
@@ -170,8 +181,13 @@ void BilinearCells::addForces(const ForceState& state, std::vector<Vector3d>& fo
 
 double BilinearCells::energy(const ForceState& state) const {
   double energy = 0.0;
-  for (const BilinearCell& cell : cells_) {
-    energy += elasticEnergy(cell, strainOf(cell, distancesIn(cell, state.positions)));
+  if (!batches_.empty()) {
+    energy = kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
+                                state.positions.data()->data(), nullptr, 0.0, law(false));
+  }
+  for (std::size_t c = batchedCount(); c < cells_.size(); ++c) {
+    energy +=
+        elasticEnergy(cells_[c], strainOf(cells_[c], distancesIn(cells_[c], state.positions)));
   }
   return energy;
 }
@@ -179,7 +195,17 @@ double BilinearCells::energy(const ForceState& state) const {
 void BilinearCells::assembleLinearised(const ForceState& state, const StageTimes& times,
                                        linear::SymmetricBlockMatrix& matrix,
                                        linear::BlockVector& rhs) const {
-  for (const BilinearCell& cell : cells_) {
+  if (!batches_.empty()) {
+    kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
+                     {state.positions.data()->data(),
+                      state.velocities.data()->data(),
+                      times.a,
+                      times.ahead,
+                      law(viscosity_),
+                      {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
+  }
+  for (std::size_t c = batchedCount(); c < cells_.size(); ++c) {
+    const BilinearCell& cell = cells_[c];
     const Distances at = distancesIn(cell, state.positions);
     const Distances opening = distancesIn(cell, state.velocities);
     const CellStrain rate = rateOf(cell, at, opening);
@@ -212,7 +238,16 @@ void BilinearCells::hold(const NewtonStart& start, Vector3d* held) const {
 void BilinearCells::assembleNewton(const ForceState& state, const Vector3d* held, double a,
                                    Hessian hessian, linear::SymmetricBlockMatrix& matrix,
                                    linear::BlockVector& rhs) const {
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
+  if (!batches_.empty()) {
+    kernels::addNewton(batches_.data(), static_cast<int>(batches_.size()),
+                       {state.positions.data()->data(),
+                        held->data(),
+                        a,
+                        hessian == Hessian::kExact,
+                        law(viscosity_),
+                        {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
+  }
+  for (std::size_t c = batchedCount(); c < cells_.size(); ++c) {
     const BilinearCell& cell = cells_[c];
     const Distances at = distancesIn(cell, state.positions);
     const CellStrain strain = strainOf(cell, at);
@@ -230,7 +265,12 @@ void BilinearCells::assembleNewton(const ForceState& state, const Vector3d* held
 double BilinearCells::incrementalPotential(const ForceState& state, const Vector3d* held,
                                            double a) const {
   double potential = 0.0;
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
+  if (!batches_.empty()) {
+    potential =
+        kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
+                           state.positions.data()->data(), held->data(), a, law(viscosity_));
+  }
+  for (std::size_t c = batchedCount(); c < cells_.size(); ++c) {
     const BilinearCell& cell = cells_[c];
     const CellStrain strain = strainOf(cell, distancesIn(cell, state.positions));
     potential += elasticEnergy(cell, strain);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "haptex/cloth/forces/cells/bilinear_cell.h"
+#include "haptex/cloth/forces/cells/bilinear_kernel.h"
 #include "haptex/cloth/forces/cells/triangle_pairs.h"
 #include "haptex/cloth/forces/force.h"
 #include "haptex/linear/block_matrix.h"
@@ -56,8 +57,12 @@ class BilinearCells final : public Force {
   void addViscous(const BilinearCell& cell, const CellStrain& rate, double a,
                   Response& response) const;
   double elasticEnergy(const BilinearCell& cell, const CellStrain& strain) const;
+  kernels::MembraneLaw law(bool viscosity) const;
+  /// How many of the cells are in batches: the first ones.
+  std::size_t batchedCount() const { return kernels::kBatch * batches_.size(); }
 
   std::vector<BilinearCell> cells_;
+  std::vector<kernels::BilinearBatch> batches_;  // empty where the processor cannot use them
   Curves elastic_;
   Curves viscous_;
   bool viscosity_;
