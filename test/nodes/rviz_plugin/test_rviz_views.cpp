@@ -173,14 +173,16 @@ TEST_F(ViewTest, ConfigurationsFromBeforeTheDisplaysAreTaken) {
 
 TimedApplication& application() { return *dynamic_cast<TimedApplication*>(qApp); }
 
-/// One line, of what happened since the last one: events of the window, most of which are frames
-/// that rviz draws, and those of the panel.
-void printLongestEvents(const std::string& when, double longest_action) {
-  std::printf("%s: longest action %.1f ms", when.c_str(), longest_action);
-  for (const auto& [whose, time] : {std::make_pair("window", application().ofWindow()),
-                                    std::make_pair("panel", application().ofPanel())}) {
-    std::printf(", event of the %s %.1f ms, computing %.1f (%s)", whose, time.lasted, time.computed,
-                time.event.c_str());
+/// One line, of what happened since the last one: what was done to the window, its events, most of
+/// which are frames that rviz draws, and those of the panel.
+void printLongest(const std::string& when, const TimeSpent& action) {
+  std::printf("%s:", when.c_str());
+  for (const auto& [kind, time] :
+       {std::make_pair("action", action), std::make_pair("event", application().ofWindow()),
+        std::make_pair("event of the panel", application().ofPanel())}) {
+    if (time.what.empty()) continue;
+    std::printf(" %s %.1f ms = %.1f computing + %.1f queued + %.1f waiting (%s);", kind,
+                time.lasted, time.computed, time.queued, time.waited(), time.what.c_str());
   }
   std::printf("\n");
   application().forget();
@@ -205,7 +207,7 @@ TEST_F(ViewTest, AServiceThatHangsDoesNotKeepThePanel) {
   run(1.0);  // rviz's first frames
   application().forget();
   run(3.0);
-  printLongestEvents("rviz alone", 0.0);
+  printLongest("rviz alone", {});
   QDockWidget* dock = frame_->addPanelByName("haptex", "haptex/Panel");
   QPushButton* reset = nullptr;
   for (QPushButton* button : dock->findChildren<QPushButton*>()) {
@@ -214,10 +216,9 @@ TEST_F(ViewTest, AServiceThatHangsDoesNotKeepThePanel) {
   ASSERT_NE(reset, nullptr);
   auto* answer = dock->findChild<QLabel*>("answer");
   ASSERT_NE(answer, nullptr);
-  QElapsedTimer click;
-  click.start();
+  const Stopwatch click;
   reset->click();
-  const double first_click = 1e-6 * static_cast<double>(click.nsecsElapsed());
+  const TimeSpent first_click = click.read("the button");
   EXPECT_TRUE(run(10.0, [&] { return called.load(); }));
   // All of this while the service hangs.
   EXPECT_TRUE(run(10.0, [&] { return answer->text() == "no answer yet from cloth/reset"; }));
@@ -230,18 +231,19 @@ TEST_F(ViewTest, AServiceThatHangsDoesNotKeepThePanel) {
   reset->click();
   EXPECT_TRUE(run(10.0, [&] { return answer->text().contains("does not answer"); }))
       << answer->text().toStdString();
-  printLongestEvents("a service that hangs or is gone", first_click);
+  printLongest("a service that hangs or is gone", first_click);
 }
 
-/// What is done with panel and display by a person. @returns ms, the longest that one of it took
-double longestOf(const std::function<void(double)>& run,
-                 const std::vector<std::function<void()>>& actions) {
-  double longest = 0.0;
-  QElapsedTimer timer;
-  for (const auto& action : actions) {
-    timer.start();
+using Action = std::pair<const char*, std::function<void()>>;
+
+/// What is done with panel and display by a person.
+TimeSpent longestOf(const std::function<void(double)>& run, const std::vector<Action>& actions) {
+  TimeSpent longest;
+  for (const auto& [name, action] : actions) {
+    const Stopwatch watch;
     action();
-    longest = std::max(longest, 1e-6 * static_cast<double>(timer.nsecsElapsed()));
+    const TimeSpent spent = watch.read(name);
+    if (spent.lasted > longest.lasted) longest = spent;
     run(0.1);
   }
   return longest;
@@ -274,20 +276,24 @@ TEST_F(ViewTest, AMasterThatHangsOrDiesKeepsNothing) {
     rviz::Display* cloth = nullptr;
     const auto handle = [this](double seconds) { run(seconds); };
     application().forget();
-    double longest = 0.0;
+    const auto click = [&dock] {
+      for (auto* button : dock->findChildren<QPushButton*>()) button->click();
+    };
+    TimeSpent longest;
     for (int cycle = 0; cycle < 5; ++cycle) {
-      longest = std::max(
-          longest,
-          longestOf(handle,
-                    {[&] { dock = frame_->addPanelByName("haptex", "haptex/Panel"); },
-                     [&] { cloth = manager().createDisplay("haptex/Cloth", "Cloth", true); },
-                     [&] {
-                       for (auto* button : dock->findChildren<QPushButton*>()) button->click();
-                     },
-                     [&] { cloth->reset(); }, [&] { cloth->update(0.03F, 0.03F); },
-                     [&] { delete cloth; }, [&] { delete dock; }}));
+      const TimeSpent spent = longestOf(
+          handle,
+          {{"adding the panel", [&] { dock = frame_->addPanelByName("haptex", "haptex/Panel"); }},
+           {"adding the display",
+            [&] { cloth = manager().createDisplay("haptex/Cloth", "Cloth", true); }},
+           {"every button", click},
+           {"resetting the display", [&] { cloth->reset(); }},
+           {"a frame of the display", [&] { cloth->update(0.03F, 0.03F); }},
+           {"removing the display", [&] { delete cloth; }},
+           {"removing the panel", [&] { delete dock; }}});
+      if (spent.lasted > longest.lasted) longest = spent;
     }
-    printLongestEvents(std::string("a master that ") + what, longest);
+    printLongest(std::string("a master that ") + what, longest);
   }
   EXPECT_TRUE(subscribesToNothing(node_)) << "who subscribes now holds roscpp's lock for ever";
 }

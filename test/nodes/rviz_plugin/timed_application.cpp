@@ -1,19 +1,26 @@
 #include "timed_application.h"
 
-#include <QElapsedTimer>
 #include <QMetaEnum>
 #include <ctime>
+#include <fstream>
+#include <utility>
 
 #include "haptex/nodes/rviz_plugin/panel.h"
 
 namespace haptex::nodes {
 namespace {
 
-/// ms of a processor, by this thread
-double computedTime() {
+double milliseconds(clockid_t clock) {
   timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  clock_gettime(clock, &time);
   return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+/// Since the thread began. The second number of /proc/thread-self/schedstat (Linux) is ns queued.
+TimeSpent spentSoFar() {
+  double computed = 0.0, queued = 0.0;
+  std::ifstream("/proc/thread-self/schedstat") >> computed >> queued;
+  return {milliseconds(CLOCK_MONOTONIC), milliseconds(CLOCK_THREAD_CPUTIME_ID), 1e-6 * queued, ""};
 }
 
 std::string nameOf(QEvent::Type type) {
@@ -30,6 +37,14 @@ bool isOfPanel(const QObject* object) {
 
 }  // namespace
 
+Stopwatch::Stopwatch() : begin_(spentSoFar()) {}
+
+TimeSpent Stopwatch::read(std::string what) const {
+  const TimeSpent now = spentSoFar();
+  return {now.lasted - begin_.lasted, now.computed - begin_.computed, now.queued - begin_.queued,
+          std::move(what)};
+}
+
 bool TimedApplication::notify(QObject* receiver, QEvent* event) {
   const bool of_window = !in_event_;
   const bool of_panel = !in_panel_ && isOfPanel(receiver);
@@ -39,14 +54,11 @@ bool TimedApplication::notify(QObject* receiver, QEvent* event) {
   const char* name = receiver->metaObject()->className();
   in_event_ = true;
   in_panel_ = in_panel_ || of_panel;
-  QElapsedTimer timer;
-  timer.start();
-  const double begin = computedTime();
+  const Stopwatch watch;
   const bool handled = QApplication::notify(receiver, event);
-  const double lasted = 1e-6 * static_cast<double>(timer.nsecsElapsed());
-  const double computed = computedTime() - begin;
-  const auto keep = [&](EventTime& longest) {
-    if (lasted > longest.lasted) longest = {lasted, computed, nameOf(type) + " of " + name};
+  const TimeSpent spent = watch.read(nameOf(type) + " of " + name);
+  const auto keep = [&](TimeSpent& longest) {
+    if (spent.lasted > longest.lasted) longest = spent;
   };
   if (of_window) {
     keep(of_window_);

@@ -6,11 +6,26 @@
 
 namespace haptex::nodes {
 
-/// How long an event kept the thread of the windows.
-struct EventTime {
-  double lasted = 0.0;    ///< ms
-  double computed = 0.0;  ///< ms, of a processor for this thread; the rest it waited
-  std::string event;      ///< its type, and the class of who received it
+/// How long something kept the thread of the windows, ms.
+struct TimeSpent {
+  double lasted = 0.0;
+  double computed = 0.0;  ///< by a processor
+  double queued = 0.0;    ///< for a processor, which others had
+  std::string what;
+
+  /// For anything else: a lock, an answer, the threads that draw in software.
+  double waited() const { return lasted - computed - queued; }
+};
+
+/// Measures from its construction on.
+class Stopwatch {
+ public:
+  Stopwatch();
+
+  TimeSpent read(std::string what) const;
+
+ private:
+  TimeSpent begin_;
 };
 
 /// Measures the events that no other event has caused, and those of our panel and of what is in it,
@@ -22,12 +37,12 @@ class TimedApplication : public QApplication {
   bool notify(QObject* receiver, QEvent* event) override;
 
   /// The longest since forget().
-  const EventTime& ofWindow() const { return of_window_; }
-  const EventTime& ofPanel() const { return of_panel_; }
+  const TimeSpent& ofWindow() const { return of_window_; }
+  const TimeSpent& ofPanel() const { return of_panel_; }
   void forget() { of_window_ = of_panel_ = {}; }
 
  private:
-  EventTime of_window_, of_panel_;
+  TimeSpent of_window_, of_panel_;
   bool in_event_ = false, in_panel_ = false;
 };
 
