@@ -236,6 +236,25 @@ TEST_F(ViewTest, AServiceThatHangsDoesNotKeepThePanel) {
 
 using Action = std::pair<const char*, std::function<void()>>;
 
+/// Only beside a bag that is replayed by a node that HAPTEX_PLAYER names, once.
+TEST_F(ViewTest, AReplayedBagIsSaidByThePanel) {
+  const char* player = std::getenv("HAPTEX_PLAYER");
+  if (player == nullptr) GTEST_SKIP() << "nothing is replayed";
+  const QString begin =
+      QString("A bag is replayed by %1, and no node answers the buttons. ").arg(player);
+  QDockWidget* dock = frame_->addPanelByName("haptex", "haptex/Panel");
+  auto* line = dock->findChild<QLabel*>("line");
+  ASSERT_NE(line, nullptr);
+  const auto said = [&] { return line->text().toStdString(); };
+  EXPECT_TRUE(run(20.0, [&] { return line->text().startsWith(begin + "It recorded: the index"); }))
+      << said();
+  std::printf("beside a replayed bag: %s\n", said().c_str());
+  // And all the time, also when it has ended.
+  EXPECT_FALSE(run(3.0, [&] { return !line->text().startsWith(begin); })) << said();
+  EXPECT_TRUE(run(60.0, [&] { return line->text().contains("Nothing has come for"); })) << said();
+  EXPECT_TRUE(line->text().startsWith(begin)) << said();
+}
+
 /// What is done with panel and display by a person.
 TimeSpent longestOf(const std::function<void(double)>& run, const std::vector<Action>& actions) {
   TimeSpent longest;
