@@ -1,9 +1,11 @@
 // What people do to a view of rviz, and what may go wrong around it: nothing of it ends rviz. Run
 // by rviz_views_test.py, with a display.
+#include <OGRE/OgreRenderWindow.h>
 #include <rviz/display.h>
 #include <rviz/display_group.h>
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/status_property.h>
+#include <rviz/render_panel.h>
 #include <std_srvs/Trigger.h>
 
 #include <QDockWidget>
@@ -102,6 +104,39 @@ TEST_F(ViewTest, EveryColourAndStyleIsDrawn) {
       EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); })) << colours;
     }
   }
+}
+
+/// Pixels of the view that are red, as arrows of forces are.
+int redPixels(rviz::VisualizationManager& manager) {
+  Ogre::RenderWindow* window = manager.getRenderPanel()->getRenderWindow();
+  const auto width = window->getWidth(), height = window->getHeight();
+  std::vector<std::uint8_t> bytes(std::size_t{3} * width * height);
+  window->copyContentsToMemory(Ogre::Box(0, 0, width, height),
+                               Ogre::PixelBox(width, height, 1, Ogre::PF_BYTE_RGB, bytes.data()));
+  int count = 0;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    count += bytes[i] > 80 && bytes[i] > 2 * bytes[i + 1] && bytes[i] > 2 * bytes[i + 2] ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_F(ViewTest, AForceOfTenMillinewtonsIsSeen) {
+  rviz::Display* display = manager().createDisplay("haptex/Contact", "Contact", true);
+  haptex::Contact contact;
+  contact.header.frame_id = "world";
+  contact_publisher_.publish(contact);
+  run(1.0);
+  EXPECT_EQ(redPixels(manager()), 0);
+  contact.touching = 1;
+  contact.force.z = 0.01;
+  bool seen = false;
+  for (int i = 0; i < 50 && !seen; ++i) {  // queues of one message may lose it
+    contact_publisher_.publish(contact);
+    seen = run(0.2, [&] { return redPixels(manager()) > 0; });
+  }
+  // 9 mm are 8 pixels in a view as small as this one.
+  EXPECT_GE(redPixels(manager()), 20);
+  delete display;
 }
 
 TEST_F(ViewTest, MeshesAndFabricsChangeWhileTheyAreDrawn) {
