@@ -49,7 +49,9 @@ constexpr double kMostBudget = 1000.0;  // ms
 const char* const kByBudget = "as the budget allows";
 
 QStringList fabricNames() {
-  const QDir directory(QString::fromStdString(ros::package::getPath("haptex")) + "/config/fabrics");
+  static const std::string package =
+      ros::package::getPath("haptex");  // looks into many directories
+  const QDir directory(QString::fromStdString(package) + "/config/fabrics");
   QStringList names;
   for (const QString& file : directory.entryList({"*.yaml"}, QDir::Files, QDir::Name)) {
     names << file.left(file.size() - 5);
