@@ -49,8 +49,8 @@ constexpr double kMostBudget = 1000.0;  // ms
 const char* const kByBudget = "as the budget allows";
 
 QStringList fabricNames() {
-  static const std::string package =
-      ros::package::getPath("haptex");  // looks into many directories
+  // Once: it looks into all directories of the workspace.
+  static const std::string package = ros::package::getPath("haptex");
   const QDir directory(QString::fromStdString(package) + "/config/fabrics");
   QStringList names;
   for (const QString& file : directory.entryList({"*.yaml"}, QDir::Files, QDir::Name)) {

@@ -199,7 +199,7 @@ TEST_F(ViewTest, ConfigurationsFromBeforeTheDisplaysAreTaken) {
       "    - Class: haptex/Removed\n      Name: Of another version\n      Enabled: true\n");
   run(0.1);
   EXPECT_EQ(manager().getRootDisplayGroup()->numDisplays(), 2);
-  for (const char* name : {"cloth", "exoskeleton", "haptex"}) {
+  for (const char* name : {"cloth", "exoskeleton", "garment", "haptex"}) {
     frame_->loadDisplayConfigHelper(std::string(HAPTEX_SOURCE_DIRECTORY "/rviz/") + name + ".rviz",
                                     true);
     run(0.2);
