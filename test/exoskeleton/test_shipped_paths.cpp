@@ -63,24 +63,28 @@ TEST(ShippedPaths, AreNoFasterThanAPersonsFinger) {
   }
 }
 
+/// How far (m) from the sample's plane a target lies that holds a fingertip at it with a force (N).
+double targetOf(double force, double radius) {
+  const FingerMechanics person;
+  const double yields = 1.0 / person.fingertip_stiffness + 1.0 / person.pulp_stiffness;
+  constexpr double kPulp = 8e6;  // Pa/m, PulpSettings::stiffness: F = pi R kPulp depth^2
+  return radius - std::sqrt(force / (M_PI * radius * kPulp)) - force * yields;
+}
+
 TEST(ShippedPaths, PinchTakesTheSampleNearItsLowerEdgeLiftsItAndLetsGo) {
   const HandPath path = loadHandPath(kPinch);
   EXPECT_TRUE(path.repeats());
   EXPECT_NEAR(path.duration(), 10.0, 1.0);
-  double closest = 1.0, farthest = 0.0;
-  for (double time = 0.0; time < path.duration(); time += kStep) {
+  // Open by 40 mm around the sample, which hangs in the plane x = 0; then it is held with 1 N.
+  const HandPlace open = path.at(1.5);
+  EXPECT_GT((inWorld(open, Finger::kIndex) - inWorld(open, Finger::kThumb)).norm(), 0.04);
+  EXPECT_GT(inWorld(open, Finger::kIndex).x(), kIndexRadius);
+  EXPECT_LT(inWorld(open, Finger::kThumb).x(), -kThumbRadius);
+  for (const double time : {3.0, 4.0, 5.5, 7.0}) {
     const HandPlace place = path.at(time);
-    const double distance =
-        (inWorld(place, Finger::kIndex) - inWorld(place, Finger::kThumb)).norm();
-    closest = std::min(closest, distance);
-    farthest = std::max(farthest, distance);
-    // One on each side of the sample, which hangs in the plane x = 0.
-    EXPECT_GT(inWorld(place, Finger::kIndex).x(), 0.9 * kIndexRadius) << time;
-    EXPECT_LT(inWorld(place, Finger::kThumb).x(), -0.9 * kThumbRadius) << time;
+    EXPECT_NEAR(inWorld(place, Finger::kIndex).x(), targetOf(1.0, kIndexRadius), 2e-4) << time;
+    EXPECT_NEAR(inWorld(place, Finger::kThumb).x(), -targetOf(1.0, kThumbRadius), 2e-4) << time;
   }
-  EXPECT_GT(closest, kIndexRadius + kThumbRadius);
-  EXPECT_LT(closest, kIndexRadius + kThumbRadius + 0.001);
-  EXPECT_GT(farthest, 0.04);
 
   const auto middle = [&](double time) -> Vector3d {
     const HandPlace place = path.at(time);
@@ -91,8 +95,7 @@ TEST(ShippedPaths, PinchTakesTheSampleNearItsLowerEdgeLiftsItAndLetsGo) {
   EXPECT_NEAR(middle(5.5).z() - middle(3.5).z(), 0.04, 0.001);
   EXPECT_NEAR(middle(7.0).y() - middle(5.5).y(), 0.05, 0.001);
   // The pads face each other across the sample.
-  const HandPlace held = path.at(3.5);
-  EXPECT_GT((inWorld(held, Finger::kIndex) - inWorld(held, Finger::kThumb)).normalized().x(), 0.99);
+  EXPECT_GT((inWorld(open, Finger::kIndex) - inWorld(open, Finger::kThumb)).normalized().x(), 0.99);
   // Away from the sample, which ends at z = -0.2.
   for (const Finger finger : kFingers) EXPECT_LT(inWorld(path.at(0.0), finger).z(), -0.23);
 }
@@ -112,12 +115,6 @@ TEST(ShippedPaths, DemoPinchesLiftsStretchesSlidesAndRubsWithTheForcesThatItSays
                                                      "slide", "release", "rub", "retreat", "end"}));
   EXPECT_GT(path.duration(), 30.0);
   EXPECT_LT(path.duration(), 40.0);
-  const FingerMechanics person;
-  const double yields = 1.0 / person.fingertip_stiffness + 1.0 / person.pulp_stiffness;
-  constexpr double kPulp = 8e6;  // Pa/m, PulpSettings::stiffness: F = pi R kPulp depth^2
-  const auto target = [&](double force, double radius) {
-    return radius - std::sqrt(force / (M_PI * radius * kPulp)) - force * yields;
-  };
   const struct {
     const char* before_phase;
     double force, y, z;  // N, m
@@ -128,8 +125,8 @@ TEST(ShippedPaths, DemoPinchesLiftsStretchesSlidesAndRubsWithTheForcesThatItSays
     const HandPlace place = path.at(beginOf(path, hold.before_phase) - 1e-3);
     const Vector3d index = inWorld(place, Finger::kIndex), thumb = inWorld(place, Finger::kThumb);
     // The file's coordinates are rounded to 0.1 mm, of which three add up.
-    const Vector3d expected_index(target(hold.force, kIndexRadius), hold.y, hold.z);
-    const Vector3d expected_thumb(-target(hold.force, kThumbRadius), hold.y, hold.z);
+    const Vector3d expected_index(targetOf(hold.force, kIndexRadius), hold.y, hold.z);
+    const Vector3d expected_thumb(-targetOf(hold.force, kThumbRadius), hold.y, hold.z);
     EXPECT_LT((index - expected_index).norm(), 2e-4) << hold.before_phase << index.transpose();
     EXPECT_LT((thumb - expected_thumb).norm(), 2e-4) << hold.before_phase << thumb.transpose();
   }

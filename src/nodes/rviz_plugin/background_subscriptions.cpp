@@ -12,15 +12,21 @@ constexpr std::chrono::milliseconds kRetryPeriod(500);
 }  // namespace
 
 /// roscpp holds the lock of all subscriptions of the process while it asks the master, and asks one
-/// that is gone again and again: others would wait for that lock.
-/// @returns false if it has ended meanwhile
-bool BackgroundSubscriptions::awaitMaster(Shared& shared) {
-  while (!ros::master::check()) {
+/// that is gone again and again: others, and rviz's end, would wait for that lock. So there has to
+/// be a master before it is asked, and one that dies in between is asked once.
+/// @returns none if it has ended meanwhile
+std::optional<ros::Subscriber> BackgroundSubscriptions::awaitSubscriber(
+    Shared& shared, ros::NodeHandle& node, const Subscribe& subscribe) {
+  ros::master::setRetryTimeout(ros::WallDuration(0, 1));  // less is without end
+  while (true) {
+    if (ros::master::check()) {
+      ros::Subscriber subscriber = subscribe(node);
+      if (subscriber) return subscriber;
+    }
     std::unique_lock<std::mutex> lock(shared.mutex);
-    if (shared.ended || ros::isShuttingDown()) return false;
+    if (shared.ended || ros::isShuttingDown()) return std::nullopt;
     shared.changed.wait_for(lock, kRetryPeriod);
   }
-  return true;
 }
 
 void BackgroundSubscriptions::begin() {
@@ -30,11 +36,10 @@ void BackgroundSubscriptions::begin() {
     ros::NodeHandle node;
     node.setCallbackQueue(&shared->queue);
     for (const Subscribe& subscribe : wanted) {
-      if (!awaitMaster(*shared)) return;
-      ros::Subscriber subscriber = subscribe(node);
+      std::optional<ros::Subscriber> subscriber = awaitSubscriber(*shared, node, subscribe);
       const std::lock_guard<std::mutex> lock(shared->mutex);
-      if (shared->ended) return;  // which ends this one, too
-      shared->subscribers.push_back(std::move(subscriber));
+      if (shared->ended || !subscriber) return;  // which ends this one, too
+      shared->subscribers.push_back(std::move(*subscriber));
     }
   }).detach();
   wanted_.clear();

@@ -8,6 +8,7 @@
 #include <rviz/view_controller.h>
 #include <rviz/view_manager.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -116,8 +117,10 @@ void ContactDisplay::refresh() {
                   base::name(finger), force);
     const QImage picture = paintLabel(caption);
     const bool above = (finger == Finger::kIndex) == index_above;
+    const auto* port = context_->getViewManager()->getCurrent()->getCamera()->getViewport();
+    const int rightmost = port->getActualWidth() - picture.width();  // whole within the view
     labels_[finger]->show(
-        picture, places[finger]->x() + kLabelAway,
+        picture, std::min(places[finger]->x() + kLabelAway, rightmost),
         places[finger]->y() + (above ? -kLabelAway - picture.height() : kLabelAway));
   }
 }

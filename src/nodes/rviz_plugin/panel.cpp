@@ -49,7 +49,9 @@ constexpr double kMostBudget = 1000.0;  // ms
 const char* const kByBudget = "as the budget allows";
 
 QStringList fabricNames() {
-  const QDir directory(QString::fromStdString(ros::package::getPath("haptex")) + "/config/fabrics");
+  // Once: it looks into all directories of the workspace.
+  static const std::string package = ros::package::getPath("haptex");
+  const QDir directory(QString::fromStdString(package) + "/config/fabrics");
   QStringList names;
   for (const QString& file : directory.entryList({"*.yaml"}, QDir::Files, QDir::Name)) {
     names << file.left(file.size() - 5);

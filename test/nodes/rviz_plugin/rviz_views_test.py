@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import signal
 import socket
 import subprocess
 import tempfile
@@ -18,6 +19,7 @@ from haptex.srv import SetFabric
 
 LONGEST = 480.0  # s, of the program
 WAIT = 60.0  # s
+RECORDED = 20.0  # s
 FABRICS = ['wool', 'denim', 'silk_habutae', 'linear']
 
 
@@ -79,10 +81,13 @@ class RvizViews(unittest.TestCase):
         self.environment = {**os.environ, 'DISPLAY': self.display.name, 'HOME': self.home.name,
                             'LIBGL_ALWAYS_SOFTWARE': '1', 'QT_X11_NO_MITSHM': '1'}
 
-    def run_program(self, *arguments):
+    def start_master(self):
         master = Master()
         self.addCleanup(master.close)
-        environment = {**self.environment, 'ROS_MASTER_URI': master.uri, 'HAPTEX_MASTER': str(master.process.pid)}
+        return master
+
+    def run_program(self, master, *arguments, **environment):
+        environment = {**self.environment, 'ROS_MASTER_URI': master.uri, **environment}
         program = roslib.packages.find_node('haptex', 'test_rviz_views')[0]
         with open(pathlib.Path(self.home.name, 'log'), 'w+', encoding='utf-8') as log:
             run = subprocess.run([program, *arguments], env=environment, stdout=log,
@@ -94,17 +99,35 @@ class RvizViews(unittest.TestCase):
         return output
 
     def test_nothing_that_people_do_to_a_view_ends_it(self):
-        output = self.run_program('--gtest_filter=-*AMaster*')
-        self.assertIn('[  PASSED  ] 9 tests', output)
-        figures = re.findall(r'^a service that .*$', output, re.MULTILINE)
-        self.assertEqual(len(figures), 1, output)
-        print(figures[0])
+        output = self.run_program(self.start_master(), '--gtest_filter=-*AMaster*:*AReplayedBag*')
+        self.assertIn('[  PASSED  ] 10 tests', output)
+        figures = re.findall(r'^(?:rviz alone|a service that ).*$', output, re.MULTILINE)
+        self.assertEqual(len(figures), 2, output)
+        print('\n'.join(figures))
 
     def test_a_master_that_hangs_or_dies_keeps_nothing(self):
-        output = self.run_program('--gtest_filter=*AMaster*')
+        master = self.start_master()
+        output = self.run_program(master, '--gtest_filter=*AMaster*', HAPTEX_MASTER=str(master.process.pid))
         figures = re.findall(r'^a master that .*$', output, re.MULTILINE)
         self.assertEqual(len(figures), 3, output)
         print('\n'.join(figures))
+
+    def test_a_replayed_bag_is_said_by_the_panel(self):
+        bag = pathlib.Path(self.home.name, 'session.bag')
+        recorder = roslib.packages.find_node('haptex', 'record_topics')[0]
+        with subprocess.Popen([recorder, str(bag), 'haptex/.*', '/diagnostics', '/tf'],
+                              env={**os.environ, 'ROS_NAMESPACE': '/'}) as record:
+            time.sleep(RECORDED)
+            record.send_signal(signal.SIGINT)
+        master = self.start_master()
+        rosgraph.Master('/rviz_views_test', master.uri).setParam('/use_sim_time', True)
+        with subprocess.Popen(['rosbag', 'play', '--clock', '--quiet', str(bag), '__name:=player'],
+                              env={**os.environ, 'ROS_MASTER_URI': master.uri, 'ROS_NAMESPACE': '/'},
+                              stdin=subprocess.DEVNULL) as player:
+            self.addCleanup(lambda: player.poll() is None and player.kill())
+            output = self.run_program(master, '--gtest_filter=*AReplayedBag*', HAPTEX_PLAYER='/player')
+        self.assertIn('[  PASSED  ] 1 test', output)
+        print(re.findall(r'^beside a replayed bag: .*$', output, re.MULTILINE)[0])
 
     def test_the_fabric_changes_200_times_while_it_is_touched_and_rviz_draws_it(self):
         config = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'rviz', 'haptex.rviz')

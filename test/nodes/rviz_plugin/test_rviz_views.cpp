@@ -1,9 +1,11 @@
 // What people do to a view of rviz, and what may go wrong around it: nothing of it ends rviz. Run
 // by rviz_views_test.py, with a display.
+#include <OGRE/OgreRenderWindow.h>
 #include <rviz/display.h>
 #include <rviz/display_group.h>
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/status_property.h>
+#include <rviz/render_panel.h>
 #include <std_srvs/Trigger.h>
 
 #include <QDockWidget>
@@ -14,11 +16,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <future>
 #include <limits>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "timed_application.h"
 #include "view_fixture.h"
 
 namespace haptex::nodes::test_rviz_views {
@@ -101,6 +106,39 @@ TEST_F(ViewTest, EveryColourAndStyleIsDrawn) {
   }
 }
 
+/// Pixels of the view that are red, as arrows of forces are.
+int redPixels(rviz::VisualizationManager& manager) {
+  Ogre::RenderWindow* window = manager.getRenderPanel()->getRenderWindow();
+  const auto width = window->getWidth(), height = window->getHeight();
+  std::vector<std::uint8_t> bytes(std::size_t{3} * width * height);
+  window->copyContentsToMemory(Ogre::Box(0, 0, width, height),
+                               Ogre::PixelBox(width, height, 1, Ogre::PF_BYTE_RGB, bytes.data()));
+  int count = 0;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    count += bytes[i] > 80 && bytes[i] > 2 * bytes[i + 1] && bytes[i] > 2 * bytes[i + 2] ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_F(ViewTest, AForceOfTenMillinewtonsIsSeen) {
+  rviz::Display* display = manager().createDisplay("haptex/Contact", "Contact", true);
+  haptex::Contact contact;
+  contact.header.frame_id = "world";
+  contact_publisher_.publish(contact);
+  run(1.0);
+  EXPECT_EQ(redPixels(manager()), 0);
+  contact.touching = 1;
+  contact.force.z = 0.01;
+  bool seen = false;
+  for (int i = 0; i < 50 && !seen; ++i) {  // queues of one message may lose it
+    contact_publisher_.publish(contact);
+    seen = run(0.2, [&] { return redPixels(manager()) > 0; });
+  }
+  // 9 mm are 8 pixels in a view as small as this one.
+  EXPECT_GE(redPixels(manager()), 20);
+  delete display;
+}
+
 TEST_F(ViewTest, MeshesAndFabricsChangeWhileTheyAreDrawn) {
   rviz::Display* cloth = manager().createDisplay("haptex/Cloth", "Cloth", true);
   for (int i = 0; i < 200; ++i) {
@@ -161,11 +199,28 @@ TEST_F(ViewTest, ConfigurationsFromBeforeTheDisplaysAreTaken) {
       "    - Class: haptex/Removed\n      Name: Of another version\n      Enabled: true\n");
   run(0.1);
   EXPECT_EQ(manager().getRootDisplayGroup()->numDisplays(), 2);
-  for (const char* name : {"cloth", "exoskeleton", "haptex"}) {
+  for (const char* name : {"cloth", "exoskeleton", "garment", "haptex"}) {
     frame_->loadDisplayConfigHelper(std::string(HAPTEX_SOURCE_DIRECTORY "/rviz/") + name + ".rviz",
                                     true);
     run(0.2);
   }
+}
+
+TimedApplication& application() { return *dynamic_cast<TimedApplication*>(qApp); }
+
+/// One line, of what happened since the last one: what was done to the window, its events, most of
+/// which are frames that rviz draws, and those of the panel.
+void printLongest(const std::string& when, const TimeSpent& action) {
+  std::printf("%s:", when.c_str());
+  for (const auto& [kind, time] :
+       {std::make_pair("action", action), std::make_pair("event", application().ofWindow()),
+        std::make_pair("event of the panel", application().ofPanel())}) {
+    if (time.what.empty()) continue;
+    std::printf(" %s %.1f ms = %.1f computing + %.1f queued + %.1f waiting (%s);", kind,
+                time.lasted, time.computed, time.queued, time.waited(), time.what.c_str());
+  }
+  std::printf("\n");
+  application().forget();
 }
 
 TEST_F(ViewTest, AServiceThatHangsDoesNotKeepThePanel) {
@@ -184,6 +239,10 @@ TEST_F(ViewTest, AServiceThatHangsDoesNotKeepThePanel) {
   ros::ServiceServer service = node.advertiseService("cloth/reset", hang);
   ros::AsyncSpinner spinner(1, &queue);
   spinner.start();
+  run(1.0);  // rviz's first frames
+  application().forget();
+  run(3.0);
+  printLongest("rviz alone", {});
   QDockWidget* dock = frame_->addPanelByName("haptex", "haptex/Panel");
   QPushButton* reset = nullptr;
   for (QPushButton* button : dock->findChildren<QPushButton*>()) {
@@ -192,11 +251,9 @@ TEST_F(ViewTest, AServiceThatHangsDoesNotKeepThePanel) {
   ASSERT_NE(reset, nullptr);
   auto* answer = dock->findChild<QLabel*>("answer");
   ASSERT_NE(answer, nullptr);
-  longest_event_ = 0.0;
-  QElapsedTimer click;
-  click.start();
+  const Stopwatch click;
   reset->click();
-  const double first_click = 1e-6 * static_cast<double>(click.nsecsElapsed());
+  const TimeSpent first_click = click.read("the button");
   EXPECT_TRUE(run(10.0, [&] { return called.load(); }));
   // All of this while the service hangs.
   EXPECT_TRUE(run(10.0, [&] { return answer->text() == "no answer yet from cloth/reset"; }));
@@ -209,24 +266,54 @@ TEST_F(ViewTest, AServiceThatHangsDoesNotKeepThePanel) {
   reset->click();
   EXPECT_TRUE(run(10.0, [&] { return answer->text().contains("does not answer"); }))
       << answer->text().toStdString();
-  std::printf(
-      "a service that hangs or is gone: longest action %.1f ms, longest event of the window %.1f "
-      "ms\n",
-      first_click, longest_event_);
+  printLongest("a service that hangs or is gone", first_click);
 }
 
-/// What is done with panel and display by a person. @returns ms, the longest that one of it took
-double longestOf(const std::function<void(double)>& run,
-                 const std::vector<std::function<void()>>& actions) {
-  double longest = 0.0;
-  QElapsedTimer timer;
-  for (const auto& action : actions) {
-    timer.start();
+using Action = std::pair<const char*, std::function<void()>>;
+
+/// Only beside a bag that is replayed by a node that HAPTEX_PLAYER names, once.
+TEST_F(ViewTest, AReplayedBagIsSaidByThePanel) {
+  const char* player = std::getenv("HAPTEX_PLAYER");
+  if (player == nullptr) GTEST_SKIP() << "nothing is replayed";
+  const QString begin =
+      QString("A bag is replayed by %1, and no node answers the buttons. ").arg(player);
+  QDockWidget* dock = frame_->addPanelByName("haptex", "haptex/Panel");
+  auto* line = dock->findChild<QLabel*>("line");
+  ASSERT_NE(line, nullptr);
+  const auto said = [&] { return line->text().toStdString(); };
+  EXPECT_TRUE(run(20.0, [&] { return line->text().startsWith(begin + "It recorded: the index"); }))
+      << said();
+  std::printf("beside a replayed bag: %s\n", said().c_str());
+  // And all the time, also when it has ended.
+  EXPECT_FALSE(run(3.0, [&] { return !line->text().startsWith(begin); })) << said();
+  EXPECT_TRUE(run(60.0, [&] { return line->text().contains("Nothing has come for"); })) << said();
+  EXPECT_TRUE(line->text().startsWith(begin)) << said();
+}
+
+/// What is done with panel and display by a person.
+TimeSpent longestOf(const std::function<void(double)>& run, const std::vector<Action>& actions) {
+  TimeSpent longest;
+  for (const auto& [name, action] : actions) {
+    const Stopwatch watch;
     action();
-    longest = std::max(longest, 1e-6 * static_cast<double>(timer.nsecsElapsed()));
+    const TimeSpent spent = watch.read(name);
+    if (spent.lasted > longest.lasted) longest = spent;
     run(0.1);
   }
   return longest;
+}
+
+/// Whether somebody else in this process, like one of rviz's own displays, who subscribes is
+/// answered by roscpp within a while.
+bool subscribesToNothing(ros::NodeHandle node) {
+  std::promise<void> promise;
+  std::future<void> done = promise.get_future();
+  std::thread([node, promise = std::move(promise)]() mutable {
+    const ros::Subscriber subscriber = node.subscribe<haptex::ClothMesh>(
+        "nothing", 1, boost::function<void(const haptex::ClothMeshConstPtr&)>());
+    promise.set_value();
+  }).detach();
+  return done.wait_for(std::chrono::seconds(20)) == std::future_status::ready;
 }
 
 /// Only with a master of its own, whose process HAPTEX_MASTER names.
@@ -242,22 +329,27 @@ TEST_F(ViewTest, AMasterThatHangsOrDiesKeepsNothing) {
     QDockWidget* dock = nullptr;
     rviz::Display* cloth = nullptr;
     const auto handle = [this](double seconds) { run(seconds); };
-    longest_event_ = 0.0;
-    double longest = 0.0;
+    application().forget();
+    const auto click = [&dock] {
+      for (auto* button : dock->findChildren<QPushButton*>()) button->click();
+    };
+    TimeSpent longest;
     for (int cycle = 0; cycle < 5; ++cycle) {
-      longest = std::max(
-          longest,
-          longestOf(handle,
-                    {[&] { dock = frame_->addPanelByName("haptex", "haptex/Panel"); },
-                     [&] { cloth = manager().createDisplay("haptex/Cloth", "Cloth", true); },
-                     [&] {
-                       for (auto* button : dock->findChildren<QPushButton*>()) button->click();
-                     },
-                     [&] { cloth->reset(); }, [&] { delete cloth; }, [&] { delete dock; }}));
+      const TimeSpent spent = longestOf(
+          handle,
+          {{"adding the panel", [&] { dock = frame_->addPanelByName("haptex", "haptex/Panel"); }},
+           {"adding the display",
+            [&] { cloth = manager().createDisplay("haptex/Cloth", "Cloth", true); }},
+           {"every button", click},
+           {"resetting the display", [&] { cloth->reset(); }},
+           {"a frame of the display", [&] { cloth->update(0.03F, 0.03F); }},
+           {"removing the display", [&] { delete cloth; }},
+           {"removing the panel", [&] { delete dock; }}});
+      if (spent.lasted > longest.lasted) longest = spent;
     }
-    std::printf("a master that %s: longest action %.1f ms, longest event of the window %.1f ms\n",
-                what, longest, longest_event_);
+    printLongest(std::string("a master that ") + what, longest);
   }
+  EXPECT_TRUE(subscribesToNothing(node_)) << "who subscribes now holds roscpp's lock for ever";
 }
 
 }  // namespace
@@ -266,7 +358,7 @@ TEST_F(ViewTest, AMasterThatHangsOrDiesKeepsNothing) {
 int main(int argc, char** argv) {
   ros::init(argc, argv, "test_rviz_views", ros::init_options::AnonymousName);
   testing::InitGoogleTest(&argc, argv);
-  QApplication application(argc, argv);
+  haptex::nodes::TimedApplication application(argc, argv);
   const ros::NodeHandle node;  // roscpp runs as long as it is there
   const int result = RUN_ALL_TESTS();
   haptex::nodes::ViewTest::closeWindow();

@@ -85,7 +85,6 @@ class ViewTest : public ::testing::Test {
 
   rviz::VisualizationManager& manager() { return *frame_->getManager(); }
 
-  double longest_event_ = 0.0;  // ms, of what run() handled
   ros::NodeHandle node_;
   static rviz::VisualizationFrame* frame_;
   ros::Publisher mesh_publisher_, state_publisher_, contact_publisher_;

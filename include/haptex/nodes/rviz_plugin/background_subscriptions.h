@@ -10,14 +10,15 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace haptex::nodes {
 
 /// Subscribes and unsubscribes on a thread of its own, because both ask the master, and roscpp
-/// waits for one that is gone without end. Messages come in callAvailable(), on the thread that
-/// calls it.
+/// waits for one that is gone without end; from the first begin() on it waits no more in the whole
+/// process. Messages come in callAvailable(), on the thread that calls it.
 class BackgroundSubscriptions {
  public:
   BackgroundSubscriptions() = default;
@@ -67,7 +68,8 @@ class BackgroundSubscriptions {
     std::vector<ros::Subscriber> subscribers;
   };
 
-  static bool awaitMaster(Shared& shared);
+  static std::optional<ros::Subscriber> awaitSubscriber(Shared& shared, ros::NodeHandle& node,
+                                                        const Subscribe& subscribe);
 
   std::vector<Subscribe> wanted_;
   std::shared_ptr<Shared> shared_;  // with the thread
