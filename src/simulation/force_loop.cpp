@@ -104,6 +104,7 @@ void ForceLoop::tick(Time now) {
   step();
   const bool loads_due = loadsAreDue(state_taken, now);
   if (loads_due) ++view_.loadings;
+  if (loads_due && layer_) layer_->sendLoads(loadGain());
   showView(state_taken || loads_due);
   if (picture_wanted_.exchange(false)) showPicture();
   ++status_.ticks;
