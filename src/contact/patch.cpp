@@ -254,7 +254,7 @@ void Patch::assemble(const LargeScaleMotion& motion, double h) {
     if (rim_) rhs_.col(i) = h * masses_[i] * effects_.gravity;
   }
   forces_.assembleLinearised(state_.ofForces(), {h, h}, matrix_, rhs_);
-  if (rim_) rim_->addTo(matrix_, rhs_, carried_load_.force + weight_, h);
+  if (rim_) rim_->addTo(matrix_, rhs_, carried_load_.force + weight_ + obstacleForce(), h);
 }
 
 void Patch::add(const TouchedParticle& touched, double h) {
@@ -318,6 +318,14 @@ bool Patch::advance(const LargeScaleMotion& motion,
 void Patch::carry(const CarriedForce& load) {
   carried_load_ = load;
   if (rim_) rim_->setClothVelocity(load.velocity);
+}
+
+/// N, of the last step, on all of the patch.
+Vector3d Patch::obstacleForce() const {
+  Vector3d sum = Vector3d::Zero();
+  if (!obstacles_) return sum;
+  for (const TouchedParticle& touched : obstacles_->touched()) sum += touched.force();
+  return sum;
 }
 
 /// As the step has found.

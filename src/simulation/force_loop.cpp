@@ -293,6 +293,7 @@ void ForceLoop::showView(bool has_news) {
   view_.loads.clear();
   if (layer_) view_.loads.assign(layer_->loads().begin(), layer_->loads().end());
   view_.is_pinched = layer_ && layer_->isPinched();
+  view_.is_held = layer_ && layer_->isHeld();
   view_.mesh = layer_mesh_;
   view_.load_gain = loadGain();
   views_.write(view_);

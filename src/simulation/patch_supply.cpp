@@ -15,7 +15,7 @@ bool PatchSupply::ask(const LoopView& view, const Search& search) {
   }
   if (selection_.finish()) outdated_ = true;
   const bool was_carried = isCarried();
-  rounds_of_pinch_ = view.is_pinched ? kRests : std::max(0, rounds_of_pinch_ - 1);
+  rounds_of_pinch_ = isPinch(view) ? kRests : std::max(0, rounds_of_pinch_ - 1);
   if (isCarried() != was_carried) outdated_ = true;
   return true;
 }
@@ -31,6 +31,11 @@ std::unique_ptr<contact::Patch> PatchSupply::prepare(const contact::HapticLayer&
   widen(layer);
   return layer.preparePatch(triangles(), attached_, wide_,
                             isCarried() && settings_.surround == 0.0);
+}
+
+/// Cloth that slips through the fingers is held by what is around it, and not by its inertia.
+bool PatchSupply::isPinch(const LoopView& view) const {
+  return settings_.surround > 0.0 ? view.is_pinched : view.is_held;
 }
 
 bool PatchSupply::isCarried() const {

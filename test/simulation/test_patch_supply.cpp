@@ -145,7 +145,8 @@ TEST_F(PatchSupplyTest, APinchWidensThePatchUntilItHasBeenOpenForAWhile) {
   EXPECT_EQ(particles(), touched);
 }
 
-TEST_F(PatchSupplyTest, WithoutASurroundAPinchCarriesTheRimUntilItHasBeenOpenForAWhile) {
+TEST_F(PatchSupplyTest,
+       WithoutASurroundAPinchThatHoldsTheClothCarriesTheRimUntilItHasBeenOpenForAWhile) {
   PatchSupply supply({}, mesh_.triangles.size());
   std::vector<char> attached = nothing_attached_;
   attached[0] = 1;
@@ -155,9 +156,12 @@ TEST_F(PatchSupplyTest, WithoutASurroundAPinchCarriesTheRimUntilItHasBeenOpenFor
   EXPECT_EQ(supply.prepare(layer_)->rim(), contact::Patch::Rim::kHeld);
   index_.is_pinched = true;
   supply.ask(index_, search);
+  EXPECT_FALSE(supply.isOutdated()) << "it slips";
+  index_.is_held = true;
+  supply.ask(index_, search);
   ASSERT_TRUE(supply.isOutdated());
   EXPECT_EQ(supply.prepare(layer_)->rim(), contact::Patch::Rim::kCarried);
-  index_.is_pinched = false;
+  index_.is_pinched = index_.is_held = false;
   for (int round = 1; round < PatchSupply::kRests; ++round) {
     supply.ask(index_, search);
     EXPECT_FALSE(supply.isOutdated()) << round;

@@ -142,6 +142,11 @@ class HapticLayer {
   const base::PerFinger<FingertipContact>& contacts() const { return contacts_; }
   /// Whether the fingertips press on the cloth from opposite sides, so that a hand may carry it.
   bool isPinched() const;
+  /// Whether they do and the cloth does not slip on one of them at least.
+  bool isHeld() const {
+    return isPinched() &&
+           !(contacts_[base::Finger::kIndex].slipping && contacts_[base::Finger::kThumb].slipping);
+  }
   /// What acts on the large-scale cloth, see cloth::Cloth::setPointLoads().
   const std::vector<cloth::PointLoad>& loads() const { return loads_; }
 

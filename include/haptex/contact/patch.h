@@ -112,6 +112,7 @@ class Patch {
   Eigen::Vector3d placeOnLargeScale(int particle, const LargeScaleMotion& motion) const;
   void putOnCloth(const LargeScaleMotion& motion);
   void moveRim(double h);
+  Eigen::Vector3d obstacleForce() const;
   Particles atObstacles(const std::vector<Eigen::Vector3d>& positions) const;
   bool placeOn(const Patch& other, int particle, const LargeScaleMotion& motion);
   void tie(int particle, const LargeScaleMotion& motion, double h);

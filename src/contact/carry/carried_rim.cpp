@@ -61,7 +61,7 @@ void CarriedRim::setClothVelocity(const Eigen::Vector3d& velocity) {
 }
 
 void CarriedRim::addTo(linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs,
-                       const Eigen::Vector3d& fingers_force, double h) const {
+                       const Eigen::Vector3d& outer_force, double h) const {
   for (const Fold& fold : folds_) matrix.lower(fold.to) += matrix.lower(fold.from);
   Eigen::Matrix3d& diagonal = matrix.diagonal(first_);
   for (int i = first_ + 1; i < matrix.size(); ++i) {
@@ -72,7 +72,7 @@ void CarriedRim::addTo(linear::SymmetricBlockMatrix& matrix, linear::BlockVector
   const double stiffness = mass_ * kRate * kRate, damping = 2.0 * mass_ * kRate;
   diagonal.diagonal().array() += mass_ + h * damping + h * h * stiffness;
   rhs.col(first_) -=
-      h * (fingers_force + stiffness * (offset_ + h * velocity_) + damping * velocity_);
+      h * (outer_force + stiffness * (offset_ + h * velocity_) + damping * velocity_);
 }
 
 void CarriedRim::advance(const Eigen::Vector3d& change, double h) {

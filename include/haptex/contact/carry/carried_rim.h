@@ -16,11 +16,12 @@ namespace haptex::contact {
 ///
 ///   m (q'' + w') + 2 m r q' + m r^2 q = F - G
 ///
-/// F (N) is what the patch exerts on its rim, G what the fingers exert on the large-scale cloth, w
-/// the velocity of the large-scale cloth there, which jumps from one state to the next. So what
-/// goes on as the large-scale layer has foreseen is as if the rim were on its way, and what does
-/// not is felt as the inertia of the cloth and not as the stretch of the fabric up to a rim that
-/// does not know of it yet. At rest F is G, and q vanishes.
+/// F (N) is what the patch exerts on its rim, G what the fingers exert on the large-scale cloth,
+/// with the patch's weight and what obstacles exert on it, w the velocity of the large-scale cloth
+/// there, which jumps from one state to the next. So what goes on as the large-scale layer has
+/// foreseen is as if the rim were on its way, and what does not is felt as the inertia of the cloth
+/// and not as the stretch of the fabric up to a rim that does not know of it yet. At rest F is G,
+/// and q vanishes.
 ///
 /// q is one more unknown of the patch's step, in the place of its first rim particle. Nothing
 /// allocates after the constructor.
@@ -48,10 +49,10 @@ class CarriedRim {
   void setClothVelocity(const Eigen::Vector3d& velocity);
 
   /// Adds the rows and columns of all rim particles to those of the first, and what holds it.
-  /// @param fingers_force N, G
+  /// @param outer_force N, G
   /// @param h             s
   void addTo(linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs,
-             const Eigen::Vector3d& fingers_force, double h) const;
+             const Eigen::Vector3d& outer_force, double h) const;
   /// One step. @param change m/s, of q', as solved for
   void advance(const Eigen::Vector3d& change, double h);
 
