@@ -51,6 +51,18 @@ linear::SymmetricBlockMatrix patternOf(const RefinedCut& cut, const PatchForces&
   return {size, cut.mesh.triangles, pairs};
 }
 
+/// m/s, of the hand: the mean of the fingertips.
+double speedOf(const base::PerFinger<const Fingertip*>& fingertips) {
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  for (const Finger finger : kFingers) {
+    if (fingertips[finger] == nullptr) continue;
+    sum += fingertips[finger]->velocity;
+    ++count;
+  }
+  return count > 0 ? sum.norm() / count : 0.0;
+}
+
 linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& matrix, int size) {
   std::vector<std::array<int, 2>> pairs;
   for (int i = 0; i < size; ++i) {
@@ -292,6 +304,7 @@ bool Patch::advance(const LargeScaleMotion& motion,
                     const base::PerFinger<const Fingertip*>& fingertips, double h) {
   state_.time = motion.time();
   if (layers_) layers_->update(motion, fingertips, h);
+  if (rim_) rim_->follow(speedOf(fingertips), h);
   assemble(motion, h);
   addContact(fingertips, h);
   if (!solve(h)) return false;

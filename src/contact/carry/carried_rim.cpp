@@ -52,6 +52,8 @@ void CarriedRim::start(const Eigen::Vector3d& cloth_velocity) {
 void CarriedRim::goOnFrom(const CarriedRim& other) {
   offset_ = other.offset_;
   velocity_ = other.velocity_;
+  rate_ = other.rate_;
+  rest_ = other.rest_;
   cloth_velocity_ = other.cloth_velocity_;
 }
 
@@ -69,7 +71,7 @@ void CarriedRim::addTo(linear::SymmetricBlockMatrix& matrix, linear::BlockVector
     rhs.col(first_) += rhs.col(i);
   }
   for (const int slot : inner_) diagonal += matrix.lower(slot) + matrix.lower(slot).transpose();
-  const double stiffness = mass_ * kRate * kRate, damping = 2.0 * mass_ * kRate;
+  const double stiffness = mass_ * rate_ * rate_, damping = 2.0 * mass_ * rate_;
   diagonal.diagonal().array() += mass_ + h * damping + h * h * stiffness;
   rhs.col(first_) -=
       h * (outer_force + stiffness * (offset_ + h * velocity_) + damping * velocity_);
@@ -78,6 +80,12 @@ void CarriedRim::addTo(linear::SymmetricBlockMatrix& matrix, linear::BlockVector
 void CarriedRim::advance(const Eigen::Vector3d& change, double h) {
   velocity_ += change;
   offset_ += h * velocity_;
+}
+
+void CarriedRim::follow(double speed, double h) {
+  rest_ = speed > kSpeed ? 0.0 : rest_ + h;
+  if (rest_ == 0.0) rate_ = kRate;
+  if (rest_ > kRest) rate_ = std::min(kMostRate, rate_ * std::exp(h / kStiffening));
 }
 
 double massAround(const mesh::ClothMesh& coarse, const RefinedCut& cut,

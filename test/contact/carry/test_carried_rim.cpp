@@ -79,11 +79,30 @@ TEST_F(CarriedRimTest, ABalancedRimStaysOnTheLargeScaleCloth) {
 // m (q'' + 2 r q' + r^2 q) = -G from rest: q = -G / (m r^2) (1 - (1 + r t) exp(-r t)).
 TEST_F(CarriedRimTest, GoesAlongWithItsInertiaAndASpringThatIsCriticallyDamped) {
   const Vector3d force(0.0, 0.02, 0.0);
+  rim_.follow(2.0 * CarriedRim::kSpeed, 1e-3);
   const double h = 1e-5, r = CarriedRim::kRate;
   for (int i = 0; i < 2000; ++i) step(force, h);
   const double t = 2000 * h;
   const double exact = -force.y() / (kMass * r * r) * (1.0 - (1.0 + r * t) * std::exp(-r * t));
   EXPECT_NEAR(rim_.offset().y(), exact, 2.0 * r * h * std::abs(exact));
+}
+
+TEST_F(CarriedRimTest, IsHeldWhileTheHandRests) {
+  const Vector3d force(0.0, 0.2, 0.0);
+  const double h = 1e-3;
+  for (int i = 0; i < 100; ++i) step(force, h);
+  EXPECT_LT(rim_.offset().norm(), 1e-5) << "before the hand has moved";
+  rim_.follow(2.0 * CarriedRim::kSpeed, h);
+  const auto rest = [&](double seconds) {
+    for (double t = 0.0; t < seconds; t += h) {
+      rim_.follow(0.5 * CarriedRim::kSpeed, h);
+      step(force, h);
+    }
+  };
+  rest(0.5 * CarriedRim::kRest);
+  EXPECT_GT(rim_.offset().norm(), 1e-2);
+  rest(CarriedRim::kRest + 0.2);
+  EXPECT_LT(rim_.offset().norm(), 1e-5);
 }
 
 TEST_F(CarriedRimTest, GoesOnAsFastAsItWasWhenTheLargeScaleClothDoesNot) {

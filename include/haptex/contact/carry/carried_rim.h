@@ -23,11 +23,18 @@ namespace haptex::contact {
 /// and not as the stretch of the fabric up to a rim that does not know of it yet. At rest F is G,
 /// and q vanishes.
 ///
+/// While the hand rests, the spring is as stiff as the fabric, so that the rim is where the
+/// large-scale cloth is: what is around a patch that is pulled holds it by its stretch, of which
+/// the rim knows nothing. It gives way when the hand moves, and grows by a constant factor per step
+/// from kRest after that on, so that nothing jumps.
+///
 /// q is one more unknown of the patch's step, in the place of its first rim particle. Nothing
 /// allocates after the constructor.
 class CarriedRim {
  public:
-  static constexpr double kRate = 60.0;  ///< 1/s, r
+  static constexpr double kRate = 60.0;   ///< 1/s, r, while the hand moves
+  static constexpr double kSpeed = 0.02;  ///< m/s, of the hand, from which on it moves
+  static constexpr double kRest = 0.6;    ///< s, from its last motion until the spring grows
 
   /// @param pattern of the patch's matrix, with pairs()
   /// @param mass    kg, m, > 0
@@ -55,8 +62,12 @@ class CarriedRim {
              const Eigen::Vector3d& outer_force, double h) const;
   /// One step. @param change m/s, of q', as solved for
   void advance(const Eigen::Vector3d& change, double h);
+  /// @param speed m/s, of the hand in a step of h (s)
+  void follow(double speed, double h);
 
  private:
+  static constexpr double kMostRate = 4000.0;  // 1/s: as if it were held
+  static constexpr double kStiffening = 0.04;  // s, in which r grows by e
   struct Fold {  // lower block `from`, of a rim particle, goes to lower block `to`
     int from, to;
   };
@@ -64,6 +75,8 @@ class CarriedRim {
   std::vector<Fold> folds_;  // couplings of rim particles and free ones
   std::vector<int> inner_;   // lower blocks of two rim particles
   double mass_;
+  double rate_ = kMostRate;  // 1/s, r
+  double rest_ = kRest;      // s, since the hand has moved
   Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d cloth_velocity_ = Eigen::Vector3d::Zero();
