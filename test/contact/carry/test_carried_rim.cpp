@@ -58,7 +58,7 @@ TEST_F(CarriedRimTest, ActsAsAllOfItsParticlesThatMoveTogether) {
   const double energy = moved.cwiseProduct(product).sum();
   const double work = moved.cwiseProduct(rhs_).sum();
 
-  const double h = 1e-9;  // so that what holds the rim is its mass
+  const double h = 1e-12;  // so that what holds the rim is its mass
   rim_.addTo(matrix_, rhs_, Vector3d::Zero(), h);
   for (int i = cut_.free_count + 1; i < matrix_.size(); ++i) moved.col(i).setZero();
   matrix_.multiply(moved, product);
