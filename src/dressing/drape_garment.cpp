@@ -85,12 +85,15 @@ int drapeGarment(const std::vector<std::string>& arguments, const std::string& f
   Request request;
   const auto read = [&] { request = parse(arguments); };
   return base::runProgram(kUsage, err, read, [&] {
+    const CoarseStart start = coarseStart(request.edge_length);
+    DrapeSettings settings;
+    settings.halvings = start.halvings;
     const garment::GarmentMesh garment =
-        garment::makeGarmentMesh(garment::loadPattern(request.garment), request.edge_length);
+        garment::makeGarmentMesh(garment::loadPattern(request.garment), start.edge_length);
     const std::vector<material::Fabric> fabrics =
         loadFabrics(garment.fabrics, request.garment, fabric_directory);
     const mesh::ObstacleMesh body = mesh::loadObjSurface(request.body);
-    const DrapeOutcome outcome = drape(garment, fabrics, body, DrapeSettings());
+    const DrapeOutcome outcome = drape(garment, fabrics, body, settings);
     std::ofstream file(request.out);
     mesh::writeObj(outcome.mesh, garment.panel_names, file);
     if (!file.flush()) throw std::runtime_error(request.out + ": cannot be written");

@@ -1,11 +1,13 @@
 // Contact of a cloth with itself as a force: pressure, derivatives, momentum.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "derivatives.h"
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/linear/block_cholesky.h"
 #include "self_contact_fixtures.h"
 
 namespace haptex::cloth::test_self_contact {
@@ -211,6 +213,32 @@ TEST(SelfContact, JacobianIsThatOfTheForces) {
   for (const JacobianBlock& block : blocks) {
     EXPECT_LT((block.by_position - transposed(block).transpose()).norm(), 1e-5 * stiffest);
   }
+}
+
+/// An accordion whose folds lie on each other: what touches is partly coupled by its own triangles.
+TEST(SelfContact, LeavesToFactorsAMatrixThatIsPositiveDefinite) {
+  constexpr double kCell = 2e-3, kPitch = 2e-4;  // m, of cells and between folds
+  constexpr int kCells = 8;
+  mesh::ClothMesh mesh = mesh::makeRectangle(kCells * kCell, kCells * kCell, kCells, kCells,
+                                             mesh::Triangulation::kAlternating);
+  const Cloth cloth(mesh, fabricNamed("wool"), selfCollision());
+  ClothState state = cloth.initialState();
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    const auto row = static_cast<int>(i) / (kCells + 1),
+               column = static_cast<int>(i) % (kCells + 1);
+    state.positions[i] = {column * kCell, kPitch * row, row % 2 == 0 ? 0.0 : kCell};
+  }
+  linear::SymmetricBlockMatrix matrix = cloth.pattern();
+  matrix.setZero();
+  linear::BlockVector rhs = linear::BlockVector::Zero(3, matrix.size());
+  cloth.selfContact()->assembleLinearised(state.ofForces(), {1e-2, 0.0}, matrix, rhs);
+  ASSERT_GT(matrix.couplingCount(), 0);
+  double largest = 0.0;
+  for (int i = 0; i < matrix.size(); ++i) largest = std::max(largest, matrix.diagonal(i).norm());
+  for (int i = 0; i < matrix.size(); ++i) {
+    matrix.diagonal(i) += 1e-9 * largest * Eigen::Matrix3d::Identity();
+  }
+  EXPECT_TRUE(linear::BlockCholesky(matrix).factorise(matrix));
 }
 
 TEST(SelfContact, RefusesWhatItCannotDo) {
