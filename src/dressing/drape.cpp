@@ -23,8 +23,8 @@ using Eigen::Vector3d;
 
 // N/m, of threads while seams close at most: stiff ones make each step several times as long.
 constexpr double kClosingModulus = 500.0;
-// m, of the longest edges with which panels are sewn if shorter ones are asked for.
-constexpr double kSewnEdge = 0.045;
+constexpr double kSewnEdge =
+    0.045;  // m, the longest with which panels are sewn if finer ones are asked for
 constexpr int kMostHalvings = 8;
 constexpr double kStepGrowth = 1.5;  // of a time step from step to step, at most
 
@@ -112,27 +112,30 @@ class Dressing {
     OverdampedCloth cloth = makeCloth(garment_.mesh, smoothFabrics(thickness), effects, 0.0);
     SeamPull pull(garment_, settings_.tension);
     const double farthest = 0.5 * settings_.closing_speed * settings_.time_step;
-    double far_at = 0.0;
+    double tried_at = 0.0;  // or it was not to be tried
     while (true) {
       const std::vector<Vector3d>& positions = cloth.state().positions;
       outcome_.closed_gap = pull.gap(positions);
-      if (outcome_.closed_gap >= settings_.sewn_gap) far_at = outcome_.closing_time;
-      const bool is_patient = outcome_.closing_time - far_at < settings_.patience;
-      if (outcome_.closed_gap < settings_.sewn_gap && sew(positions, is_patient)) return;
+      const bool is_near = outcome_.closed_gap < settings_.sewn_gap;
+      if (is_near && sew(positions)) return;
+      if (!is_near) tried_at = outcome_.closing_time;
+      if (outcome_.closing_time - tried_at >= settings_.patience) {
+        if (outcome_.with_body == 0 && pullApart()) return;
+        tried_at = outcome_.closing_time;
+      }
       if (outcome_.closing_time > settings_.most_closing_time) refuseGap(pull, positions);
       cloth.cloth().setPointLoads(pull.loads(positions, farthest));
       step(cloth, settings_.time_step, outcome_.closing_time);
     }
   }
 
-  /// @param is_patient whether it waits for a state that sewn does not intersect itself
-  /// @return whether it is sewn
-  bool sew(const std::vector<Vector3d>& positions, bool is_patient) {
+  /// @return whether what is sewn there intersects nothing
+  bool sew(const std::vector<Vector3d>& positions) {
     mesh::ClothMesh mesh = garment_.mesh;
     mesh.initial_positions = positions;
     merge(mesh);
     countIntersections();
-    return outcome_.with_body == 0 && (!is_patient || outcome_.with_itself == 0);
+    return outcome_.with_body == 0 && outcome_.with_itself == 0;
   }
 
   void countIntersections() {
@@ -185,12 +188,29 @@ class Dressing {
     merged_ = std::move(merged.particles);
   }
 
-  /// @param rest_speed m/s, below which the garment is at rest
-  void settle(double rest_speed) {
+  OverdampedCloth makeSewnCloth() const {
     cloth::ModelledEffects effects;
     effects.gravity = {0.0, 0.0, -base::kStandardGravity};
     effects.bending = effects.contacts = effects.self_collision = true;
-    OverdampedCloth cloth = makeCloth(outcome_.mesh, fabrics_, effects, std::nullopt);
+    return makeCloth(outcome_.mesh, fabrics_, effects, std::nullopt);
+  }
+
+  /// Lets the sewn garment come out of itself (cloth::Untangling).
+  /// @return whether it has in patience times 2
+  bool pullApart() {
+    OverdampedCloth cloth = makeSewnCloth();
+    double time = 0.0;
+    do {
+      step(cloth, settings_.time_step, time);
+    } while (cloth.report().tangle.pairs > 0 && time < 2.0 * settings_.patience);
+    outcome_.settling_time += time;
+    outcome_.mesh.initial_positions = cloth.state().positions;
+    return cloth.report().tangle.pairs == 0;
+  }
+
+  /// @param rest_speed m/s, below which the garment is at rest
+  void settle(double rest_speed) {
+    OverdampedCloth cloth = makeSewnCloth();
     outcome_.at_rest = false;
     double time = 0.0, fast_at = 0.0, time_step = settings_.time_step;
     while (!outcome_.at_rest && time < settings_.most_time) {

@@ -23,9 +23,10 @@ struct DrapeSettings {
   /// most. It keeps a distance from the body and from itself that sewing can do without.
   double thickness = 4e-3;
   double sewn_gap = 8e-3;  ///< m, of particles from the middle of their seam, that sewing closes
-  /// s: so long such a state that would intersect itself when sewn waits for a better one. Then it
-  /// is sewn, and pulled apart (cloth::Untangling).
-  double patience = 1.0;
+  /// s: after so long such a state that would intersect itself when sewn is sewn for a trial, and
+  /// pulled apart (cloth::Untangling) for up to twice that time. If that fails seams go on closing,
+  /// up to the next trial.
+  double patience = 0.2;
   double most_closing_time = 20.0;  ///< s
   // From then on:
   int halvings = 0;            ///< how often edges are halved once the garment is sewn, 0 to 8
@@ -73,7 +74,7 @@ struct DrapeOutcome {
 /// 1. The sides of seams are pulled together without friction, and with a lift instead of weight.
 ///    Panels touch the body and each other and pass through neither.
 /// 2. As soon as all are near, and what is sewn together there intersects neither itself nor the
-///    body, they become one mesh.
+///    body, or can be pulled apart, they become one mesh.
 /// 3. That comes to rest with weight, thickness and friction as they are.
 /// 4. Its edges are halved (garment::halved()) where it is, and it comes to rest again; settings
 /// say
