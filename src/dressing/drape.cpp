@@ -23,8 +23,8 @@ using Eigen::Vector3d;
 
 // N/m, of threads while seams close at most: stiff ones make each step several times as long.
 constexpr double kClosingModulus = 500.0;
-constexpr double kSewnEdge =
-    0.045;  // m, the longest with which panels are sewn if finer ones are asked for
+// m, of the longest edges with which panels are sewn if shorter ones are asked for.
+constexpr double kSewnEdge = 0.045;
 constexpr int kMostHalvings = 8;
 constexpr double kStepGrowth = 1.5;  // of a time step from step to step, at most
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "haptex/base/require.h"
+#include "haptex/garment/placement/preposition.h"
 #include "haptex/garment/triangulation/panel_mesh.h"
 #include "haptex/garment/triangulation/seam_divisions.h"
 
@@ -101,17 +102,11 @@ std::vector<PanelMesh> triangulateAlike(const Pattern& pattern, double edge_leng
   return panels;
 }
 
-}  // namespace
-
-GarmentMesh makeGarmentMesh(const Pattern& pattern, double edge_length) {
-  for (const Panel& panel : pattern.panels) {
-    const auto* on_carrier = std::get_if<OnCarrier>(&panel.placement);
-    if (on_carrier == nullptr) continue;
-    base::refuse("panel '", panel.name, "' is to be laid on the carrier '", on_carrier->carrier,
-                 "': allowed are panels that are placed by position and rpy");
-  }
+/// @param body on which panels are laid; null: none may be on a carrier
+GarmentMesh make(const Pattern& pattern, double edge_length, const Body* body) {
   SeamDivisions divisions;
-  const std::vector<PanelMesh> panels = triangulateAlike(pattern, edge_length, divisions);
+  std::vector<PanelMesh> panels = triangulateAlike(pattern, edge_length, divisions);
+  if (body != nullptr) preposition(pattern, *body, panels);
   std::vector<int> first;  // particle, of every panel
   int particles = 0;
   for (const PanelMesh& panel : panels) {
@@ -137,6 +132,23 @@ GarmentMesh makeGarmentMesh(const Pattern& pattern, double edge_length) {
         {std::move(a.particles), std::move(b.particles), std::move(a.shares), std::move(b.shares)});
   }
   return garment;
+}
+
+}  // namespace
+
+GarmentMesh makeGarmentMesh(const Pattern& pattern, double edge_length) {
+  for (const Panel& panel : pattern.panels) {
+    const auto* on_carrier = std::get_if<OnCarrier>(&panel.placement);
+    if (on_carrier == nullptr) continue;
+    base::refuse("panel '", panel.name, "' is to be laid on the carrier '", on_carrier->carrier,
+                 "': that takes a body with segments, allowed without one are panels that are "
+                 "placed by position and rpy");
+  }
+  return make(pattern, edge_length, nullptr);
+}
+
+GarmentMesh makeGarmentMesh(const Pattern& pattern, double edge_length, const Body& body) {
+  return make(pattern, edge_length, &body);
 }
 
 }  // namespace haptex::garment

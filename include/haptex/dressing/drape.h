@@ -30,7 +30,7 @@ struct DrapeSettings {
   double most_closing_time = 20.0;  ///< s
   // From then on:
   int halvings = 0;            ///< how often edges are halved once the garment is sewn, 0 to 8
-  double halved_speed = 0.02;  ///< m/s: the fastest particle is slower than that when they are
+  double halved_speed = 5e-3;  ///< m/s: the fastest particle is slower than that when they are
   double farthest = 0.01;      ///< m: steps are so long that no particle goes farther, about, but
   double longest_step = 0.2;   ///< s, at most, > time_step
   // Rest:

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/garment/body/body.h"
 #include "haptex/garment/pattern/pattern.h"
 #include "haptex/garment/triangulation/panel_mesh.h"
 #include "haptex/mesh/mesh.h"
@@ -30,6 +31,11 @@ struct GarmentMesh {
 /// @param edge_length m, at most so long are edges along the outline, and about so long the others
 /// @throws std::invalid_argument if a panel is to be laid on a carrier, and what triangulate() says
 GarmentMesh makeGarmentMesh(const Pattern& pattern, double edge_length);
+
+/// The same with panels laid around a body (preposition()), bent as their carriers are. What
+/// intersects there is left as it is.
+/// @throws std::invalid_argument what preposition() and triangulate() say
+GarmentMesh makeGarmentMesh(const Pattern& pattern, double edge_length, const Body& body);
 
 /// The garment with edges half as long: every triangle is cut into four by the middles of its
 /// edges, places along seams stay those of the pattern. Initial positions are the middles, so the
