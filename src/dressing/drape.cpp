@@ -23,6 +23,10 @@ using Eigen::Vector3d;
 
 // N/m, of threads while seams close at most: stiff ones make each step several times as long.
 constexpr double kClosingModulus = 500.0;
+// m, of the longest edges with which panels are sewn if shorter ones are asked for.
+constexpr double kSewnEdge = 0.045;
+constexpr int kMostHalvings = 8;
+constexpr double kStepGrowth = 1.5;  // of a time step from step to step, at most
 
 void requireSound(const DrapeSettings& settings) {
   const auto require = [](const char* name, double value) {
@@ -37,6 +41,12 @@ void requireSound(const DrapeSettings& settings) {
   require("thickness", settings.thickness);
   require("sewn_gap", settings.sewn_gap);
   require("patience", settings.patience);
+  base::require(settings.halvings >= 0 && settings.halvings <= kMostHalvings, "drape", "halvings",
+                settings.halvings, "0 to 8");
+  require("most_closing_time", settings.most_closing_time);
+  require("halved_speed", settings.halved_speed);
+  require("farthest", settings.farthest);
+  require("longest_step", settings.longest_step);
   require("rest_speed", settings.rest_speed);
   require("rest_time", settings.rest_time);
   require("most_time", settings.most_time);
@@ -51,7 +61,11 @@ class Dressing {
   DrapeOutcome run() {
     const std::clock_t begin = std::clock();
     closeSeams();
-    settle();
+    for (int i = 0; i < settings_.halvings; ++i) {
+      settle(settings_.halved_speed);
+      halveEdges();
+    }
+    settle(settings_.rest_speed);
     outcome_.computing_seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     countIntersections();
     return std::move(outcome_);
@@ -64,18 +78,14 @@ class Dressing {
                             std::optional<double> friction) const {
     mesh::Obstacle body{"body", body_, Eigen::Isometry3d::Identity()};
     body.friction = friction;
-    return {mesh,
-            fabrics,
-            effects,
-            {std::move(body)},
-            {settings_.time_step, settings_.damping, settings_.threads}};
+    return {mesh, fabrics, effects, {std::move(body)}, {settings_.damping, settings_.threads}};
   }
 
-  void step(OverdampedCloth& cloth, double& time) {
-    outcome_.fastest = cloth.step();
+  void step(OverdampedCloth& cloth, double time_step, double& time) {
+    outcome_.fastest = cloth.step(time_step) / time_step;
     ++outcome_.steps;
     outcome_.intersecting_states += cloth.report().tangle.pairs > 0 ? 1 : 0;
-    time += settings_.time_step;
+    time += time_step;
   }
 
   /// Without friction, with soft threads, and at least so thick (m).
@@ -102,27 +112,30 @@ class Dressing {
     OverdampedCloth cloth = makeCloth(garment_.mesh, smoothFabrics(thickness), effects, 0.0);
     SeamPull pull(garment_, settings_.tension);
     const double farthest = 0.5 * settings_.closing_speed * settings_.time_step;
-    double far_at = 0.0;
+    double tried_at = 0.0;  // or it was not to be tried
     while (true) {
       const std::vector<Vector3d>& positions = cloth.state().positions;
       outcome_.closed_gap = pull.gap(positions);
-      if (outcome_.closed_gap >= settings_.sewn_gap) far_at = outcome_.closing_time;
-      const bool is_patient = outcome_.closing_time - far_at < settings_.patience;
-      if (outcome_.closed_gap < settings_.sewn_gap && sew(positions, is_patient)) return;
-      if (outcome_.closing_time > settings_.most_time) refuseGap(pull, positions);
+      const bool is_near = outcome_.closed_gap < settings_.sewn_gap;
+      if (is_near && sew(positions)) return;
+      if (!is_near) tried_at = outcome_.closing_time;
+      if (outcome_.closing_time - tried_at >= settings_.patience) {
+        if (outcome_.with_body == 0 && pullApart()) return;
+        tried_at = outcome_.closing_time;
+      }
+      if (outcome_.closing_time > settings_.most_closing_time) refuseGap(pull, positions);
       cloth.cloth().setPointLoads(pull.loads(positions, farthest));
-      step(cloth, outcome_.closing_time);
+      step(cloth, settings_.time_step, outcome_.closing_time);
     }
   }
 
-  /// @param is_patient whether it waits for a state that sewn does not intersect itself
-  /// @return whether it is sewn
-  bool sew(const std::vector<Vector3d>& positions, bool is_patient) {
+  /// @return whether what is sewn there intersects nothing
+  bool sew(const std::vector<Vector3d>& positions) {
     mesh::ClothMesh mesh = garment_.mesh;
     mesh.initial_positions = positions;
-    outcome_.mesh = mesh::merge(mesh, garment_.seams).mesh;
+    merge(mesh);
     countIntersections();
-    return outcome_.with_body == 0 && (!is_patient || outcome_.with_itself == 0);
+    return outcome_.with_body == 0 && outcome_.with_itself == 0;
   }
 
   void countIntersections() {
@@ -137,7 +150,7 @@ class Dressing {
   [[noreturn]] void refuseGap(const SeamPull& pull, const std::vector<Vector3d>& positions) const {
     std::ostringstream message;
     const double gap = pull.gap(positions);
-    message << "after " << settings_.most_time << " s ";
+    message << "after " << settings_.most_closing_time << " s ";
     if (gap < settings_.sewn_gap) {
       message << "the seams are closed to " << gap
               << " m, and sewn they would intersect: " << outcome_.with_itself
@@ -159,29 +172,84 @@ class Dressing {
     return garment_.panel_names[mesh.panelOf(t)];
   }
 
-  void settle() {
+  /// Of the sewn garment, where it is.
+  void halveEdges() {
+    std::vector<Vector3d>& positions = garment_.mesh.initial_positions;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      positions[i] = outcome_.mesh.initial_positions[merged_[i]];
+    }
+    garment_ = garment::halved(garment_);
+    merge(garment_.mesh);
+  }
+
+  void merge(const mesh::ClothMesh& mesh) {
+    mesh::MergedMesh merged = mesh::merge(mesh, garment_.seams);
+    outcome_.mesh = std::move(merged.mesh);
+    merged_ = std::move(merged.particles);
+  }
+
+  OverdampedCloth makeSewnCloth() const {
     cloth::ModelledEffects effects;
     effects.gravity = {0.0, 0.0, -base::kStandardGravity};
     effects.bending = effects.contacts = effects.self_collision = true;
-    OverdampedCloth cloth = makeCloth(outcome_.mesh, fabrics_, effects, std::nullopt);
-    double fast_at = 0.0;
-    while (!outcome_.at_rest && outcome_.settling_time < settings_.most_time) {
-      step(cloth, outcome_.settling_time);
+    return makeCloth(outcome_.mesh, fabrics_, effects, std::nullopt);
+  }
+
+  /// Lets the sewn garment come out of itself (cloth::Untangling).
+  /// @return whether it has in patience times 2
+  bool pullApart() {
+    OverdampedCloth cloth = makeSewnCloth();
+    double time = 0.0;
+    do {
+      step(cloth, settings_.time_step, time);
+    } while (cloth.report().tangle.pairs > 0 && time < 2.0 * settings_.patience);
+    outcome_.settling_time += time;
+    outcome_.mesh.initial_positions = cloth.state().positions;
+    return cloth.report().tangle.pairs == 0;
+  }
+
+  /// @param rest_speed m/s, below which the garment is at rest
+  void settle(double rest_speed) {
+    OverdampedCloth cloth = makeSewnCloth();
+    outcome_.at_rest = false;
+    double time = 0.0, fast_at = 0.0, time_step = settings_.time_step;
+    while (!outcome_.at_rest && time < settings_.most_time) {
+      step(cloth, time_step, time);
       const bool tangled = cloth.report().tangle.pairs > 0;
-      if (tangled || outcome_.fastest > settings_.rest_speed) fast_at = outcome_.settling_time;
-      outcome_.at_rest = outcome_.settling_time - fast_at >= settings_.rest_time;
+      if (tangled || outcome_.fastest > rest_speed) fast_at = time;
+      outcome_.at_rest = time - fast_at >= settings_.rest_time;
+      time_step = nextTimeStep(time_step);
     }
+    outcome_.settling_time += time;
     outcome_.mesh.initial_positions = cloth.state().positions;
   }
 
-  const garment::GarmentMesh& garment_;
+  /// Longer as the garment slows down. @param time_step s, of the last step
+  double nextTimeStep(double time_step) const {
+    const double wanted =
+        std::min(settings_.farthest / std::max(outcome_.fastest, 1e-9), kStepGrowth * time_step);
+    return std::clamp(wanted, settings_.time_step,
+                      std::max(settings_.time_step, settings_.longest_step));
+  }
+
+  garment::GarmentMesh garment_;
   const std::vector<material::Fabric>& fabrics_;
   const mesh::ObstacleMesh& body_;
   DrapeSettings settings_;
   DrapeOutcome outcome_;
+  std::vector<int> merged_;  // particles of the sewn mesh, for those of the garment
 };
 
 }  // namespace
+
+CoarseStart coarseStart(double edge_length) {
+  CoarseStart start{edge_length, 0};
+  while (2.0 * start.edge_length <= kSewnEdge && start.halvings < kMostHalvings) {
+    start.edge_length *= 2.0;
+    ++start.halvings;
+  }
+  return start;
+}
 
 DrapeOutcome drape(const garment::GarmentMesh& garment,
                    const std::vector<material::Fabric>& fabrics, const mesh::ObstacleMesh& body,

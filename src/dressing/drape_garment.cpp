@@ -10,6 +10,7 @@
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/dressing/drape.h"
+#include "haptex/garment/body/body_file.h"
 #include "haptex/garment/pattern/pattern_file.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/mesh/obj_file.h"
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const kUsage =
-    "usage: drape_garment GARMENT.yaml OUT.obj --body BODY.obj [--edge METRES]\n"
+    "usage: drape_garment GARMENT.yaml OUT.obj --body BODY.obj|BODY.yaml [--edge METRES]\n"
     "Sews a garment on a body and lets it come to rest, with edges of about METRES (0.02):\n"
     "docs/garments.md. OUT.obj has rest coordinates as texture coordinates, and panels as "
     "groups.\n";
@@ -35,7 +36,7 @@ Request parse(const std::vector<std::string>& arguments) {
   const base::CommandLine line = base::readCommandLine(arguments, {"--body", "--edge"});
   base::requireTwoFiles(line, "garment");
   Request request = {line.files[0], line.files[1], line.value("--body")};
-  if (request.body.empty()) base::refuse("a body is needed: --body BODY.obj");
+  if (request.body.empty()) base::refuse("a body is needed: --body BODY.obj or BODY.yaml");
   if (line.options.count("--edge") > 0) {
     const auto length = base::parseNumber<double>(line.value("--edge"));
     if (!length) {
@@ -58,6 +59,19 @@ std::vector<material::Fabric> loadFabrics(const std::vector<std::string>& names,
     fabrics.push_back(material::loadFabric(path.lexically_normal().string()));
   }
   return fabrics;
+}
+
+/// @param body its surface, as a file of a body or of a surface alone has it
+garment::GarmentMesh layOnBody(const Request& request, double edge_length,
+                               mesh::ObstacleMesh& body) {
+  const garment::Pattern pattern = garment::loadPattern(request.garment);
+  if (fs::path(request.body).extension() != ".yaml") {
+    body = mesh::loadObjSurface(request.body);
+    return garment::makeGarmentMesh(pattern, edge_length);
+  }
+  const garment::Body figure = garment::loadBody(request.body);
+  body = {figure.vertices, figure.triangles};
+  return garment::makeGarmentMesh(pattern, edge_length, figure);
 }
 
 void print(const DrapeOutcome& outcome, std::ostream& out) {
@@ -85,12 +99,14 @@ int drapeGarment(const std::vector<std::string>& arguments, const std::string& f
   Request request;
   const auto read = [&] { request = parse(arguments); };
   return base::runProgram(kUsage, err, read, [&] {
-    const garment::GarmentMesh garment =
-        garment::makeGarmentMesh(garment::loadPattern(request.garment), request.edge_length);
+    const CoarseStart start = coarseStart(request.edge_length);
+    DrapeSettings settings;
+    settings.halvings = start.halvings;
+    mesh::ObstacleMesh body;
+    const garment::GarmentMesh garment = layOnBody(request, start.edge_length, body);
     const std::vector<material::Fabric> fabrics =
         loadFabrics(garment.fabrics, request.garment, fabric_directory);
-    const mesh::ObstacleMesh body = mesh::loadObjSurface(request.body);
-    const DrapeOutcome outcome = drape(garment, fabrics, body, DrapeSettings());
+    const DrapeOutcome outcome = drape(garment, fabrics, body, settings);
     std::ofstream file(request.out);
     mesh::writeObj(outcome.mesh, garment.panel_names, file);
     if (!file.flush()) throw std::runtime_error(request.out + ": cannot be written");

@@ -29,17 +29,17 @@ OverdampedCloth::OverdampedCloth(const mesh::ClothMesh& mesh,
       state_(cloth_.initialState()),
       integrator_(cloth_, settingsOf(motion)) {}
 
-double OverdampedCloth::step() {
+double OverdampedCloth::step(double time_step) {
   before_ = state_.positions;
   for (Eigen::Vector3d& velocity : state_.velocities) velocity.setZero();
-  const double h = std::sqrt(motion_.time_step / motion_.damping);
+  const double h = std::sqrt(time_step / motion_.damping);
   report_ = collision_.step(cloth_, integrator_, state_, h);
   if (!report_.accepted) throw std::runtime_error("a step of the garment was not finite");
   double farthest = 0.0;
   for (std::size_t i = 0; i < before_.size(); ++i) {
     farthest = std::max(farthest, (state_.positions[i] - before_[i]).norm());
   }
-  return farthest / motion_.time_step;
+  return farthest;
 }
 
 }  // namespace haptex::dressing

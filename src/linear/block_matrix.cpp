@@ -51,18 +51,33 @@ int SymmetricBlockMatrix::slot(int row, int column) const {
   return slot;
 }
 
-void SymmetricBlockMatrix::addCoupling(int row, int column, const Eigen::Matrix3d& block) {
+void SymmetricBlockMatrix::requirePair(int row, int column) const {
   if (std::min(row, column) < 0 || std::max(row, column) >= size() || row == column) {
     throw std::out_of_range("no coupling at row " + std::to_string(row) + ", column " +
                             std::to_string(column) + ": both have to be in [0, " +
                             std::to_string(size()) + ") and to differ");
   }
+}
+
+bool SymmetricBlockMatrix::hasInPattern(int row, int column) const {
+  requirePair(row, column);
+  return find(std::max(row, column), std::min(row, column)) >= 0;
+}
+
+void SymmetricBlockMatrix::addCoupling(int row, int column, const Eigen::Matrix3d& block) {
+  requirePair(row, column);
   if (row < column) return addCoupling(column, row, block.transpose());
   const int slot = find(row, column);
   if (slot >= 0) {
     lower_[slot] += block;
     return;
   }
+  addBeyondPattern(row, column, block);
+}
+
+void SymmetricBlockMatrix::addBeyondPattern(int row, int column, const Eigen::Matrix3d& block) {
+  requirePair(row, column);
+  if (row < column) return addBeyondPattern(column, row, block.transpose());
   if (first_coupling_.empty()) first_coupling_.assign(size(), -1);
   int before = -1, after = first_coupling_[row];
   while (after >= 0 && couplings_[after].column < column) {

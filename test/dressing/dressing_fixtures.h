@@ -41,24 +41,30 @@ seams:
                                "tube");
 }
 
-/// Closed, from the radius `bottom` at z = 0 to `top` at z = height, about the z axis (m).
-inline mesh::ObstacleMesh cone(double bottom, double top, double height) {
+/// Closed, from the radius `bottom` at z = 0 to `top` at z = height, about the z axis (m), in so
+/// many bands of triangles.
+inline mesh::ObstacleMesh cone(double bottom, double top, double height, int bands = 1) {
   constexpr int kSides = 24;
   mesh::ObstacleMesh body;
-  for (int ring = 0; ring < 2; ++ring) {
+  for (int ring = 0; ring <= bands; ++ring) {
+    const double share = static_cast<double>(ring) / bands;
     for (int i = 0; i < kSides; ++i) {
-      const double angle = 2.0 * M_PI * i / kSides, radius = ring == 0 ? bottom : top;
-      body.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), ring * height);
+      const double angle = 2.0 * M_PI * i / kSides, radius = bottom + share * (top - bottom);
+      body.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle),
+                                 share * height);
     }
   }
+  const int low = static_cast<int>(body.vertices.size()), last = bands * kSides;
   body.vertices.emplace_back(0.0, 0.0, 0.0);
   body.vertices.emplace_back(0.0, 0.0, height);
   for (int i = 0; i < kSides; ++i) {
     const int j = (i + 1) % kSides;
-    body.triangles.push_back({i, j, kSides + j});
-    body.triangles.push_back({i, kSides + j, kSides + i});
-    body.triangles.push_back({j, i, 2 * kSides});
-    body.triangles.push_back({kSides + i, kSides + j, 2 * kSides + 1});
+    for (int band = 0; band < last; band += kSides) {
+      body.triangles.push_back({band + i, band + j, band + kSides + j});
+      body.triangles.push_back({band + i, band + kSides + j, band + kSides + i});
+    }
+    body.triangles.push_back({j, i, low});
+    body.triangles.push_back({last + i, last + j, low + 1});
   }
   return body;
 }

@@ -1,6 +1,7 @@
 // Panels that are sewn on a body and come to rest.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -30,6 +31,15 @@ std::string refusalOf(Call call) {
     return refusal.what();
   }
   return "not refused";
+}
+
+/// m, above the ground.
+double lowest(const mesh::ClothMesh& mesh) {
+  double lowest = 1.0;
+  for (const Eigen::Vector3d& place : mesh.initial_positions) {
+    lowest = std::min(lowest, place.z());
+  }
+  return lowest;
 }
 
 TEST(Drape, EndsAtRestWithoutAnIntersection) {
@@ -67,16 +77,50 @@ TEST(Drape, LeavesOpenOnlyWhatIsNotSewn) {
 
 /// The tube gets no lower than where the cone is as wide as its lower hem.
 TEST(Drape, HangsOnAConeWhereThatIsAsWide) {
-  const mesh::ClothMesh& mesh = tubeOnCone().mesh;
-  double lowest = 1.0;
-  for (const Eigen::Vector3d& place : mesh.initial_positions) {
-    lowest = std::min(lowest, place.z());
-  }
   // The radius falls by 0.4 m/m; a tube of circumference 0.6 m around a polygon of 24 sides.
   const double radius = 0.6 / (2.0 * 24 * std::sin(M_PI / 24));
   const double expected = (0.2 - radius) / 0.4;
   // The hem stretches by some 1e-3, and is not quite level.
-  EXPECT_NEAR(lowest, expected, 0.01);
+  EXPECT_NEAR(lowest(tubeOnCone().mesh), expected, 0.01);
+}
+
+/// Sewn with few triangles: what is halved comes to rest in the same place, of four times as many.
+TEST(Drape, ComesToRestWithEdgesHalvedOnceItIsSewn) {
+  DrapeSettings settings;
+  settings.halvings = 1;
+  const auto garment = garment::makeGarmentMesh(tube(0.15), kEdge);
+  const DrapeOutcome outcome = drape(garment, wool(), cone(0.2, 0.04, 0.4), settings);
+  EXPECT_TRUE(outcome.isSound());
+  EXPECT_EQ(outcome.intersecting_states, 0);
+  EXPECT_LE(outcome.fastest, settings.rest_speed);
+  EXPECT_EQ(outcome.mesh.triangles.size(), 4 * tubeOnCone().mesh.triangles.size());
+  EXPECT_EQ(outcome.mesh.panels.size(), garment.mesh.panels.size());
+  EXPECT_NEAR(lowest(outcome.mesh), lowest(tubeOnCone().mesh), 0.01);
+}
+
+TEST(Drape, StartsWithTheLongestEdgesThatHalvingMakesThoseAskedFor) {
+  const auto is = [](double edge_length, double coarse, int halvings) {
+    const CoarseStart start = coarseStart(edge_length);
+    EXPECT_EQ(start.edge_length, coarse);
+    EXPECT_EQ(start.halvings, halvings);
+  };
+  is(0.06, 0.06, 0);
+  is(0.03, 0.03, 0);
+  is(0.02, 0.04, 1);
+  is(0.01, 0.04, 2);
+  is(0.007, 0.028, 2);
+}
+
+TEST(Drape, RefusesToHalveEdgesLessThanNeverOrTooOften) {
+  const auto garment = garment::makeGarmentMesh(tube(0.15), kEdge);
+  for (const int halvings : {-1, 9}) {
+    DrapeSettings settings;
+    settings.halvings = halvings;
+    const std::string refusal =
+        refusalOf([&] { drape(garment, wool(), cone(0.2, 0.04, 0.4), settings); });
+    EXPECT_NE(refusal.find("halvings"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("0 to 8"), std::string::npos) << refusal;
+  }
 }
 
 TEST(Drape, ReadsAsManyFabricsAsTheGarmentNames) {
@@ -95,7 +139,7 @@ TEST(Drape, RefusesPanelsThatStartInTheBody) {
 
 TEST(Drape, NamesThePanelsOfASeamThatCannotClose) {
   DrapeSettings settings;
-  settings.most_time = 1.0;
+  settings.most_closing_time = 1.0;
   const auto garment = garment::makeGarmentMesh(tube(0.15), kEdge);
   // 0.2 m wide everywhere: 1.26 m around, and the tube has 0.6 m.
   const std::string refusal =
@@ -109,8 +153,9 @@ TEST(Drape, RefusesSettingsThatAreNoNumbers) {
   for (double DrapeSettings::*number :
        {&DrapeSettings::time_step, &DrapeSettings::damping, &DrapeSettings::closing_speed,
         &DrapeSettings::tension, &DrapeSettings::lift, &DrapeSettings::thickness,
-        &DrapeSettings::patience, &DrapeSettings::sewn_gap, &DrapeSettings::rest_speed,
-        &DrapeSettings::rest_time, &DrapeSettings::most_time}) {
+        &DrapeSettings::patience, &DrapeSettings::sewn_gap, &DrapeSettings::halved_speed,
+        &DrapeSettings::farthest, &DrapeSettings::longest_step, &DrapeSettings::rest_speed,
+        &DrapeSettings::rest_time, &DrapeSettings::most_closing_time, &DrapeSettings::most_time}) {
     for (const double value : {-1.0, std::numeric_limits<double>::quiet_NaN(),
                                std::numeric_limits<double>::infinity()}) {
       DrapeSettings settings;

@@ -1,9 +1,11 @@
 // The program drape_garment.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "dressing_fixtures.h"
 #include "haptex/dressing/drape_garment.h"
@@ -18,7 +20,7 @@ class DrapeGarment : public testing::Test {
     std::filesystem::create_directories(directory_);
     std::ofstream(garment_) << garment::writePattern(tube(0.15));
     std::ofstream body(body_);
-    const mesh::ObstacleMesh shape = cone(0.2, 0.04, 0.4);
+    const mesh::ObstacleMesh shape = cone(0.2, 0.04, 0.4, 20);
     for (const Eigen::Vector3d& v : shape.vertices) body << "v " << v.transpose() << '\n';
     for (const auto& [a, b, c] : shape.triangles) {
       body << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
@@ -53,6 +55,26 @@ TEST_F(DrapeGarment, WritesPanelsAsGroupsAndSaysWhatItTook) {
         "intersections_with_body\t0", "at_rest\tyes"}) {
     EXPECT_NE(out_.find(name), std::string::npos) << name;
   }
+}
+
+TEST_F(DrapeGarment, LaysPanelsOnTheirCarriersAroundABodyWithSegments) {
+  garment::Pattern pattern = tube(0.15);
+  pattern.carriers = {{"torso", garment::Carrier::Shape::kCylinder, "spine"}};
+  pattern.panels[0].placement = garment::OnCarrier{"torso", 0.0, 0.625};
+  pattern.panels[1].placement = garment::OnCarrier{"torso", M_PI, 0.625};
+  // Both look outwards, and what is left of the one is right of the other.
+  std::swap(pattern.seams[0].sides[1], pattern.seams[1].sides[1]);
+  for (garment::Seam& seam : pattern.seams) seam.sides[1].reversed = true;
+  std::ofstream(garment_) << garment::writePattern(pattern);
+  EXPECT_EQ(run({garment_, obj_, "--body", body_, "--edge", "0.06"}), 1);
+  EXPECT_NE(err_.find("panel 'front' is to be laid on the carrier 'torso'"), std::string::npos)
+      << err_;
+  const std::string file = directory_ + "/body.yaml";
+  std::ofstream(file) << "surface: body.obj\n"
+                         "segments:\n"
+                         "  - {name: spine, start: [0, 0, 0], end: [0, 0, 0.4], radius: 0.1}\n";
+  EXPECT_EQ(run({garment_, obj_, "--body", file, "--edge", "0.06"}), 0) << err_;
+  EXPECT_NE(out_.find("intersecting_states\t0"), std::string::npos) << out_;
 }
 
 TEST_F(DrapeGarment, SaysWhatIsWrongWithItsArguments) {

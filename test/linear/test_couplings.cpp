@@ -69,6 +69,25 @@ TEST(Couplings, GiveTheSameSumsToTheLastBitInWhateverOrderPairsAreAdded) {
   }
 }
 
+TEST(Couplings, MayLeaveAPairOfThePatternToTheIteration) {
+  SymmetricBlockMatrix matrix(3, {}, {{0, 1}});
+  ASSERT_TRUE(matrix.hasInPattern(0, 1));
+  ASSERT_TRUE(matrix.hasInPattern(1, 0));
+  ASSERT_FALSE(matrix.hasInPattern(1, 2));
+  const Eigen::Matrix3d first = Eigen::Matrix3d::Random(), second = Eigen::Matrix3d::Random();
+  matrix.addCoupling(1, 0, first);
+  matrix.addBeyondPattern(0, 1, second);
+  EXPECT_EQ(matrix.couplingCount(), 1);
+  EXPECT_EQ(matrix.lower(matrix.slot(1, 0)), first);
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(9, 9);
+  expected.block<3, 3>(3, 0) = first + second.transpose();
+  expected.block<3, 3>(0, 3) = expected.block<3, 3>(3, 0).transpose();
+  EXPECT_LT((denseWithCouplings(matrix) - expected).norm(), 1e-15);
+  matrix.clearCouplings();
+  EXPECT_EQ(matrix.couplingCount(), 0);
+  EXPECT_EQ(matrix.lower(matrix.slot(1, 0)), first);
+}
+
 TEST(Couplings, OfOnePairAreSummedFromBothSides) {
   SymmetricBlockMatrix matrix(4, {});
   const Eigen::Matrix3d first = Eigen::Matrix3d::Random(), second = Eigen::Matrix3d::Random();

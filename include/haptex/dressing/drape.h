@@ -13,7 +13,7 @@ namespace haptex::dressing {
 /// How a garment is sewn and comes to rest. The motion is overdamped: every particle moves at
 /// F / (m damping), so the garment goes from equilibrium to equilibrium and does not swing.
 struct DrapeSettings {
-  double time_step = 0.02;  ///< s
+  double time_step = 0.02;  ///< s, while seams close; the shortest afterwards
   double damping = 10.0;    ///< 1/s: free fall is at 9.81 / damping m/s
   // While seams close:
   double closing_speed = 0.5;  ///< m/s, at most, of the sides of a seam towards each other
@@ -23,15 +23,32 @@ struct DrapeSettings {
   /// most. It keeps a distance from the body and from itself that sewing can do without.
   double thickness = 4e-3;
   double sewn_gap = 8e-3;  ///< m, of particles from the middle of their seam, that sewing closes
-  /// s: so long such a state that would intersect itself when sewn waits for a better one. Then it
-  /// is sewn, and pulled apart (cloth::Untangling).
-  double patience = 1.0;
+  /// s: after so long such a state that would intersect itself when sewn is sewn for a trial, and
+  /// pulled apart (cloth::Untangling) for up to twice that time. If that fails seams go on closing,
+  /// up to the next trial.
+  double patience = 0.2;
+  double most_closing_time = 20.0;  ///< s
+  // From then on:
+  int halvings = 0;            ///< how often edges are halved once the garment is sewn, 0 to 8
+  double halved_speed = 5e-3;  ///< m/s: the fastest particle is slower than that when they are
+  double farthest = 0.01;      ///< m: steps are so long that no particle goes farther, about, but
+  double longest_step = 0.2;   ///< s, at most, > time_step
   // Rest:
   double rest_speed = 2e-3;  ///< m/s: the fastest particle has been slower than that for
-  double rest_time = 0.2;    ///< s
-  double most_time = 20.0;   ///< s, for closing and for coming to rest
+  double rest_time = 0.4;    ///< s
+  double most_time = 60.0;   ///< s, for coming to rest with edges as they are
   int threads = 1;           ///< that share the work of a step
 };
+
+/// Edges with which a garment is sewn, and how often they are halved then, to get those asked for.
+struct CoarseStart {
+  double edge_length;  // m
+  int halvings;
+};
+/// As few triangles as a garment can do with are sewn: edges of 23 to 45 mm, if finer ones are
+/// asked for.
+/// @param edge_length m, > 0, that is asked for
+CoarseStart coarseStart(double edge_length);
 
 /// What came out, and what it took.
 struct DrapeOutcome {
@@ -57,14 +74,19 @@ struct DrapeOutcome {
 /// 1. The sides of seams are pulled together without friction, and with a lift instead of weight.
 ///    Panels touch the body and each other and pass through neither.
 /// 2. As soon as all are near, and what is sewn together there intersects neither itself nor the
-///    body, they become one mesh.
+///    body, or can be pulled apart, they become one mesh.
 /// 3. That comes to rest with weight, thickness and friction as they are.
+/// 4. Its edges are halved (garment::halved()) where it is, and it comes to rest again; settings
+/// say
+///    how often. So panels are sewn with few triangles, whatever is asked for in the end, and what
+///    is finer starts near its equilibrium, and free of intersections.
 /// @param fabrics those that the garment names, in its order; contact knows one
 /// @param body closed surface, m, world frame
 /// @throws std::invalid_argument if a number of the settings is not finite and > 0, the garment
 ///   names another number of fabrics, one lacks bending, compression or friction, a panel touches
 ///   the body at the start, or what cloth::Cloth and mesh::merge() say
-/// @throws std::runtime_error if a seam does not close within most_time, naming its panels and what
+/// @throws std::runtime_error if a seam does not close within most_closing_time, naming its panels
+/// and what
 ///   is in the way, or a step is not finite
 DrapeOutcome drape(const garment::GarmentMesh& garment,
                    const std::vector<material::Fabric>& fabrics, const mesh::ObstacleMesh& body,

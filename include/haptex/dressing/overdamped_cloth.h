@@ -14,9 +14,8 @@
 namespace haptex::dressing {
 
 struct OverdampedMotion {
-  double time_step;  ///< s, > 0
-  double damping;    ///< 1/s, > 0: every particle moves at F / (m damping)
-  int threads;       ///< of a step
+  double damping;  ///< 1/s, > 0: every particle moves at F / (m damping)
+  int threads;     ///< of a step
 };
 
 /// Steps of backward Euler that start without velocity end at the minimum of
@@ -34,9 +33,10 @@ class OverdampedCloth {
   const cloth::ClothState& state() const { return state_; }
   const cloth::StepReport& report() const { return report_; }  ///< of the last step
 
-  /// @return m/s, of the fastest particle: its way over the time step
+  /// @param time_step s, > 0
+  /// @return m, the farthest way of a particle
   /// @throws std::runtime_error if the step is not finite
-  double step();
+  double step(double time_step);
 
  private:
   OverdampedMotion motion_;

@@ -54,10 +54,17 @@ class SymmetricBlockMatrix {
   /// @throws std::out_of_range unless row and column are in [0, size) and differ
   void addCoupling(int row, int column, const Eigen::Matrix3d& block);
 
+  /// The same, but a pair of the fixed pattern becomes a coupling, too, which factors do not know:
+  /// so a sum of terms keeps the fixed part positive semidefinite that has others beyond it.
+  void addBeyondPattern(int row, int column, const Eigen::Matrix3d& block);
+
+  /// Whether the block of two particles belongs to the fixed pattern.
+  bool hasInPattern(int row, int column) const;
+
   /// The fixed pattern keeps its values.
   void clearCouplings();
 
-  /// Pairs beyond the fixed pattern.
+  /// Pairs beyond the fixed pattern, those of addBeyondPattern() among them.
   int couplingCount() const { return static_cast<int>(couplings_.size()); }
 
   /// Makes room for that many pairs beyond the fixed pattern. A copy holds the couplings without
@@ -93,6 +100,7 @@ class SymmetricBlockMatrix {
     Eigen::Matrix3d block;
   };
   int find(int row, int column) const;
+  void requirePair(int row, int column) const;
   template <typename Function>
   void forEachCoupling(const Function& function) const;
 

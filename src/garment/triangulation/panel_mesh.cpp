@@ -9,6 +9,7 @@
 #include "haptex/garment/pattern/outline_crossing.h"
 #include "haptex/garment/triangulation/delaunay.h"
 #include "haptex/garment/triangulation/refinement.h"
+#include "haptex/garment/triangulation/threads.h"
 
 namespace haptex::garment {
 namespace {
@@ -59,27 +60,6 @@ std::vector<double> divide(const Curve& curve, double edge_length, double tolera
   }
   return all;
 }
-
-/// Between the plane of a panel and its rest coordinates, as seen from the right side.
-class Threads {
- public:
-  explicit Threads(const Panel& panel) : turned_over_(isTurnedOver(panel)), warp_(panel.warp) {
-    if (turned_over_) warp_.x() = -warp_.x();
-  }
-
-  Vector2d restOf(const Vector2d& point) const {
-    const double x = turned_over_ ? -point.x() : point.x();
-    return {warp_.y() * x - warp_.x() * point.y(), warp_.x() * x + warp_.y() * point.y()};
-  }
-  Vector2d pointOf(const Vector2d& rest) const {
-    const double x = warp_.y() * rest.x() + warp_.x() * rest.y();
-    return {turned_over_ ? -x : x, warp_.y() * rest.y() - warp_.x() * rest.x()};
-  }
-
- private:
-  bool turned_over_;
-  Vector2d warp_;
-};
 
 struct DividedOutlines {
   std::vector<std::vector<Vector2d>> loops;

@@ -7,6 +7,7 @@ namespace {
 
 // Corners of both sides that are nearer to each other than this part of an edge meet.
 constexpr double kSameCorner = 0.25;
+constexpr double kSamePlace = 1e-9;  // of a side
 
 /// Linear between places that belong to each other, both ascending.
 double between(const std::vector<double>& from, const std::vector<double>& to, double at) {
@@ -54,6 +55,17 @@ class Side {
   bool isDivided(const EdgeDivisions& divisions) const {
     return std::any_of(edges_.begin(), edges_.end(),
                        [&](int edge) { return !divisions[side_.outline][edge].empty(); });
+  }
+
+  /// @return whether it was not divided there
+  bool divideAt(double share, EdgeDivisions& divisions) const {
+    const std::size_t i = edgeAt(share);
+    const double length = along(i, share), same = kSamePlace * this->length();
+    std::vector<double>& lengths = divisions[side_.outline][edges_[i]];
+    const auto next = std::lower_bound(lengths.begin(), lengths.end(), length - same);
+    if (next == lengths.end() || *next <= length + same) return false;
+    lengths.insert(next, length);
+    return true;
   }
 
   /// @param shares with the corners among them
@@ -124,6 +136,15 @@ SeamPlaces meetingCorners(const Side& first, const Side& second, double edge_len
 
 double SeamPlaces::onFirst(double second_share) const {
   return between(second, first, second_share);
+}
+
+double SeamPlaces::onSecond(double first_share) const {
+  return between(first, second, first_share);
+}
+
+bool divideAt(const Pattern& pattern, const SeamSide& side, double share,
+              EdgeDivisions& divisions) {
+  return Side(pattern, side).divideAt(share, divisions);
 }
 
 std::vector<int> sewnEdges(const Pattern& pattern, const SeamSide& side) {

@@ -1,11 +1,13 @@
 // Contact of a cloth with itself as a force: pressure, derivatives, momentum.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "derivatives.h"
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/linear/block_cholesky.h"
 #include "self_contact_fixtures.h"
 
 namespace haptex::cloth::test_self_contact {
@@ -211,6 +213,28 @@ TEST(SelfContact, JacobianIsThatOfTheForces) {
   for (const JacobianBlock& block : blocks) {
     EXPECT_LT((block.by_position - transposed(block).transpose()).norm(), 1e-5 * stiffest);
   }
+}
+
+/// A sheet crumpled into a few thicknesses: what touches is partly coupled by its own triangles.
+TEST(SelfContact, LeavesToFactorsAMatrixThatIsPositiveDefinite) {
+  const Cloth cloth(mesh::makeRectangle(0.06, 0.06, 6, 6, mesh::Triangulation::kAlternating),
+                    fabricNamed("wool"), selfCollision());
+  ClothState state = cloth.initialState();
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(0.0, 3e-3);
+  for (Vector3d& position : state.positions)
+    position = {place(random), place(random), place(random)};
+  linear::SymmetricBlockMatrix matrix = cloth.pattern();
+  matrix.setZero();
+  linear::BlockVector rhs = linear::BlockVector::Zero(3, matrix.size());
+  cloth.selfContact()->assembleLinearised(state.ofForces(), {1e-2, 0.0}, matrix, rhs);
+  ASSERT_GT(matrix.couplingCount(), 0);
+  double largest = 0.0;
+  for (int i = 0; i < matrix.size(); ++i) largest = std::max(largest, matrix.diagonal(i).norm());
+  for (int i = 0; i < matrix.size(); ++i) {
+    matrix.diagonal(i) += 1e-9 * largest * Eigen::Matrix3d::Identity();
+  }
+  EXPECT_TRUE(linear::BlockCholesky(matrix).factorise(matrix));
 }
 
 TEST(SelfContact, RefusesWhatItCannotDo) {

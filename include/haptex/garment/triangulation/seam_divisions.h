@@ -15,6 +15,7 @@ struct SeamPlaces {
 
   /// The share of the first side that meets one of the second. Between places linear.
   double onFirst(double second_share) const;
+  double onSecond(double first_share) const;
 };
 
 struct SeamDivisions {
@@ -24,6 +25,12 @@ struct SeamDivisions {
 
 /// @param pattern sound @param edge_length, tolerance m, > 0, as of triangulate()
 SeamDivisions divideSeams(const Pattern& pattern, double edge_length, double tolerance);
+
+/// Divides a side in one more place, unless it is divided there.
+/// @param share of its length, in the order of the seam
+/// @param divisions of its panel; those of the side are not empty
+/// @return whether it was not
+bool divideAt(const Pattern& pattern, const SeamSide& side, double share, EdgeDivisions& divisions);
 
 /// Lengths along the edges of a side: of its edges in the order of the seam the length (m) up to
 /// each of them, and of all at the end.

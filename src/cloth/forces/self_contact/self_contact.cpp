@@ -46,14 +46,33 @@ Vector3d tangential(const Vector3d& vector, const Vector3d& normal) {
   return vector - normal.dot(vector) * normal;
 }
 
-/// Adds weights_i weights_j block.
+/// Whether all particles of a pair are coupled in the matrix's fixed pattern.
+template <typename Pair>
+bool isInPattern(const Pair& pair, const linear::SymmetricBlockMatrix& matrix) {
+  for (int i = 0; i < pair.count; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if (pair.weights[i] * pair.weights[j] == 0.0) continue;
+      if (!matrix.hasInPattern(pair.vertices[i], pair.vertices[j])) return false;
+    }
+  }
+  return true;
+}
+
+/// Adds weights_i weights_j block. What couples both sides, whose weights differ in sign, is all in
+/// the matrix's fixed pattern or all beyond it, so that of each pair the fixed part is positive
+/// semidefinite, too, as factors need it: of cloth near its own neighbours it is a part of both.
 template <typename Pair>
 void addBlocks(const Pair& pair, const Matrix3d& block, linear::SymmetricBlockMatrix& matrix) {
+  const bool in_pattern = isInPattern(pair, matrix);
   for (int i = 0; i < pair.count; ++i) {
     matrix.diagonal(pair.vertices[i]) += pair.weights[i] * pair.weights[i] * block;
     for (int j = 0; j < i; ++j) {
       const double weight = pair.weights[i] * pair.weights[j];
-      if (weight != 0.0) matrix.addCoupling(pair.vertices[i], pair.vertices[j], weight * block);
+      if (weight > 0.0 || (in_pattern && weight != 0.0)) {
+        matrix.addCoupling(pair.vertices[i], pair.vertices[j], weight * block);
+      } else if (weight < 0.0) {
+        matrix.addBeyondPattern(pair.vertices[i], pair.vertices[j], weight * block);
+      }
     }
   }
 }
