@@ -64,9 +64,9 @@ inline void measureSoftTop() {
     }
     if (!cloth.step()) throw std::runtime_error("a step of the soft top was rejected");
     seconds += processorSeconds() - begin;
-    intersections += proximity::intersectingTriangles(cloth.state().positions,
-                                                      cloth.cloth().mesh().triangles)
-                         .size();
+    intersections +=
+        proximity::intersectingTriangles(cloth.state().positions, cloth.cloth().mesh().triangles)
+            .size();
   }
   printLine("garment/soft_top/triangles", static_cast<double>(scene.mesh.triangles.size()), "1");
   printLine("garment/soft_top/s_per_s", seconds / time, "s/s");

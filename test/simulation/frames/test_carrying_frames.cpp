@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../small_scene.h"
 #include "haptex/simulation/simulated_cloth.h"
-#include "small_scene.h"
 
 namespace haptex::simulation::test_carrying_frames {
 namespace {
