@@ -99,7 +99,6 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fab
       obstacles_(effects.contacts ? std::move(obstacles) : std::vector<mesh::Obstacle>(), fabrics_),
       topology_(mesh_),
       motion_(mesh_.rest_coordinates.size()),
-      carried_load_(mesh_.triangles),
       panel_forces_(mesh_.panelCount(), 0.0) {
   if (settings.layer == HapticSettings::Layer::kWholeCloth) {
     whole_cloth_ = std::make_unique<WholeClothContact>(mesh_, fabrics_, laws_);
@@ -110,11 +109,12 @@ HapticLayer::HapticLayer(mesh::ClothMesh mesh, std::vector<material::Fabric> fab
 
 std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangles,
                                                  const std::vector<char>& attached,
-                                                 const std::vector<int>& around,
-                                                 bool carried) const {
+                                                 const std::vector<int>& around) const {
   if (attached.size() != mesh_.rest_coordinates.size()) {
-    base::refuse("attached has ", attached.size(), " entries; the cloth has ",
-                 mesh_.rest_coordinates.size(), " particles");
+    std::ostringstream message;
+    message << "attached has " << attached.size() << " entries; the cloth has "
+            << mesh_.rest_coordinates.size() << " particles";
+    throw std::invalid_argument(message.str());
   }
   std::vector<int> cut = sortedTriangles(triangles, mesh_), outside;
   if (cut.empty()) return nullptr;
@@ -124,9 +124,7 @@ std::unique_ptr<Patch> HapticLayer::preparePatch(const std::vector<int>& triangl
   RefinedCut refined = cutAndRefine(mesh_, topology_, std::move(cut), attached,
                                     settings_.refinement, std::move(outside));
   if (refined.free_count == 0) return nullptr;
-  const bool loose = carried && canBeCarried(refined, attached);
-  return std::make_unique<Patch>(mesh_, std::move(refined), fabrics_, effects_, laws_, &obstacles_,
-                                 loose ? Patch::Rim::kCarried : Patch::Rim::kHeld);
+  return std::make_unique<Patch>(mesh_, std::move(refined), fabrics_, effects_, laws_, &obstacles_);
 }
 
 std::vector<int> HapticLayer::elementsAround(const std::vector<int>& triangles,
@@ -144,10 +142,14 @@ void HapticLayer::receive(const std::vector<Vector3d>& positions,
     throw std::invalid_argument(message.str());
   }
   if (!std::isfinite(time)) {
-    base::refuse("the time of the state is ", time, " s; it must be finite");
+    std::ostringstream message;
+    message << "the time of the state is " << time << " s; it must be finite";
+    throw std::invalid_argument(message.str());
   }
   if (!std::isfinite(period) || period <= 0.0) {
-    base::refuse("the period of the state is ", period, " s; it must be finite and > 0");
+    std::ostringstream message;
+    message << "the period of the state is " << period << " s; it must be finite and > 0";
+    throw std::invalid_argument(message.str());
   }
   if (!allFinite(positions) || !allFinite(velocities)) {
     throw std::invalid_argument("the state has a number that is not finite");
@@ -160,7 +162,6 @@ void HapticLayer::receive(const std::vector<Vector3d>& positions,
   }
   const bool first = !motion_.hasState();
   motion_.receive(positions, period, time);
-  carried_load_.receive(motion_);
   if (whole_cloth_) whole_cloth_->receive(positions, velocities, period);
   if (!first || !patch_) return;
   obstacles_.moveTo(motion_.time());
@@ -248,7 +249,6 @@ int HapticLayer::fabricUnder(const std::vector<TouchedParticle>& touched) const 
 
 void HapticLayer::stepPatch() {
   obstacles_.moveTo(motion_.time());
-  patch_->carry(carried_load_.now(motion_));
   if (!patch_->advance(motion_, present_, settings_.time_step)) {
     startAgain();
     last_step_accepted_ = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptex/cloth/forces/element_assembly.h"
 #include "haptex/contact/patch_forces.h"
 
 namespace haptex::contact {
@@ -29,6 +30,25 @@ constexpr double kTieRate = 60.0;
 // s: the next matrix of longer steps has little in common with the last one.
 constexpr double kLongestKept = 4e-3;
 
+/// A third of each adjacent triangle (m^2), per particle; of one fabric's, if it is given.
+std::vector<double> areasOf(const mesh::ClothMesh& mesh, std::optional<int> fabric = std::nullopt) {
+  return cloth::shareOut(cloth::restElements(mesh, fabric), mesh.rest_coordinates.size(),
+                         [](std::size_t) { return 1.0; });
+}
+
+/// kg, per particle.
+std::vector<double> massesOf(const mesh::ClothMesh& mesh,
+                             const std::vector<material::Fabric>& fabrics) {
+  std::vector<double> masses(mesh.rest_coordinates.size(), 0.0);
+  for (std::size_t f = 0; f < fabrics.size(); ++f) {
+    const std::vector<double> areas = areasOf(mesh, static_cast<int>(f));
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      masses[i] += fabrics[f].areal_density * areas[i];
+    }
+  }
+  return masses;
+}
+
 /// N/m, to the large-scale cloth, of the particles of a cut that no refined element has.
 std::vector<double> tiesOf(const RefinedCut& cut, const std::vector<double>& masses) {
   std::vector<double> ties;
@@ -38,29 +58,6 @@ std::vector<double> tiesOf(const RefinedCut& cut, const std::vector<double>& mas
     for (const int particle : cut.mesh.triangles[t]) ties[particle] = 0.0;
   }
   return ties;
-}
-
-/// Of the patch's matrix; with what the rim as a whole acts on if it is carried.
-linear::SymmetricBlockMatrix patternOf(const RefinedCut& cut, const PatchForces& forces,
-                                       bool is_carried) {
-  const int size = static_cast<int>(cut.supports.size());
-  linear::SymmetricBlockMatrix pattern(size, cut.mesh.triangles, forces.pairs);
-  if (!is_carried) return pattern;
-  std::vector<std::array<int, 2>> pairs = CarriedRim::pairs(cut, pattern);
-  pairs.insert(pairs.end(), forces.pairs.begin(), forces.pairs.end());
-  return {size, cut.mesh.triangles, pairs};
-}
-
-/// m/s, of the hand: the mean of the fingertips.
-double speedOf(const base::PerFinger<const Fingertip*>& fingertips) {
-  Vector3d sum = Vector3d::Zero();
-  int count = 0;
-  for (const Finger finger : kFingers) {
-    if (fingertips[finger] == nullptr) continue;
-    sum += fingertips[finger]->velocity;
-    ++count;
-  }
-  return count > 0 ? sum.norm() / count : 0.0;
 }
 
 linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& matrix, int size) {
@@ -77,31 +74,26 @@ linear::SymmetricBlockMatrix leadingPattern(const linear::SymmetricBlockMatrix& 
 
 Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut cut,
              const std::vector<material::Fabric>& fabrics, const cloth::ModelledEffects& effects,
-             const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles, Rim rim)
-    : Patch(coarse, cut, fabrics, effects, laws, obstacles, rim,
+             const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles)
+    : Patch(coarse, cut, fabrics, effects, laws, obstacles,
             forcesOn(coarse, cut, fabrics, effects)) {}
 
 Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut& cut,
              const std::vector<material::Fabric>& fabrics, const cloth::ModelledEffects& effects,
-             const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles, Rim rim,
+             const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles,
              PatchForces forces)
     : cut_(std::move(cut)),
       effects_(effects),
       forces_(std::move(forces.sum)),
       areas_(areasOf(cut_.mesh)),
       masses_(massesOf(cut_.mesh, fabrics)),
-      matrix_(patternOf(cut_, forces, rim == Rim::kCarried)),
-      unknowns_(cut_.free_count + (rim == Rim::kCarried ? 1 : 0)),
-      solver_(leadingPattern(matrix_, unknowns_)),
+      matrix_(static_cast<int>(cut_.supports.size()), cut_.mesh.triangles, forces.pairs),
+      solver_(leadingPattern(matrix_, cut_.free_count)),
       contacts_{{SphereContact(laws, cut_.fabrics, cut_.free_count),
                  SphereContact(laws, cut_.fabrics, cut_.free_count)}},
       rhs_(3, cut_.supports.size()),
-      solution_(3, unknowns_) {
+      solution_(3, cut_.free_count) {
   forces_.bind(matrix_);
-  if (rim == Rim::kCarried) {
-    rim_.emplace(cut_, matrix_, massAround(coarse, cut_, fabrics));
-    for (const double mass : masses_) weight_ += mass * effects.gravity;
-  }
   if (effects.self_collision) {
     layers_.emplace(coarse, cut_, 2.0 * laws.front().halfThickness(), areas_);
   }
@@ -120,16 +112,11 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut& cut,
   contact_forces_.assign(count, 0.0);
   for (auto& touched : linearised_.values) touched.reserve(cut_.free_count);
   for (auto& responses : responses_.values) {
-    for (linear::BlockVector& response : responses) response.setZero(3, unknowns_);
+    for (linear::BlockVector& response : responses) response.setZero(3, cut_.free_count);
   }
 }
 
 Vector3d Patch::placeOnCloth(int particle, const LargeScaleMotion& motion) const {
-  const Vector3d place = placeOnLargeScale(particle, motion);
-  return rim_ ? Vector3d(place + rim_->offset()) : place;
-}
-
-Vector3d Patch::placeOnLargeScale(int particle, const LargeScaleMotion& motion) const {
   const std::array<int, 3>& corners = corners_[particle];
   const Vector3d& weights = cut_.weights[particle];
   return weights[0] * motion.position(corners[0]) + weights[1] * motion.position(corners[1]) +
@@ -147,12 +134,6 @@ Particles Patch::atObstacles(const std::vector<Vector3d>& positions) const {
 }
 
 void Patch::start(const LargeScaleMotion& motion) {
-  if (rim_) rim_->start(carried_load_.velocity);
-  putOnCloth(motion);
-}
-
-/// Every particle, at rest, without contact.
-void Patch::putOnCloth(const LargeScaleMotion& motion) {
   for (std::size_t i = 0; i < particleCount(); ++i) {
     state_.positions[i] = placeOnCloth(static_cast<int>(i), motion);
     state_.velocities[i].setZero();
@@ -173,10 +154,7 @@ void Patch::putOnCloth(const LargeScaleMotion& motion) {
 }
 
 void Patch::goOnFrom(const Patch& other, const LargeScaleMotion& motion) {
-  carried_load_ = other.carried_load_;
-  if (rim_) rim_->start(carried_load_.velocity);
-  if (rim_ && other.rim_) rim_->goOnFrom(*other.rim_);
-  putOnCloth(motion);
+  start(motion);
   const bool touches = !other.contacts_[Finger::kIndex].touched().empty() ||
                        !other.contacts_[Finger::kThumb].touched().empty();
   auto theirs = other.cut_.order.begin();
@@ -237,7 +215,7 @@ void Patch::tie(int particle, const LargeScaleMotion& motion, double h) {
     velocity += cut_.weights[particle][k] * motion.velocity(corners[k]);
   }
   const Vector3d& own = state_.velocities[particle];
-  const Vector3d off = state_.positions[particle] + h * own - placeOnLargeScale(particle, motion);
+  const Vector3d off = state_.positions[particle] + h * own - placeOnCloth(particle, motion);
   rhs_.col(particle) -= h * (stiffness * off + damping * (own - velocity));
   matrix_.diagonal(particle).diagonal().array() += h * h * stiffness + h * damping;
 }
@@ -258,15 +236,12 @@ void Patch::assemble(const LargeScaleMotion& motion, double h) {
     matrix_.diagonal(i).diagonal().array() += h * h * tethers_[i];
     tethers_[i] = tethers_[i] > kLastTether ? tether_left * tethers_[i] : 0.0;
   }
-  const Vector3d shift = rim_ ? Vector3d(h * rim_->velocity()) : Vector3d(Vector3d::Zero());
   for (int i = cut_.free_count; i < count; ++i) {
     detours_[i] *= detour_left;
-    const Vector3d end = placeOnCloth(i, motion) + shift + detours_[i];
+    const Vector3d end = placeOnCloth(i, motion) + detours_[i];
     state_.velocities[i] = (end - state_.positions[i]) / h;
-    if (rim_) rhs_.col(i) = h * masses_[i] * effects_.gravity;
   }
   forces_.assembleLinearised(state_.ofForces(), {h, h}, matrix_, rhs_);
-  if (rim_) rim_->addTo(matrix_, rhs_, carried_load_.force + weight_ + obstacleForce(), h);
 }
 
 void Patch::add(const TouchedParticle& touched, double h) {
@@ -304,12 +279,10 @@ bool Patch::advance(const LargeScaleMotion& motion,
                     const base::PerFinger<const Fingertip*>& fingertips, double h) {
   state_.time = motion.time();
   if (layers_) layers_->update(motion, fingertips, h);
-  if (rim_) rim_->follow(speedOf(fingertips), h);
   assemble(motion, h);
   addContact(fingertips, h);
   if (!solve(h)) return false;
   for (int i = 0; i < cut_.free_count; ++i) state_.velocities[i] += solution_.col(i);
-  if (rim_) moveRim(h);
   for (std::size_t i = 0; i < particleCount(); ++i) {
     state_.positions[i] += h * state_.velocities[i];
     contact_forces_[i] = 0.0;
@@ -328,28 +301,8 @@ bool Patch::advance(const LargeScaleMotion& motion,
   return true;
 }
 
-void Patch::carry(const CarriedForce& load) {
-  carried_load_ = load;
-  if (rim_) rim_->setClothVelocity(load.velocity);
-}
-
-/// N, of the last step, on all of the patch.
-Vector3d Patch::obstacleForce() const {
-  Vector3d sum = Vector3d::Zero();
-  if (!obstacles_) return sum;
-  for (const TouchedParticle& touched : obstacles_->touched()) sum += touched.force();
-  return sum;
-}
-
-/// As the step has found.
-void Patch::moveRim(double h) {
-  const Vector3d change = solution_.col(cut_.free_count);
-  rim_->advance(change, h);
-  for (std::size_t i = cut_.free_count; i < particleCount(); ++i) state_.velocities[i] += change;
-}
-
 const linear::BlockVector& Patch::respond(Finger finger, int direction) {
-  rhs_.leftCols(unknowns_).setZero();
+  rhs_.leftCols(cut_.free_count).setZero();
   for (const TouchedParticle& touched : linearised_[finger]) {
     rhs_.col(touched.particle) = touched.tangent.col(direction);
   }

@@ -9,7 +9,6 @@
 #include "haptex/cloth/forces/aerodynamics.h"
 #include "haptex/cloth/forces/bending/bending.h"
 #include "haptex/cloth/forces/bending/seam_bending.h"
-#include "haptex/cloth/forces/element_assembly.h"
 #include "haptex/cloth/forces/membrane.h"
 #include "haptex/mesh/merged_seams.h"
 
@@ -139,23 +138,6 @@ void addBending(const mesh::ClothMesh& coarse, const RefinedCut& cut, Rigidities
 }
 
 }  // namespace
-
-std::vector<double> areasOf(const mesh::ClothMesh& mesh, std::optional<int> fabric) {
-  return cloth::shareOut(cloth::restElements(mesh, fabric), mesh.rest_coordinates.size(),
-                         [](std::size_t) { return 1.0; });
-}
-
-std::vector<double> massesOf(const mesh::ClothMesh& mesh,
-                             const std::vector<material::Fabric>& fabrics) {
-  std::vector<double> masses(mesh.rest_coordinates.size(), 0.0);
-  for (std::size_t f = 0; f < fabrics.size(); ++f) {
-    const std::vector<double> areas = areasOf(mesh, static_cast<int>(f));
-    for (std::size_t i = 0; i < masses.size(); ++i) {
-      masses[i] += fabrics[f].areal_density * areas[i];
-    }
-  }
-  return masses;
-}
 
 PatchForces forcesOn(const mesh::ClothMesh& coarse, const RefinedCut& cut,
                      const std::vector<material::Fabric>& fabrics,

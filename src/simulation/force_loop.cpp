@@ -104,7 +104,6 @@ void ForceLoop::tick(Time now) {
   step();
   const bool loads_due = loadsAreDue(state_taken, now);
   if (loads_due) ++view_.loadings;
-  if (loads_due && layer_) layer_->sendLoads(loadGain());
   showView(state_taken || loads_due);
   if (picture_wanted_.exchange(false)) showPicture();
   ++status_.ticks;
@@ -293,7 +292,6 @@ void ForceLoop::showView(bool has_news) {
   view_.loads.clear();
   if (layer_) view_.loads.assign(layer_->loads().begin(), layer_->loads().end());
   view_.is_pinched = layer_ && layer_->isPinched();
-  view_.is_held = layer_ && layer_->isHeld();
   view_.mesh = layer_mesh_;
   view_.load_gain = loadGain();
   views_.write(view_);

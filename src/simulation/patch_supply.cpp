@@ -14,9 +14,9 @@ bool PatchSupply::ask(const LoopView& view, const Search& search) {
     if (!search(volume, selection_)) return false;
   }
   if (selection_.finish()) outdated_ = true;
-  const bool was_carried = isCarried();
-  rounds_of_pinch_ = isPinch(view) ? kRests : std::max(0, rounds_of_pinch_ - 1);
-  if (isCarried() != was_carried) outdated_ = true;
+  const bool was_wide = isWide();
+  rounds_of_pinch_ = view.is_pinched ? kRests : std::max(0, rounds_of_pinch_ - 1);
+  if (isWide() != was_wide) outdated_ = true;
   return true;
 }
 
@@ -29,22 +29,16 @@ void PatchSupply::setAttached(const std::vector<char>& attached) {
 std::unique_ptr<contact::Patch> PatchSupply::prepare(const contact::HapticLayer& layer) {
   outdated_ = false;
   widen(layer);
-  return layer.preparePatch(triangles(), attached_, wide_,
-                            isCarried() && settings_.surround == 0.0);
+  return layer.preparePatch(triangles(), attached_, wide_);
 }
 
-/// Cloth that slips through the fingers is held by what is around it, and not by its inertia.
-bool PatchSupply::isPinch(const LoopView& view) const {
-  return settings_.surround > 0.0 ? view.is_pinched : view.is_held;
-}
-
-bool PatchSupply::isCarried() const {
-  return rounds_of_pinch_ > 0 &&
+bool PatchSupply::isWide() const {
+  return rounds_of_pinch_ > 0 && settings_.surround > 0.0 &&
          std::any_of(attached_.begin(), attached_.end(), [](char held) { return held != 0; });
 }
 
 void PatchSupply::widen(const contact::HapticLayer& layer) {
-  if (!isCarried() || settings_.surround <= 0.0) {
+  if (!isWide()) {
     wide_.clear();
     return;
   }

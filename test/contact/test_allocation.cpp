@@ -26,12 +26,11 @@ TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
     mesh::Obstacle ball{"ball", mesh::ObstacleSphere{0.0298}, behind};
     ball.motion = mesh::ObstacleDrift{{1e-4, 0.0, 0.0}};
     HapticLayer layer(mesh, wool(), effects, settings, {ball});
-    const auto prepare = [&](double u, bool carried) {
-      return layer.preparePatch(trianglesAround(mesh, {u, 0.02}, 0.01), nothingAttached(mesh), {},
-                                carried);
+    const auto prepare = [&](double u) {
+      return layer.preparePatch(trianglesAround(mesh, {u, 0.02}, 0.01), nothingAttached(mesh));
     };
-    std::unique_ptr<Patch> first = patches ? prepare(0.02, false) : nullptr;
-    std::unique_ptr<Patch> second = patches ? prepare(0.025, true) : nullptr;
+    std::unique_ptr<Patch> first = patches ? prepare(0.02) : nullptr;
+    std::unique_ptr<Patch> second = patches ? prepare(0.025) : nullptr;
     Fingertip index = pressing(layer.law(), kSmallSampleMiddle, 1e-3);
     Fingertip thumb = index;
     thumb.position.x() *= -1.0;
@@ -48,7 +47,6 @@ TEST(ContactAllocation, TheFastThreadsCallsAllocateNothing) {
     touched = layer.contacts()[base::Finger::kIndex].touching &&
               layer.contacts()[base::Finger::kThumb].touching &&
               (!patches || layer.patch()->touchesObstacle());
-    layer.sendLoads(1.0);
     layer.receive(mesh.initial_positions, rest, 0.02);
     std::unique_ptr<Patch> old = layer.exchange(std::move(second));
     for (int i = 0; i < 50; ++i) layer.step({index, i % 2 == 0 ? thumb : unsound});

@@ -145,32 +145,6 @@ TEST_F(PatchSupplyTest, APinchWidensThePatchUntilItHasBeenOpenForAWhile) {
   EXPECT_EQ(particles(), touched);
 }
 
-TEST_F(PatchSupplyTest,
-       WithoutASurroundAPinchThatHoldsTheClothCarriesTheRimUntilItHasBeenOpenForAWhile) {
-  PatchSupply supply({}, mesh_.triangles.size());
-  std::vector<char> attached = nothing_attached_;
-  attached[0] = 1;
-  supply.setAttached(attached);
-  const PatchSupply::Search search = finds({40, 41, 42, 43, 56, 57, 58, 59});
-  supply.ask(index_, search);
-  EXPECT_EQ(supply.prepare(layer_)->rim(), contact::Patch::Rim::kHeld);
-  index_.is_pinched = true;
-  supply.ask(index_, search);
-  EXPECT_FALSE(supply.isOutdated()) << "it slips";
-  index_.is_held = true;
-  supply.ask(index_, search);
-  ASSERT_TRUE(supply.isOutdated());
-  EXPECT_EQ(supply.prepare(layer_)->rim(), contact::Patch::Rim::kCarried);
-  index_.is_pinched = index_.is_held = false;
-  for (int round = 1; round < PatchSupply::kRests; ++round) {
-    supply.ask(index_, search);
-    EXPECT_FALSE(supply.isOutdated()) << round;
-  }
-  supply.ask(index_, search);
-  ASSERT_TRUE(supply.isOutdated());
-  EXPECT_EQ(supply.prepare(layer_)->rim(), contact::Patch::Rim::kHeld);
-}
-
 TEST_F(PatchSupplyTest, NothingNearIsNoPatch) {
   supply_.setAttached(nothing_attached_);
   supply_.ask(index_, finds({40, 41}));

@@ -95,14 +95,11 @@ class HapticLayer {
   /// @param triangles of the large-scale mesh, in any order, repetition allowed; may be empty
   /// @param attached  one per large-scale particle, nonzero where it is held
   /// @param around    others that come into the patch and stay as they are
-  /// @param carried   whether the patch of a pinch is asked for, whose rim goes along with the hand
-  ///   (CarriedRim) unless something of the patch is attached
   /// @returns null if there are no triangles
   /// @throws std::invalid_argument if a triangle does not exist or `attached` has another size
   std::unique_ptr<Patch> preparePatch(const std::vector<int>& triangles,
                                       const std::vector<char>& attached,
-                                      const std::vector<int>& around = {},
-                                      bool carried = false) const;
+                                      const std::vector<int>& around = {}) const;
   /// What the patch of a pinch has around some triangles: contact::elementsAround(), nothing if the
   /// cloth collides with itself, because its layers would fall through each other there.
   std::vector<int> elementsAround(const std::vector<int>& triangles, double reach) const;
@@ -122,10 +119,6 @@ class HapticLayer {
   /// @returns the one before, to be destroyed where time does not matter
   std::unique_ptr<Patch> exchange(std::unique_ptr<Patch> next);
 
-  /// The loads() of now go to the large-scale layer, for its next step.
-  /// @param gain the share of them that is to act, 0 to 1
-  void sendLoads(double gain) { carried_load_.send(loads_, gain); }
-
   /// Advances by settings().time_step. A fingertip that is absent, or not sound, does not touch.
   /// Without a state yet there is no contact.
   void step(const Fingertips& fingertips);
@@ -142,11 +135,6 @@ class HapticLayer {
   const base::PerFinger<FingertipContact>& contacts() const { return contacts_; }
   /// Whether the fingertips press on the cloth from opposite sides, so that a hand may carry it.
   bool isPinched() const;
-  /// Whether they do and the cloth does not slip on one of them at least.
-  bool isHeld() const {
-    return isPinched() &&
-           !(contacts_[base::Finger::kIndex].slipping && contacts_[base::Finger::kThumb].slipping);
-  }
   /// What acts on the large-scale cloth, see cloth::Cloth::setPointLoads().
   const std::vector<cloth::PointLoad>& loads() const { return loads_; }
 
@@ -173,7 +161,6 @@ class HapticLayer {
   PlacedObstacles obstacles_;
   MeshTopology topology_;
   LargeScaleMotion motion_;
-  CarriedLoad carried_load_;
   std::vector<double> panel_forces_;  // parts of a contact's normal force; scratch
   std::unique_ptr<Patch> patch_;
   CondensedStiffness stiffness_;

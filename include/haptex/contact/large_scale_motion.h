@@ -32,8 +32,6 @@ class LargeScaleMotion {
   Eigen::Vector3d position(int particle) const {  ///< m
     return start_[particle] + progress_ * (target_[particle] - start_[particle]);
   }
-  /// m, in the newest state.
-  const Eigen::Vector3d& target(int particle) const { return target_[particle]; }
   Eigen::Vector3d velocity(int particle) const {  ///< m/s
     if (progress_ >= 1.0) return Eigen::Vector3d::Zero();
     return (target_[particle] - start_[particle]) / period_;

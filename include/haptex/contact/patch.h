@@ -8,8 +8,6 @@
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/forces/force_sum.h"
-#include "haptex/contact/carry/carried_load.h"
-#include "haptex/contact/carry/carried_rim.h"
 #include "haptex/contact/fingertip.h"
 #include "haptex/contact/large_scale_motion.h"
 #include "haptex/contact/layers_between.h"
@@ -30,18 +28,14 @@ namespace haptex::contact {
 /// The constructor does all that needs memory; the other functions allocate nothing.
 class Patch {
  public:
-  /// kHeld: the rim is where the large-scale cloth is. kCarried: CarriedRim.
-  enum class Rim { kHeld, kCarried };
-
   /// @param coarse  the mesh that was cut
   /// @param fabrics of the cloth, with bending
   /// @param laws    of each; the first for LayersBetween::kMost layers if effects are with
   ///   self_collision, which knows one fabric; kept
   /// @param obstacles where they are at the end of each step; null: none
-  /// @param rim     kCarried only if canBeCarried()
   Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const std::vector<material::Fabric>& fabrics,
         const cloth::ModelledEffects& effects, const std::vector<ContactLaw>& laws,
-        const PlacedObstacles* obstacles = nullptr, Rim rim = Rim::kHeld);
+        const PlacedObstacles* obstacles = nullptr);
 
   std::size_t particleCount() const { return state_.positions.size(); }
   int freeCount() const { return cut_.free_count; }
@@ -50,7 +44,6 @@ class Patch {
   /// Magnitude of the contact force on every particle (N).
   const std::vector<double>& contactForces() const { return contact_forces_; }
   const RefinedCut& cut() const { return cut_; }
-  Rim rim() const { return rim_ ? Rim::kCarried : Rim::kHeld; }
   /// Which of the cloth's fabrics a particle is of.
   int fabricOf(int particle) const { return cut_.fabrics.empty() ? 0 : cut_.fabrics[particle]; }
 
@@ -60,9 +53,6 @@ class Patch {
   /// is in contact, what becomes free or rim lets go of where it was gradually, so that forces do
   /// not jump.
   void goOnFrom(const Patch& other, const LargeScaleMotion& motion);
-
-  /// What the fingers exert on the large-scale cloth, which a carried rim goes along with.
-  void carry(const CarriedForce& load);
 
   /// One step.
   /// @param motion     already at the end of the step
@@ -78,7 +68,7 @@ class Patch {
   const std::vector<TouchedParticle>& linearised(base::Finger finger) const {
     return linearised_[finger];
   }
-  /// The place of a particle on the large-scale cloth (m), which a carried rim shifts.
+  /// The place of a particle on the large-scale cloth (m).
   Eigen::Vector3d placeOnCloth(int particle, const LargeScaleMotion& motion) const;
   /// m, along weft and warp, in the panel of the particle's owner.
   const Eigen::Vector2d& restCoordinates(int particle) const {
@@ -94,7 +84,7 @@ class Patch {
   /// A^-1 k e with the matrix A = M - h D - h^2 K of the last step: k are the contact stiffnesses
   /// of the particles at a fingertip, e the unit vector of a direction (0 to 2).
   /// One iteration better than the last time, if that was for a matrix and contact close to these.
-  /// @returns 3 x at least freeCount(), until the next call
+  /// @returns 3 x freeCount(), until the next call
   const linear::BlockVector& respond(base::Finger finger, int direction);
 
   /// Whether some particle touched an obstacle in the last step.
@@ -106,13 +96,8 @@ class Patch {
  private:
   Patch(const mesh::ClothMesh& coarse, RefinedCut& cut,
         const std::vector<material::Fabric>& fabrics, const cloth::ModelledEffects& effects,
-        const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles, Rim rim,
-        PatchForces forces);
+        const std::vector<ContactLaw>& laws, const PlacedObstacles* obstacles, PatchForces forces);
   Particles particlesAt(const std::vector<Eigen::Vector3d>& positions, base::Finger finger) const;
-  Eigen::Vector3d placeOnLargeScale(int particle, const LargeScaleMotion& motion) const;
-  void putOnCloth(const LargeScaleMotion& motion);
-  void moveRim(double h);
-  Eigen::Vector3d obstacleForce() const;
   Particles atObstacles(const std::vector<Eigen::Vector3d>& positions) const;
   bool placeOn(const Patch& other, int particle, const LargeScaleMotion& motion);
   void tie(int particle, const LargeScaleMotion& motion, double h);
@@ -130,11 +115,7 @@ class Patch {
   std::optional<LayersBetween> layers_;  // of cloth that collides with itself
   std::optional<ObstacleContact> obstacles_;
   linear::SymmetricBlockMatrix matrix_;
-  int unknowns_;  // free particles, and the rim if it is carried
   PatchSolver solver_;
-  std::optional<CarriedRim> rim_;
-  CarriedForce carried_load_;
-  Eigen::Vector3d weight_ = Eigen::Vector3d::Zero();  // N, of a patch with a carried rim
 
   cloth::ClothState state_;
   std::vector<Eigen::Vector3d> predicted_;  // m

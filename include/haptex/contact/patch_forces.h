@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "haptex/cloth/forces/force_sum.h"
@@ -18,13 +17,6 @@ struct PatchForces {
   /// Of particles that act on each other without sharing a triangle; first < second.
   std::vector<std::array<int, 2>> pairs;
 };
-
-/// A third of each adjacent triangle (m^2), per particle; of one fabric's, if it is given.
-std::vector<double> areasOf(const mesh::ClothMesh& mesh, std::optional<int> fabric = std::nullopt);
-
-/// kg, per particle.
-std::vector<double> massesOf(const mesh::ClothMesh& mesh,
-                             const std::vector<material::Fabric>& fabrics);
 
 /// Membrane, bending and air on the particles of a cut. Refined elements bend as fine as they are.
 /// Those around them bend by their corners, together with the corners of the refined ones, which

@@ -48,7 +48,6 @@ struct LoopView {
   contact::Fingertips fingertips;
   std::vector<cloth::PointLoad> loads;
   bool is_pinched = false;  ///< HapticLayer::isPinched()
-  bool is_held = false;     ///< HapticLayer::isHeld()
   std::uint32_t mesh = 0;   ///< number of the one that they are on
   double load_gain = 0.0;   ///< share of them that is to act
 };

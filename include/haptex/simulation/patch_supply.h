@@ -24,12 +24,10 @@ class PatchSupply {
 
   /// Adds what is near a volume to the selection. @returns false if that is not known
   using Search = std::function<bool(const contact::SearchVolume&, contact::PatchSelection&)>;
-  /// A round about both fingertips. One whose search fails changes nothing. From a pinch that
-  /// holds the cloth on, until kRests rounds without one, the rim of the patch is carried along
-  /// (contact::CarriedRim); where the settings have a surround, the patch goes on around the
-  /// fingertips instead, as far as it went before while that is half as far as it may be: what
-  /// leaves a patch that is carried is felt. Neither where nothing is attached: with a surround the
-  /// large-scale cloth would take seconds to where the patch hangs.
+  /// A round about both fingertips. One whose search fails changes nothing. From a pinch on, until
+  /// kRests rounds without one, the patch goes on around the fingertips, as far as it went before
+  /// while that is half as far as it may be: what leaves a patch that is carried is felt. Not so
+  /// where nothing is attached: the large-scale cloth would take seconds to where the patch hangs.
   /// @param view of the force loop: where the fingertips are, what they touch, whether they pinch
   ///   it, and the period for which they are predicted
   /// @returns whether every search was answered
@@ -49,8 +47,7 @@ class PatchSupply {
   std::size_t attachedSize() const { return attached_.size(); }
 
  private:
-  bool isCarried() const;
-  bool isPinch(const LoopView& view) const;
+  bool isWide() const;
   void widen(const contact::HapticLayer& layer);
 
   contact::HapticSettings settings_;

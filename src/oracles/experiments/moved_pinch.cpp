@@ -59,6 +59,21 @@ std::vector<MovedPinch> movePinch(const std::function<Felt(const Fingertips&)>& 
   return motions;
 }
 
+MovedPinch pullPinch(const std::function<Felt(const Fingertips&)>& step) {
+  Hand hand = handAtTheEdge();
+  MovedPinch pulled{"pulled", {}};
+  const auto ignore = [&](const Fingertips& fingertips) { step(fingertips); };
+  const auto record = [&](const Fingertips& fingertips) {
+    pulled.felt.push_back(step(fingertips));
+  };
+  const Vector3d still = Vector3d::Zero();
+  move(hand, still, -8e-3, 0.2, kMovedPinchStep, ignore);
+  move(hand, still, 0.0, 0.8, kMovedPinchStep, ignore);
+  move(hand, {0.0, 0.0, -0.003}, 0.0, 0.06, kMovedPinchStep, record);
+  move(hand, still, 0.0, 0.1, kMovedPinchStep, record);
+  return pulled;
+}
+
 ForceDifference differenceOf(const MovedPinch& motion, const MovedPinch& exact) {
   ForceDifference difference;
   double squares = 0.0;

@@ -38,6 +38,10 @@ Hand handAtTheEdge();
 /// @param step takes fingertips for kMovedPinchStep and returns what they feel
 std::vector<MovedPinch> movePinch(const std::function<Felt(const Fingertips&)>& step);
 
+/// They pinch and rest as above, and the sheet is "pulled" down at once, by 3 mm at 50 mm/s; then
+/// they rest for 0.1 s.
+MovedPinch pullPinch(const std::function<Felt(const Fingertips&)>& step);
+
 /// N: of the difference of forces over all milliseconds.
 struct ForceDifference {
   double largest = 0.0;

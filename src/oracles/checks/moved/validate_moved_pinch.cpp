@@ -6,45 +6,59 @@
 namespace haptex::oracles {
 namespace {
 
-/// N, largest difference in any millisecond.
+/// N, largest in any millisecond.
 struct Tolerance {
-  const char* name;
-  double surround;  // m
-  double rate;      // Hz, of large-scale states
+  double rate;  // Hz, of large-scale states
   double force;
 };
 
-// As scenes have it if they do not ask for more, and with the cloth around the pinch in the patch.
-constexpr Tolerance kTolerances[] = {{"moved", 0.0, 80.0, 0.2},
-                                     {"moved", 0.0, 40.0, 0.25},
-                                     {"moved_surround", kCarriedSurround, 80.0, 0.03},
-                                     {"moved_surround", kCarriedSurround, 40.0, 0.1}};
+HapticLoopSettings sampleAt(const material::Fabric& fabric, double rate, double surround) {
+  HapticLoopSettings sample = hangingSample(fabric, kes::Direction::kWarp, rate);
+  sample.haptics.refinement = 1;  // as fine as the whole cloth is
+  sample.haptics.surround = surround;
+  return sample;
+}
+
+std::string nameOf(const std::string& motion, double rate) {
+  return "contact/" + motion + "/" + std::to_string(std::lround(rate)) + "Hz";
+}
+
+/// As scenes have it: what a hand feels that pulls taut fabric at once, by friction.
+void validatePulledPinch(const material::Fabric& fabric, const Sink& sink) {
+  RefinedCloth cloth(sampleAt(fabric, 80.0, 0.0));
+  const MovedPinch exact = pullPinch([&](const Fingertips& fingertips) {
+    cloth.step(fingertips, kMovedPinchStep);
+    return feltIn(cloth);
+  });
+  for (const Tolerance& tolerance : {Tolerance{80.0, 0.05}, Tolerance{40.0, 0.1}}) {
+    HapticLoop loop(sampleAt(fabric, tolerance.rate, 0.0));
+    const MovedPinch felt = pullPinch([&](const Fingertips& fingertips) {
+      loop.step(fingertips);
+      return feltIn(loop);
+    });
+    const double error = differenceOf(felt, exact).largest;
+    sink({nameOf(exact.name, tolerance.rate), 0.0, error, error, tolerance.force});
+  }
+}
 
 }  // namespace
 
 void validateMovedPinch(const material::Fabric& fabric, const Sink& sink) {
-  const auto sampleAt = [&](double rate, double surround) {
-    HapticLoopSettings sample = hangingSample(fabric, kes::Direction::kWarp, rate);
-    sample.haptics.refinement = 1;  // as fine as the whole cloth is
-    sample.haptics.surround = surround;
-    return sample;
-  };
-  RefinedCloth cloth(sampleAt(80.0, 0.0));
+  validatePulledPinch(fabric, sink);
+  RefinedCloth cloth(sampleAt(fabric, 80.0, kCarriedSurround));
   const std::vector<MovedPinch> exact = movePinch([&](const Fingertips& fingertips) {
     cloth.step(fingertips, kMovedPinchStep);
     return feltIn(cloth);
   });
-  for (const Tolerance& tolerance : kTolerances) {
-    HapticLoop loop(sampleAt(tolerance.rate, tolerance.surround));
+  for (const Tolerance& tolerance : {Tolerance{80.0, 0.03}, Tolerance{40.0, 0.1}}) {
+    HapticLoop loop(sampleAt(fabric, tolerance.rate, kCarriedSurround));
     const std::vector<MovedPinch> felt = movePinch([&](const Fingertips& fingertips) {
       loop.step(fingertips);
       return feltIn(loop);
     });
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const double error = differenceOf(felt[i], exact[i]).largest;
-      sink({std::string("contact/") + tolerance.name + "/" + exact[i].name + "/" +
-                std::to_string(std::lround(tolerance.rate)) + "Hz",
-            0.0, error, error, tolerance.force});
+      sink({nameOf("moved/" + exact[i].name, tolerance.rate), 0.0, error, error, tolerance.force});
     }
   }
 }
