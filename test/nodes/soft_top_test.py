@@ -28,8 +28,7 @@ class SoftTop(NodeTest):
         cls.transforms = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.transforms)
         cls.mesh = rospy.wait_for_message('cloth/mesh', ClothMesh, WAIT)
-        coordinates = np.array([[point.x, point.y] for point in cls.mesh.rest_coordinates])
-        cls.header = np.nonzero(np.abs(coordinates[:, 1] - WARP_OF_HEADER) < 1e-3)[0]
+        cls.header = np.nonzero(np.abs(np.array(cls.mesh.rest_warp_coordinates) - WARP_OF_HEADER) < 1e-3)[0]
         cls.attach = rospy.ServiceProxy('cloth/attach', AttachParticles)
 
     def state(self):
@@ -64,7 +63,7 @@ class SoftTop(NodeTest):
             self.assertLess(np.linalg.norm(force), 5000.0, bow)
 
     def test_other_frames_take_cloth_and_let_go_of_it(self):
-        particle = len(self.mesh.rest_coordinates) // 2 + 5
+        particle = len(self.mesh.rest_warp_coordinates) // 2 + 5
         broadcaster = tf2_ros.StaticTransformBroadcaster()
         hand = TransformStamped(header=Header(frame_id='world', stamp=rospy.Time.now()), child_frame_id='hand')
         hand.transform.rotation.w = 1.0
