@@ -128,7 +128,8 @@ std::map<std::string, Provenance> provenanceOf(const std::vector<Fabric>& layers
   std::string names;
   for (const Fabric& layer : layers) names += (names.empty() ? "" : ", ") + layer.name;
   std::map<std::string, Provenance> provenance;
-  for (const auto& [key, source] : layers.front().provenance) {
+  for (const auto& of_first : layers.front().provenance) {
+    const std::string& key = of_first.first;
     const bool all = std::all_of(layers.begin(), layers.end(), [&](const Fabric& layer) {
       return layer.provenance.count(key) > 0;
     });

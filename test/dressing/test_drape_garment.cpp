@@ -1,5 +1,6 @@
 // The program drape_garment.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -36,7 +37,7 @@ class DrapeGarment : public testing::Test {
     return status;
   }
 
-  const std::string directory_ = testing::TempDir() + "drape_garment";
+  const std::string directory_ = testing::TempDir() + "drape_garment_" + std::to_string(getpid());
   const std::string garment_ = directory_ + "/tube.yaml";
   const std::string body_ = directory_ + "/body.obj";
   const std::string obj_ = directory_ + "/tube.obj";
