@@ -179,7 +179,10 @@ void DriverNode::receiveForce(Finger finger, const haptex::ServoForce& message,
   {
     const std::lock_guard<std::mutex> lock(commanders_mutex_);
     const bool other_way = with_both != topics.came_with_both;
-    if (other_way && message.header.stamp == topics.filter.lastStamp()) return;  // the same force
+    if (other_way && message.header.stamp <= topics.filter.lastStamp() &&
+        commanders_.commands(finger, commander)) {
+      return;  // what came the other way, or was followed there by a later one
+    }
     if (const auto command = topics.filter.receive(message, now, arrival)) {
       loop_.command(finger, *command, arrival, timeOf(message.measured, now, arrival));
       commanders_.commanded(finger, commander);

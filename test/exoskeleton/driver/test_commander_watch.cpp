@@ -21,5 +21,15 @@ TEST(CommanderWatch, KnowsTheDeathOfTheOneWhoCommandedLastOnce) {
   EXPECT_TRUE(watch.hasDied(Finger::kIndex, "/another"));
 }
 
+TEST(CommanderWatch, KnowsWhoCommandsAFinger) {
+  CommanderWatch watch;
+  EXPECT_FALSE(watch.commands(Finger::kIndex, "/renderer"));
+  watch.commanded(Finger::kIndex, "/renderer");
+  EXPECT_TRUE(watch.commands(Finger::kIndex, "/renderer"));
+  EXPECT_FALSE(watch.commands(Finger::kThumb, "/renderer"));
+  watch.commanded(Finger::kIndex, "/another");
+  EXPECT_FALSE(watch.commands(Finger::kIndex, "/renderer"));
+}
+
 }  // namespace
 }  // namespace haptex::exoskeleton::test_commander_watch

@@ -21,6 +21,11 @@ class CommanderWatch {
     if (commanders_[finger] != node) commanders_[finger] = node;
   }
 
+  /// Whether this node is the one that commanded the finger last.
+  bool commands(Finger finger, const std::string& node) const {
+    return commanders_[finger] == node;
+  }
+
   /// This node's subscription to what is measured of some finger has ended.
   /// @returns whether it is the one that has commanded this finger, said once
   bool hasDied(Finger finger, const std::string& node) {
