@@ -106,6 +106,32 @@ class Local(Study):
         self.assertIn(f'jobs = {CASES + 1}: allowed are 1 to {CASES}', answer.stderr)
 
 
+def can_have_its_own_files():
+    """Whether a process may see other files than the rest, as one on another machine does."""
+    return subprocess.run(['unshare', '--mount', 'true'], stderr=subprocess.DEVNULL, check=False).returncode == 0
+
+
+@unittest.skipUnless(can_have_its_own_files(), 'mounting directories is not permitted')
+class Remote(Study):
+    def test_files_of_another_machine_are_fetched(self):
+        directory, far = self.folder / 'remote', self.folder / 'far'
+        for path in (directory, far):
+            path.mkdir()
+        # Stands for ssh: there the directory is another one. It is called with options, a host and a command.
+        ssh = self.folder / 'ssh'
+        ssh.write_text('#!/bin/bash\n'
+                       'while [ "$1" != far ]; do shift; done; shift; [ "$1" != -- ] || shift\n'
+                       f'exec unshare --mount bash -c "mount --bind {far} {directory} && cd && $*"\n', encoding='utf-8')
+        ssh.chmod(0o755)
+        logins = self.folder / 'logins'
+        logins.write_text(f'2/{ssh} far\n', encoding='utf-8')
+        self.assertEqual(self.run_study('whole', '--jobs', '1', cases=8).returncode, 0)
+        answer = self.run_study('remote', '--jobs', '3', '--sshloginfile', str(logins), cases=8)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual(self.merged('remote'), self.merged('whole'))
+        self.assertEqual({path.name for path in far.iterdir()}, {path.name for path in self.files('remote')})
+
+
 @unittest.skipUnless(shutil.which('slurmctld', path=os.environ['PATH'] + ':/usr/sbin'),
                      'Slurm is not installed: scripts/packages_slurm.txt')
 class Slurm(Study):
@@ -138,7 +164,7 @@ class Slurm(Study):
             self.assertIn(f'NodeList={node}', log)
 
 
-Tests = suite_of(Local, Slurm)
+Tests = suite_of(Local, Remote, Slurm)
 
 if __name__ == '__main__':
     rostest.rosrun('haptex', 'study', f'{__name__}.Tests')
