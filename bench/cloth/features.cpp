@@ -109,7 +109,10 @@ void printBesideTheSteps() {
   const ros::Time stamp(1.0);
   std::vector<Eigen::Vector3d> forces;
   haptex::ClothState message;
-  const auto fill = [&] { nodes::fillStateMessage(simulation, stamp, forces, message); };
+  const auto fill = [&] {
+    simulation.cloth().computeForces(simulation.state(), forces);
+    nodes::fillStateMessage(simulation, stamp, forces, message);
+  };
   print("cloth_state/message", microseconds(fill), "us");
   const auto restamp = [&] { nodes::restampStateMessage(simulation, stamp, message); };
   print("cloth_state/message_asleep", microseconds(restamp), "us");

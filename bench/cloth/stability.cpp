@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <map>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -20,9 +19,9 @@
 #include <utility>
 #include <vector>
 
-#include "haptex/base/quantity.h"
 #include "haptex/studies/extreme_run.h"
 #include "haptex/studies/extreme_shrink.h"
+#include "haptex/studies/extreme_tally.h"
 #include "haptex/studies/stability_map.h"
 #include "tab_lines.h"
 
@@ -63,53 +62,11 @@ Arguments parse(int argc, char** argv) {
   return arguments;
 }
 
-struct Tally {
-  long cases = 0;
-  long failures = 0;
-  long other_rests = 0;
-  long slow = 0;
-  long unsettled = 0;
-  long rejected = 0;
-  double growth = 0.0;
-  double return_error = 0.0;
-
-  void add(const ExtremeOutcome& outcome) {
-    ++cases;
-    failures += outcome.failure != ExtremeFailure::kNone;
-    other_rests += outcome.other_rest;
-    slow += outcome.slow;
-    unsettled += outcome.unsettled;
-    rejected += outcome.rejected;
-    growth = base::largerOrNaN(growth, outcome.growth);
-    if (outcome.other_rest || outcome.unsettled) return;
-    return_error = base::largerOrNaN(return_error, outcome.return_error);
-  }
-};
-
-void print(const std::string& name, const Tally& tally) {
-  using bench::printLine;
-  printLine(name + "cases", static_cast<double>(tally.cases), "cases");
-  printLine(name + "failures", static_cast<double>(tally.failures), "cases");
-  printLine(name + "other_rests", static_cast<double>(tally.other_rests), "cases");
-  printLine(name + "slow_returns", static_cast<double>(tally.slow), "cases");
-  if (tally.unsettled > 0) {
-    printLine(name + "unsettled", static_cast<double>(tally.unsettled), "cases");
-  }
-  printLine(name + "rejected_steps", static_cast<double>(tally.rejected), "steps");
-  printLine(name + "worst_growth", tally.growth, "of_energy");
-  printLine(name + "worst_return_error", tally.return_error, "of_extent");
-}
-
 void printFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome) {
-  constexpr int kMaxRuns = 100;  // of seconds each, where cloth does not return
-  int runs = 0;
-  const ExtremeCase small = shrinkExtremeCase(extreme, [&](const ExtremeCase& candidate) {
-    return ++runs <= kMaxRuns && studies::runExtremeCase(candidate).failure == outcome.failure;
-  });
   std::fprintf(stderr, "seed %llu: %s %s, growth %g, return error %g, shrunk to\n  %s\n",
                static_cast<unsigned long long>(extreme.seed), nameOf(outcome.failure),
                outcome.message.c_str(), outcome.growth, outcome.return_error,
-               toText(small).c_str());
+               toText(shrinkFailure(extreme, outcome.failure)).c_str());
 }
 
 class Cases {
@@ -122,9 +79,7 @@ class Cases {
     std::thread other([this] { work(); });
     work();
     other.join();
-    print(name_, all_);
-    for (const auto& [kind, tally] : by_kind_) print(name_ + kind + "/", tally);
-    if (explicit_.cases > 0) print(name_ + "explicit_integrators/", explicit_);
+    tally_.print(name_, bench::printLine);
   }
 
  private:
@@ -138,25 +93,18 @@ class Cases {
 
   void add(const ExtremeCase& extreme, const ExtremeOutcome& outcome) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (cloth::isImplicit(extreme.method)) {
-      all_.add(outcome);
-      by_kind_[nameOf(extreme.kind)].add(outcome);
-    } else {
-      explicit_.add(outcome);
-    }
-    const long done = all_.cases + explicit_.cases;
+    tally_.add(extreme, outcome);
+    const long done = tally_.cases();
     if (done % std::max<long>(1, static_cast<long>(cases_.size()) / 50) != 0) return;
     std::fprintf(stderr, "%s %ld of %zu cases, %ld failures\n", name_.c_str(), done, cases_.size(),
-                 all_.failures + explicit_.failures);
+                 tally_.failures());
   }
 
   std::string name_;
   std::vector<ExtremeCase> cases_;
   std::atomic<std::size_t> next_{0};
   std::mutex mutex_;
-  Tally all_;  // with implicit integrators
-  Tally explicit_;
-  std::map<std::string, Tally> by_kind_;
+  studies::ExtremeTally tally_;
 };
 
 std::vector<ExtremeCase> drawCases(const Arguments& arguments) {

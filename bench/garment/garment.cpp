@@ -16,10 +16,8 @@
 
 #include "haptex/base/repeatable_random.h"
 #include "haptex/dressing/drape.h"
-#include "haptex/garment/body/body_file.h"
-#include "haptex/garment/pattern/pattern_file.h"
+#include "haptex/dressing/lay_garment.h"
 #include "haptex/material/fabric_file.h"
-#include "haptex/mesh/obj_file.h"
 #include "soft_top.h"
 #include "tab_lines.h"
 
@@ -41,31 +39,12 @@ constexpr Scene kScenes[] = {{"shirt", "meshes/figure.obj", 0.01, 0.02},
                              {"fitted_shirt", "bodies/woman.yaml", 1.5e-3, 2e-3},
                              {"fitted_dress", "bodies/woman.yaml", 1.5e-3, 2e-3}};
 
-/// Panels before they are sewn, and what they are sewn around.
-struct Start {
-  garment::GarmentMesh garment;
-  mesh::ObstacleMesh body;
+std::vector<material::Fabric> fabricsOf(const garment::GarmentMesh& garment) {
   std::vector<material::Fabric> fabrics;
-};
-
-Start startOf(const Scene& scene, double edge_length) {
-  const std::string config = HAPTEX_CONFIG_DIRECTORY "/";
-  const garment::Pattern pattern =
-      garment::loadPattern(config + "garments/" + scene.garment + ".yaml");
-  const std::string file = config + scene.body;
-  Start start;
-  if (file.substr(file.size() - 4) == ".obj") {
-    start.body = mesh::loadObjSurface(file);
-    start.garment = garment::makeGarmentMesh(pattern, edge_length);
-  } else {
-    const garment::Body body = garment::loadBody(file);
-    start.body = {body.vertices, body.triangles};
-    start.garment = garment::makeGarmentMesh(pattern, edge_length, body);
+  for (const std::string& name : garment.fabrics) {
+    fabrics.push_back(material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/" + name + ".yaml"));
   }
-  for (const std::string& name : start.garment.fabrics) {
-    start.fabrics.push_back(material::loadFabric(config + "fabrics/" + name + ".yaml"));
-  }
-  return start;
+  return fabrics;
 }
 
 /// Moves the panels of a garment that is not sewn yet.
@@ -94,9 +73,10 @@ void disturb(mesh::ClothMesh& mesh, const Scene& scene, unsigned seed) {
   }
 }
 
-bool endsAtRest(const Start& start, const dressing::DrapeSettings& settings) {
+bool endsAtRest(const dressing::LaidGarment& laid, const std::vector<material::Fabric>& fabrics,
+                const dressing::DrapeSettings& settings) {
   try {
-    return dressing::drape(start.garment, start.fabrics, start.body, settings).isSound();
+    return dressing::drape(laid.garment, fabrics, laid.body, settings).isSound();
   } catch (const std::exception& refusal) {
     std::fprintf(stderr, "%s\n", refusal.what());
     return false;
@@ -107,9 +87,12 @@ void measure(const Scene& scene, int starts) {
   const dressing::CoarseStart coarse = dressing::coarseStart(kEdgeLength);
   dressing::DrapeSettings settings;
   settings.halvings = coarse.halvings;
-  const Start start = startOf(scene, coarse.edge_length);
+  const std::string config = HAPTEX_CONFIG_DIRECTORY "/";
+  const dressing::LaidGarment laid = dressing::layGarment(
+      config + "garments/" + scene.garment + ".yaml", config + scene.body, coarse.edge_length);
+  const std::vector<material::Fabric> fabrics = fabricsOf(laid.garment);
   const dressing::DrapeOutcome outcome =
-      dressing::drape(start.garment, start.fabrics, start.body, settings);
+      dressing::drape(laid.garment, fabrics, laid.body, settings);
   const std::string name = std::string("garment/") + scene.garment + "/";
   bench::printLine(name + "s_per_s",
                    outcome.computing_seconds / (outcome.closing_time + outcome.settling_time),
@@ -120,9 +103,9 @@ void measure(const Scene& scene, int starts) {
                    static_cast<double>(outcome.with_itself + outcome.with_body), "1");
   int at_rest = 0;
   for (int seed = 1; seed <= starts; ++seed) {
-    Start disturbed = start;
+    dressing::LaidGarment disturbed = laid;
     disturb(disturbed.garment.mesh, scene, static_cast<unsigned>(seed));
-    at_rest += endsAtRest(disturbed, settings) ? 1 : 0;
+    at_rest += endsAtRest(disturbed, fabrics, settings) ? 1 : 0;
   }
   if (starts > 0) {
     bench::printLine(name + "at_rest", at_rest, ("of " + std::to_string(starts)).c_str());

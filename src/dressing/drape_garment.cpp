@@ -10,10 +10,8 @@
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/dressing/drape.h"
-#include "haptex/garment/body/body_file.h"
-#include "haptex/garment/pattern/pattern_file.h"
+#include "haptex/dressing/lay_garment.h"
 #include "haptex/material/fabric_file.h"
-#include "haptex/mesh/obj_file.h"
 #include "haptex/mesh/obj_writer.h"
 
 namespace haptex::dressing {
@@ -61,19 +59,6 @@ std::vector<material::Fabric> loadFabrics(const std::vector<std::string>& names,
   return fabrics;
 }
 
-/// @param body its surface, as a file of a body or of a surface alone has it
-garment::GarmentMesh layOnBody(const Request& request, double edge_length,
-                               mesh::ObstacleMesh& body) {
-  const garment::Pattern pattern = garment::loadPattern(request.garment);
-  if (fs::path(request.body).extension() != ".yaml") {
-    body = mesh::loadObjSurface(request.body);
-    return garment::makeGarmentMesh(pattern, edge_length);
-  }
-  const garment::Body figure = garment::loadBody(request.body);
-  body = {figure.vertices, figure.triangles};
-  return garment::makeGarmentMesh(pattern, edge_length, figure);
-}
-
 void print(const DrapeOutcome& outcome, std::ostream& out) {
   const auto line = [&](const char* name, double value, const char* unit) {
     out << name << '\t' << base::shortNumber(value) << '\t' << unit << '\n';
@@ -102,8 +87,7 @@ int drapeGarment(const std::vector<std::string>& arguments, const std::string& f
     const CoarseStart start = coarseStart(request.edge_length);
     DrapeSettings settings;
     settings.halvings = start.halvings;
-    mesh::ObstacleMesh body;
-    const garment::GarmentMesh garment = layOnBody(request, start.edge_length, body);
+    const auto [garment, body] = layGarment(request.garment, request.body, start.edge_length);
     const std::vector<material::Fabric> fabrics =
         loadFabrics(garment.fabrics, request.garment, fabric_directory);
     const DrapeOutcome outcome = drape(garment, fabrics, body, settings);

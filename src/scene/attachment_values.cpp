@@ -1,7 +1,6 @@
 #include "haptex/scene/attachment_values.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <string>
 #include <utility>
@@ -100,13 +99,9 @@ std::string readFrame(const YamlValue& item, const std::map<std::string, YamlVal
                (known.empty() ? "there is none" : base::shortened(known)));
 }
 
-/// It becomes part of a topic.
 std::string readName(const YamlValue& value) {
-  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   std::string name = value.text();
-  const bool sound = std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
-                     std::all_of(name.begin(), name.end(), allowed);
-  if (!sound) value.refuse("must be a letter, and then letters, digits or _");
+  if (!isFrameName(name)) value.refuse(std::string("must be ") + kFrameNames);
   return name;
 }
 
@@ -139,6 +134,15 @@ std::map<int, std::string> readHolders(const YamlValue& attach, const mesh::Clot
 }
 
 }  // namespace
+
+bool isFrameName(const std::string& name) {
+  if (name.empty() || name.size() > kLongestFrameName) return false;
+  // Not by std::isalpha(), which depends on the locale.
+  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  return is_letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+           return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
+         });
+}
 
 Attachments readAttachments(const YamlValue& file, const mesh::ClothMesh& mesh) {
   std::map<std::string, YamlValue> listed;

@@ -1,9 +1,5 @@
 #include "haptex/scene/cloth_state_file.h"
 
-#include <unistd.h>
-
-#include <atomic>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -18,6 +14,7 @@
 #include "haptex/base/parse_number.h"
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
+#include "haptex/base/whole_file.h"
 #include "haptex/proximity/cursor.h"
 
 namespace haptex::scene {
@@ -61,12 +58,6 @@ std::string textOf(const std::string& path, const cloth::ClothState& state) {
     text += '\n';
   }
   return text;
-}
-
-/// Of the file beside `path` that becomes it: no other thread or process has the same.
-std::string partOf(const std::string& path) {
-  static std::atomic<int> count{0};
-  return path + "." + std::to_string(getpid()) + "." + std::to_string(++count) + ".part";
 }
 
 /// Lines of words, without comments and what is blank.
@@ -154,21 +145,7 @@ void saveState(const std::string& path, const cloth::ClothState& state) {
     refuse("path = ", base::quoted(path), ": allowed are absolute paths that end with ",
            kStateExtension);
   }
-  const std::string text = textOf(path, state), part = partOf(path);
-  std::error_code error;
-  errno = 0;
-  std::ofstream stream(part, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (stream.fail()) {
-    error = std::error_code(errno, std::generic_category());
-  } else {
-    fs::rename(part, target, error);
-    if (!error) return;
-  }
-  std::error_code ignored;
-  fs::remove(part, ignored);
-  throw std::runtime_error(base::shortened(path) + ": cannot be written: " + error.message());
+  base::writeWholeFile(path, textOf(path, state));
 }
 
 cloth::ClothState loadState(const std::string& path) { return StateReader(path).read(); }

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "haptex/base/quoted.h"
+#include "haptex/base/require.h"
+#include "haptex/simulation/particle_requests.h"
+
 namespace haptex::simulation {
 namespace {
 
@@ -14,15 +18,23 @@ std::vector<Eigen::Isometry3d> startsOf(const std::vector<scene::CarryingFrame>&
 
 }  // namespace
 
+void requireFramePose(const std::string& frame, const Eigen::Isometry3d& pose) {
+  requireWithin("the origin of frame " + base::quoted(frame), pose.translation(), kMaxCoordinate,
+                "m");
+  if (!pose.linear().allFinite()) {
+    base::refuse("the rotation of frame ", base::quoted(frame),
+                 " is not finite: allowed are finite numbers");
+  }
+}
+
 CarryingFrames::CarryingFrames(std::vector<scene::CarryingFrame> frames, std::size_t particle_count)
     : start_(std::move(frames)),
       frames_(start_),
       poses_(startsOf(start_)),
       velocities_(particle_count, Eigen::Vector3d::Zero()) {}
 
-std::size_t CarryingFrames::carry(const std::string& name, const Eigen::Isometry3d& pose,
-                                  const std::vector<int>& particles,
-                                  const cloth::ClothState& state) {
+void CarryingFrames::carry(const std::string& name, const Eigen::Isometry3d& pose,
+                           const std::vector<int>& particles, const cloth::ClothState& state) {
   for (const int particle : particles) drop(particle);
   const auto known =
       std::find_if(frames_.begin(), frames_.end(),
@@ -38,7 +50,6 @@ std::size_t CarryingFrames::carry(const std::string& name, const Eigen::Isometry
     frame.places.push_back(pose.inverse() * state.positions[particle]);
   }
   poses_[index] = pose;
-  return index;
 }
 
 void CarryingFrames::drop(int particle) {

@@ -4,8 +4,10 @@
 #include <numeric>
 #include <utility>
 
+#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/proximity/cursor.h"
+#include "haptex/scene/attachment_values.h"
 #include "haptex/simulation/particle_requests.h"
 #include "haptex/simulation/simulated_cloth.h"
 
@@ -123,24 +125,17 @@ void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles) {
 
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles, const std::string& frame,
                             const Eigen::Isometry3d& pose) {
-  requirePose(frame, pose);
+  if (!scene::isFrameName(frame)) {
+    refuse("frame = ", base::quoted(frame), ": allowed is ", scene::kFrameNames);
+  }
+  requireFramePose(frame, pose);
   attach(particles);
   frames_.carry(frame, pose, {particles.begin(), particles.end()}, state_);
 }
 
 void SimulatedCloth::moveFrame(std::size_t frame, const Eigen::Isometry3d& pose) {
-  requirePose(frames_.name(frame), pose);
+  requireFramePose(frames_.name(frame), pose);
   frames_.move(frame, pose);
-}
-
-void SimulatedCloth::requirePose(const std::string& frame, const Eigen::Isometry3d& pose) const {
-  const Eigen::Vector3d& place = pose.translation();
-  if (!pose.matrix().allFinite()) {
-    refuse("the pose of frame ", frame, " is not finite: allowed are finite numbers");
-  }
-  if (place.cwiseAbs().maxCoeff() <= kMaxCoordinate) return;
-  refuse("frame ", frame, " is at (", place.x(), ", ", place.y(), ", ", place.z(),
-         ") m: allowed are coordinates from -", kMaxCoordinate, " to ", kMaxCoordinate, " m");
 }
 
 void SimulatedCloth::attach(const std::vector<std::uint32_t>& particles,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "haptex/studies/extreme_run.h"
+
 namespace haptex::studies {
 namespace {
 
@@ -92,6 +94,14 @@ ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
     }
   }
   return smallest;
+}
+
+ExtremeCase shrinkFailure(const ExtremeCase& extreme, ExtremeFailure failure) {
+  constexpr int kMaxRuns = 100;  // of seconds each, where cloth does not return
+  int runs = 0;
+  return shrinkExtremeCase(extreme, [&](const ExtremeCase& candidate) {
+    return ++runs <= kMaxRuns && runExtremeCase(candidate).failure == failure;
+  });
 }
 
 }  // namespace haptex::studies

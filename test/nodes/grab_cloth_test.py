@@ -1,14 +1,13 @@
 #!/usr/bin/python3
 """A handle grasps a patch of cloth, which goes with it until it lets go."""
-import math
-
 import numpy as np
 import rospy
 import rostest
-from geometry_msgs.msg import PoseStamped, WrenchStamped
+from geometry_msgs.msg import PoseStamped, Quaternion, WrenchStamped
 from haptex.msg import ClothState
 from ros_fixtures import NodeTest
 from std_srvs.srv import SetBool
+from tf.transformations import quaternion_about_axis, rotation_matrix
 
 WAIT = 30.0  # s
 CORNER = 0  # particle, of the lower edge
@@ -38,7 +37,7 @@ class Grab(NodeTest):
         message = PoseStamped()
         message.header.frame_id = frame
         message.pose.position.x, message.pose.position.y, message.pose.position.z = position
-        message.pose.orientation.z, message.pose.orientation.w = math.sin(turn / 2), math.cos(turn / 2)
+        message.pose.orientation = Quaternion(*quaternion_about_axis(turn, (0, 0, 1)))
         self.publisher.publish(message)
         rospy.sleep(0.2)
 
@@ -75,7 +74,7 @@ class Grab(NodeTest):
         self.assertTrue(others)
         before = self.place(others[-1]) - start
         self.put(handle, turn=0.5)
-        turn = np.array([[math.cos(0.5), -math.sin(0.5), 0], [math.sin(0.5), math.cos(0.5), 0], [0, 0, 1]])
+        turn = rotation_matrix(0.5, (0, 0, 1))[:3, :3]
         self.eventually(lambda: np.linalg.norm(self.place(others[-1]) - self.place() - turn @ before) < 1e-6,
                         'what is grasped to turn')
 

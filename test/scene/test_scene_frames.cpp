@@ -47,6 +47,20 @@ TEST_F(SceneFrames, RangesHoldParticlesInTheWorldToo) {
   EXPECT_TRUE(scene.frames.empty());
 }
 
+TEST(FrameNamesOfScenes, AreALetterThenLettersDigitsAndUnderscores) {
+  const std::string longest(kLongestFrameName, 'a');
+  for (const std::string& name :
+       {std::string("a"), std::string("Bow_2"), std::string("b9"), longest}) {
+    EXPECT_TRUE(isFrameName(name)) << name;
+  }
+  for (const std::string& name : {std::string(), std::string("2nd"), std::string("_a"),
+                                  std::string("a/b"), std::string("a b"), std::string("a-b"),
+                                  std::string("\xc3\xa4"), std::string("a\0", 2), longest + "a"}) {
+    EXPECT_FALSE(isFrameName(name)) << name;
+  }
+  EXPECT_NE(std::string(kFrameNames).find(std::to_string(kLongestFrameName)), std::string::npos);
+}
+
 TEST_F(SceneFrames, RefusalsNameWhatIsWrong) {
   const std::string bow = "[{name: bow}]";
   expectRefused("[{frame: boom, side: top}]", bow, "must be one of the key frames: bow");
@@ -54,7 +68,7 @@ TEST_F(SceneFrames, RefusalsNameWhatIsWrong) {
   expectRefused("[top]", bow, "carries nothing");
   expectRefused("[{frame: bow, side: top}, top]", bow, "attaches particle");
   expectRefused("[{frame: bow, side: top}]", "[{name: bow}, {name: bow}]", "another frame");
-  expectRefused("[{frame: a/b, side: top}]", "[{name: a/b}]", "must be a letter");
+  expectRefused("[{frame: a/b, side: top}]", "[{name: a/b}]", "must be a letter, then letters");
   expectRefused("[{frame: bow, from: [1, 1], to: [2, 2]}]", bow, "has no particle");
   expectRefused("[{frame: bow, from: [1, 1]}]", bow, "to");
   expectRefused("[{frame: bow}]", bow, "exactly one of particles, side, from");

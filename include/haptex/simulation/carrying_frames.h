@@ -17,6 +17,15 @@ struct FrameWrench {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< N.m, about the frame's origin, world axes
 };
 
+/// Attached particles may not be sent farther from the world origin than this (m, per axis): far
+/// beyond any workspace, but near enough to keep the numbers of a step finite.
+constexpr double kMaxCoordinate = 100.0;
+
+/// @throws std::invalid_argument naming the frame and what is allowed, unless its pose is finite
+/// and
+///   its origin within kMaxCoordinate
+void requireFramePose(const std::string& frame, const Eigen::Isometry3d& pose);
+
 /// Frames with their poses in the world and the particles that go with them. A step takes the
 /// particles in straight lines to where their frames are to be at its end, each at most kFastest:
 /// one that appears elsewhere draws its particles after it. Moving allocates nothing.
@@ -37,10 +46,10 @@ class CarryingFrames {
   /// Where a frame is to be at the end of the next step.
   /// @param pose finite
   void move(std::size_t frame, const Eigen::Isometry3d& pose) { poses_[frame] = pose; }
-  /// Carries particles from where they are in the frame's pose. @returns the frame
+  /// Carries particles from where they are in the frame's pose.
   /// @param name of a frame that is there, or a new one
-  std::size_t carry(const std::string& name, const Eigen::Isometry3d& pose,
-                    const std::vector<int>& particles, const cloth::ClothState& state);
+  void carry(const std::string& name, const Eigen::Isometry3d& pose,
+             const std::vector<int>& particles, const cloth::ClothState& state);
   /// Carries a particle no longer, whatever carried it.
   void drop(int particle);
   /// As at the start.

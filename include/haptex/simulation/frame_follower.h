@@ -31,6 +31,8 @@ class FrameFollower {
   /// @param now >= all earlier ones of receive() and at()
   void receive(const Eigen::Isometry3d& pose, Time time, Time now);
 
+  /// Whether it has received one.
+  bool knowsPose() const { return time_.has_value(); }
   /// Before the first pose the identity at rest.
   FrameMotion at(Time now) const;
 

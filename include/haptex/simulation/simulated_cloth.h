@@ -21,10 +21,6 @@
 
 namespace haptex::simulation {
 
-/// Attached particles may not be sent farther from the world origin than this (m, per axis): far
-/// beyond any workspace, but near enough to keep the numbers of a step finite.
-constexpr double kMaxCoordinate = 100.0;
-
 /// How a step of the scene is taken: in equal substeps, each by these settings. While point loads
 /// act, an implicit method of second order gives way to backward Euler, unless the plan is
 /// adaptive: what makes the loads, a patch at 1 kHz, answers a step late, and a method that damps
@@ -181,14 +177,14 @@ class SimulatedCloth {
   /// Attaches particles to a frame where they are now: they go with it.
   /// @param frame one that carries others already, or a new one
   /// @param pose  of the frame in the world
-  /// @throws std::invalid_argument if there is none, one does not exist or is named twice, or the
-  ///   pose is not finite or beyond kMaxCoordinate
+  /// @throws std::invalid_argument if there is none, one does not exist or is named twice, the name
+  ///   is no scene::isFrameName(), or what requireFramePose() throws
   void attach(const std::vector<std::uint32_t>& particles, const std::string& frame,
               const Eigen::Isometry3d& pose);
 
   /// The frame is in this pose at the end of the next step, and stays there. Allocates nothing.
   /// @param frame < frames().size()
-  /// @throws std::invalid_argument if the pose is not finite or beyond kMaxCoordinate
+  /// @throws std::invalid_argument what requireFramePose() throws
   void moveFrame(std::size_t frame, const Eigen::Isometry3d& pose);
   const CarryingFrames& frames() const { return frames_; }
 
@@ -231,7 +227,6 @@ class SimulatedCloth {
   void attachInitially();
   void makeIntegrators();
   void setPenalty(double stiffness);
-  void requirePose(const std::string& frame, const Eigen::Isometry3d& pose) const;
   bool run(double duration, int cycles, double waited);
   void runSubsteps(double duration);
   void runAdaptiveSubsteps(double duration);

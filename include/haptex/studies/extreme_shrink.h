@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "haptex/studies/extreme_case.h"
+#include "haptex/studies/extreme_outcome.h"
 
 namespace haptex::studies {
 
@@ -14,5 +15,9 @@ namespace haptex::studies {
 /// apart
 ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
                               const std::function<bool(const ExtremeCase&)>& fails);
+
+/// A case that runExtremeCase() has found to fail, as small as a hundred runs make it.
+/// @param failure how it fails, and the smaller one, too
+ExtremeCase shrinkFailure(const ExtremeCase& extreme, ExtremeFailure failure);
 
 }  // namespace haptex::studies

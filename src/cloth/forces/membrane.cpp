@@ -44,12 +44,12 @@ kernels::MembraneBatch batchOf(const MembraneElement* elements) {
 
 Vector3d clampedToNonNegative(const Vector3d& slope) { return slope.cwiseMax(0.0); }
 
-/// Makes the tangent [[slope0, coupling], [coupling, slope1]] and the slope of the shear positive
-/// semidefinite.
 MembraneStrain pastStrain(const MembraneElement& element, const StrainPast& past) {
   return past.strain([&](const Positions& positions) { return greenStrain(element, positions); });
 }
 
+/// Makes the tangent [[slope0, coupling], [coupling, slope1]] and the slope of the shear positive
+/// semidefinite.
 void projectMaterial(Vector3d& slope, double& coupling) {
   if (coupling == 0.0) {
     slope = clampedToNonNegative(slope);
@@ -131,11 +131,7 @@ void Membrane::addForces(const ForceState& state, std::vector<Vector3d>& forces)
 
 double Membrane::energy(const ForceState& state) const {
   const Positions& positions = state.positions;
-  double energy = 0.0;
-  if (!batches_.empty()) {
-    energy = kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
-                                positions.data()->data(), nullptr, 0.0, law(false));
-  }
+  double energy = kernels::potential(batches_, state, nullptr, 0.0, law(false));
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     energy += elements_[t].area * elasticDensity(frame(elements_[t], positions).strain());
   }
@@ -147,15 +143,7 @@ void Membrane::assembleLinearised(const ForceState& state, const StageTimes& tim
                                   linear::BlockVector& rhs) const {
   const Positions& positions = state.positions;
   const Velocities& velocities = state.velocities;
-  if (!batches_.empty()) {
-    kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
-                     {positions.data()->data(),
-                      velocities.data()->data(),
-                      times.a,
-                      times.ahead,
-                      law(viscosity_),
-                      {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
-  }
+  kernels::addStep(batches_, state, times, law(viscosity_), matrix, rhs);
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     if (viscosity_) {
       assembleElement<true>(elements_[t], positions, velocities, times, matrix, rhs);
@@ -199,15 +187,7 @@ void Membrane::assembleElement(const MembraneElement& element, const Positions& 
 void Membrane::assembleNewton(const ForceState& state, const Vector3d* held, double a,
                               Hessian hessian, linear::SymmetricBlockMatrix& matrix,
                               linear::BlockVector& rhs) const {
-  if (!batches_.empty()) {
-    kernels::addNewton(batches_.data(), static_cast<int>(batches_.size()),
-                       {state.positions.data()->data(),
-                        held->data(),
-                        a,
-                        hessian == Hessian::kExact,
-                        law(viscosity_),
-                        {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
-  }
+  kernels::addNewton(batches_, state, held, a, hessian, law(viscosity_), matrix, rhs);
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     const MembraneElement& element = elements_[t];
     const Frame at = frame(element, state.positions);
@@ -231,12 +211,7 @@ void Membrane::assembleNewton(const ForceState& state, const Vector3d* held, dou
 
 double Membrane::incrementalPotential(const ForceState& state, const Vector3d* held,
                                       double a) const {
-  double potential = 0.0;
-  if (!batches_.empty()) {
-    potential =
-        kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
-                           state.positions.data()->data(), held->data(), a, law(viscosity_));
-  }
+  double potential = kernels::potential(batches_, state, held, a, law(viscosity_));
   for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
     const MembraneStrain strain = frame(elements_[t], state.positions).strain();
     double density = elasticDensity(strain);

@@ -194,9 +194,10 @@ void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double
     stamped_step_ = simulation.steps();
     state_stamp_ = ros::Time::now();
   }
+  cloth::ForcesOnce forces(simulation.cloth(), simulation.state(), forces_);
   const bool state_due = rests || stamped_step_ % steps_per_state_ == 0;
   if (state_due && state_publisher_.getNumSubscribers() > 0) {
-    publishState(simulation, rests ? 0.0 : until_next);
+    publishState(simulation, rests ? 0.0 : until_next, forces);
   }
   const bool markers_due = rests || stamped_step_ % steps_per_markers_ == 0;
   if (markers_due && marker_publisher_.getNumSubscribers() > 0) {
@@ -206,7 +207,7 @@ void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double
       obstacle_publisher_.getNumSubscribers() > 0) {
     obstacle_publisher_.publish(markers_.updateMovingObstacles(simulation, state_stamp_));
   }
-  frames_.publish(simulation, state_stamp_);
+  frames_.publish(simulation, state_stamp_, forces);
   publishQualityIfDue(simulation);
 }
 
@@ -227,11 +228,12 @@ void ClothNode::publishQualityIfDue(const simulation::SimulatedCloth& simulation
 }
 
 /// While the cloth sleeps, only the time is new.
-void ClothNode::publishState(const simulation::SimulatedCloth& simulation, double until_next) {
+void ClothNode::publishState(const simulation::SimulatedCloth& simulation, double until_next,
+                             cloth::ForcesOnce& forces) {
   if (simulation.asleep() && filled_step_ == simulation.computedSteps()) {
     restampStateMessage(simulation, state_stamp_, state_message_);
   } else {
-    fillStateMessage(simulation, state_stamp_, forces_, state_message_);
+    fillStateMessage(simulation, state_stamp_, forces.get(), state_message_);
     filled_step_ = simulation.computedSteps();
   }
   state_message_.until_next = until_next;
@@ -327,7 +329,13 @@ void ClothNode::diagnoseFrames(diagnostic_updater::DiagnosticStatusWrapper& stat
                           "tf does not connect " + name + " with " + fixedFrame() +
                               ": what it carries stays where it was");
     }
+    if (frame.poses.refused > 0) {
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
+                          std::to_string(frame.poses.refused) + " poses of " + name +
+                              " were refused, the last because " + frame.poses.refused_why);
+    }
     status.addf("age of frame " + name + " (s)", "%.3g%s", frame.age, frame.known ? "" : ", none");
+    addInput(status, "poses of frame " + name, frame.poses);
   }
 }
 

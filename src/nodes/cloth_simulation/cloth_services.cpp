@@ -95,7 +95,7 @@ bool ClothNode::attach(AttachParticles::Request& request, AttachParticles::Respo
   return answer("attach", response, [&] {
     const std::string attached = "attached " + counted(request.particles.size(), "particle");
     if (request.header.frame_id != fixedFrame()) {
-      const std::string frame = FrameLinks::nameOf(request.header);
+      const std::string frame = carryingFrame(request.header.frame_id);
       if (!request.positions.empty()) {
         throw std::invalid_argument("positions has " + counted(request.positions.size(), "item") +
                                     ": with a frame that carries the particles allowed are none");

@@ -2,11 +2,8 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 
-#include <algorithm>
-#include <regex>
 #include <stdexcept>
 
-#include "haptex/base/quoted.h"
 #include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/common/vector_messages.h"
@@ -32,11 +29,12 @@ void FrameLinks::follow(simulation::SimulatedCloth& simulation) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     Followed& followed = followed_[frames.name(i)];
     receive(frames.name(i), followed);
-    if (!followed.known) continue;
-    const Eigen::Isometry3d pose = followed.follower.at(realtime::steadyNow()).pose;
-    const bool near =
-        pose.translation().cwiseAbs().maxCoeff() <= simulation::kMaxCoordinate;  // not for NaN
-    if (near && pose.matrix().allFinite()) simulation.moveFrame(i, pose);
+    if (!followed.follower.knowsPose()) continue;
+    try {
+      simulation.moveFrame(i, followed.follower.at(realtime::steadyNow()).pose);
+    } catch (const std::invalid_argument&) {
+      // Extrapolated beyond what is allowed; the pose itself was not, and the next one tells.
+    }
   }
 }
 
@@ -51,19 +49,19 @@ void FrameLinks::receive(const std::string& name, Followed& followed) {
     return;  // tf has forgotten it since
   }
   if (followed.known && last.header.stamp == followed.stamp) return;
-  const base::Time now = realtime::steadyNow();
-  const base::Time age =
-      last.header.stamp.isZero()
-          ? base::Time::zero()  // a static transform
-          : std::max(base::Time::zero(), between(last.header.stamp, ros::Time::now()));
-  followed.follower.receive(fromMessage(last.transform), now - age, now);
   followed.stamp = last.header.stamp;
   followed.known = true;
+  followed.poses.count("the pose of frame " + frame, [&] {
+    const Eigen::Isometry3d pose = fromMessage(last.transform);
+    simulation::requireFramePose(name, pose);  // one that is not finite would stay in the motion
+    const base::Time now = realtime::steadyNow();
+    followed.follower.receive(pose, now - ageOf(followed.stamp), now);
+  });
 }
 
-void FrameLinks::publish(const simulation::SimulatedCloth& simulation, const ros::Time& stamp) {
+void FrameLinks::publish(const simulation::SimulatedCloth& simulation, const ros::Time& stamp,
+                         cloth::ForcesOnce& forces) {
   const simulation::CarryingFrames& frames = simulation.frames();
-  bool computed = false;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     ros::Publisher& publisher = publishers_[frames.name(i)];
     if (!publisher) {
@@ -71,10 +69,8 @@ void FrameLinks::publish(const simulation::SimulatedCloth& simulation, const ros
           node_.advertise<geometry_msgs::WrenchStamped>("cloth/frames/" + frames.name(i), 10);
     }
     if (publisher.getNumSubscribers() == 0) continue;
-    if (!computed) simulation.cloth().computeForces(simulation.state(), forces_);
-    computed = true;
     const simulation::FrameWrench wrench =
-        frames.wrench(i, simulation.cloth(), simulation.state(), forces_);
+        frames.wrench(i, simulation.cloth(), simulation.state(), forces.get());
     const Eigen::Matrix3d to_frame = frames.pose(i).linear().transpose();
     geometry_msgs::WrenchStamped message;
     message.header.stamp = stamp;
@@ -93,28 +89,12 @@ Eigen::Isometry3d FrameLinks::poseOf(const std_msgs::Header& header) {
   return transformFrom(latest, fixedFrame(), buffer);
 }
 
-std::string FrameLinks::nameOf(const std_msgs::Header& header) {
-  static const std::regex allowed("[A-Za-z][A-Za-z0-9_]*");
-  const std::string& prefix = framePrefix();
-  const std::string& frame = header.frame_id;
-  const bool sound = frame.size() <= base::kLongestQuote && frame.rfind(prefix, 0) == 0 &&
-                     std::regex_match(frame.substr(prefix.size()), allowed);
-  if (!sound) {
-    throw std::invalid_argument("header.frame_id = " + base::quoted(frame) + ": allowed are '" +
-                                fixedFrame() + "', or a frame that carries the particles: '" +
-                                prefix + "' and a letter with letters, digits and _");
-  }
-  return frame.substr(prefix.size());
-}
-
 std::vector<FrameStatus> FrameLinks::status() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<FrameStatus> all;
   for (const auto& [name, followed] : followed_) {
-    const bool is_static = followed.stamp.isZero();
-    const double age =
-        followed.known && !is_static ? (ros::Time::now() - followed.stamp).toSec() : 0.0;
-    all.push_back({name, followed.known, age});
+    const double age = followed.known ? base::seconds(ageOf(followed.stamp)) : 0.0;
+    all.push_back({name, followed.known, age, followed.poses.status()});
   }
   return all;
 }

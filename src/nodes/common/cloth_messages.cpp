@@ -71,9 +71,8 @@ haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
 }
 
 void fillStateMessage(const simulation::SimulatedCloth& simulation, const ros::Time& stamp,
-                      std::vector<Eigen::Vector3d>& forces, haptex::ClothState& message) {
+                      const std::vector<Eigen::Vector3d>& forces, haptex::ClothState& message) {
   const cloth::ClothState& state = simulation.state();
-  simulation.cloth().computeForces(state, forces);
   restampStateMessage(simulation, stamp, message);
   message.header.frame_id = fixedFrame();
   fillVectors(state.positions, message.positions);

@@ -32,4 +32,9 @@ Time between(const ros::Time& earlier, const ros::Time& later) {
               static_cast<std::int64_t>(earlier.toNSec()));
 }
 
+Time ageOf(const ros::Time& stamp) {
+  if (stamp.isZero()) return Time::zero();
+  return std::max(Time::zero(), between(stamp, ros::Time::now()));
+}
+
 }  // namespace haptex::nodes

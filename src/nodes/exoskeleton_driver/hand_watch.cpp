@@ -1,6 +1,5 @@
 #include "haptex/nodes/exoskeleton_driver/hand_watch.h"
 
-#include <algorithm>
 #include <sstream>
 
 #include "haptex/exoskeleton/control/hand_gravity.h"
@@ -44,8 +43,7 @@ void HandWatch::look() {
       const auto transform = transforms_.lookupTransform(fixedFrame(), handFrame(), ros::Time(0));
       const ros::Time& stamp = transform.header.stamp;
       // That of a fixed mounting holds for ever, and one ahead of the clock here holds now.
-      const Time age =
-          stamp.isZero() ? Time{0} : std::max(Time{0}, between(stamp, ros::Time::now()));
+      const Time age = ageOf(stamp);
       const Eigen::Isometry3d pose = fromMessage(transform.transform);
       if (!pose.matrix().allFinite()) {
         trouble = "the tf of the hand is not finite";

@@ -12,6 +12,7 @@
 #include "haptex/nodes/common/cloth_messages.h"
 #include "haptex/nodes/common/driver_messages.h"
 #include "haptex/nodes/common/node_parameters.h"
+#include "haptex/nodes/common/ros_time.h"
 #include "haptex/nodes/common/transforms.h"
 #include "haptex/nodes/force_renderer/renderer_messages.h"
 #include "haptex/nodes/wire/checked_topics.h"
@@ -62,13 +63,6 @@ base::PerFinger<bool> readFingers(const ros::NodeHandle& private_node) {
 
 std::string topic(Finger finger, const char* of_finger) {
   return std::string(base::name(finger)) + "/" + of_finger;
-}
-
-/// How long ago a stamp was, as far as it is believed.
-Time ageOf(const ros::Time& stamp) {
-  const auto now = static_cast<std::int64_t>(ros::Time::now().toNSec());
-  return std::clamp(Time(now - static_cast<std::int64_t>(stamp.toNSec())), Time{0},
-                    kOldestTransform);
 }
 
 }  // namespace
@@ -259,7 +253,8 @@ void ForceRendererNode::receiveHandBase() {
     has_hand_base_ = true;
     hand_base_stamp_ = transform.header.stamp;
     fixed_hand_base_ = pose;
-    loop_.receiveHandBase(pose, fixed ? now : now - ageOf(transform.header.stamp), now, fixed);
+    const Time age = std::min(ageOf(transform.header.stamp), kOldestTransform);
+    loop_.receiveHandBase(pose, now - age, now, fixed);
   } catch (const tf2::TransformException&) {
     // Replaced between the two calls: the next look finds it.
   }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "haptex/base/quoted.h"
+#include "haptex/scene/attachment_values.h"
 
 namespace haptex::nodes {
 namespace {
@@ -40,6 +41,18 @@ void setFramePrefix(const std::string& prefix) {
 }
 
 std::string frameCalled(const std::string& name) { return names().prefix + name; }
+
+std::string carryingFrame(const std::string& frame_id) {
+  const std::string& prefix = framePrefix();
+  if (frame_id.rfind(prefix, 0) == 0) {
+    const std::string name = frame_id.substr(prefix.size());
+    if (scene::isFrameName(name)) return name;
+  }
+  const std::string before = prefix.empty() ? "" : "'" + prefix + "' and ";
+  throw std::invalid_argument("header.frame_id = " + base::quoted(frame_id) + ": allowed is '" +
+                              fixedFrame() + "', or a frame that carries the particles: " + before +
+                              scene::kFrameNames);
+}
 
 const std::string& framePrefix() { return names().prefix; }
 

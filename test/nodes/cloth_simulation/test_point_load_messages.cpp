@@ -102,6 +102,7 @@ TEST(StateMessage, NamesTheAttachedParticles) {
   simulation.release({simulation::kSmallTop + 1});
   simulation.attach({2});
   std::vector<Eigen::Vector3d> forces;
+  simulation.cloth().computeForces(simulation.state(), forces);
   haptex::ClothState message;
   for (int i = 0; i < 2; ++i) fillStateMessage(simulation, ros::Time(1.0), forces, message);
   EXPECT_EQ(message.attached, (std::vector<std::uint32_t>{2, 20, 22, 23, 24}));

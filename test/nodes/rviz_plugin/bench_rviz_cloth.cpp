@@ -110,6 +110,7 @@ class CostOfCloth : public ViewTest {
     std::vector<Eigen::Vector3d> forces;
     const Costs costs = costsOf(
         state_publisher_, [&](Costs & /*costs*/) -> auto& {
+          simulation_.cloth().computeForces(simulation_.state(), forces);
           fillStateMessage(simulation_, ros::Time::now(), forces, state);
           state.mesh = 1000;
           return state;

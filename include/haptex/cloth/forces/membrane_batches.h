@@ -1,8 +1,12 @@
 // The states and systems of elements that are added four at a time.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <vector>
 
+#include "haptex/cloth/forces/force.h"
+#include "haptex/linear/block_matrix.h"
 #include "haptex/material/strain_stress_curve.h"
 
 namespace haptex::cloth::kernels {
@@ -42,5 +46,51 @@ struct MembraneNewton {
   MembraneLaw law;
   MembraneSystem system;
 };
+
+/// @param matrix bound to the forces of the elements @param rhs a column per particle
+inline MembraneSystem systemOf(linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) {
+  return {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()};
+}
+
+/// What Force::assembleLinearised() is given, for the batches of its elements.
+inline MembraneStep stepOf(const ForceState& state, const StageTimes& times, const MembraneLaw& law,
+                           linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) {
+  return {
+      state.positions.data()->data(), state.velocities.data()->data(), times.a, times.ahead, law,
+      systemOf(matrix, rhs)};
+}
+
+/// What Force::assembleNewton() is given, likewise.
+inline MembraneNewton newtonOf(const ForceState& state, const Eigen::Vector3d* held, double a,
+                               Hessian hessian, const MembraneLaw& law,
+                               linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) {
+  return {state.positions.data()->data(), held->data(), a,
+          hessian == Hessian::kExact,     law,          systemOf(matrix, rhs)};
+}
+
+/// addStep(), addNewton() and potential() of all batches; nothing without one.
+template <typename Batch>
+void addStep(const std::vector<Batch>& batches, const ForceState& state, const StageTimes& times,
+             const MembraneLaw& law, linear::SymmetricBlockMatrix& matrix,
+             linear::BlockVector& rhs) {
+  if (batches.empty()) return;
+  addStep(batches.data(), static_cast<int>(batches.size()), stepOf(state, times, law, matrix, rhs));
+}
+template <typename Batch>
+void addNewton(const std::vector<Batch>& batches, const ForceState& state,
+               const Eigen::Vector3d* held, double a, Hessian hessian, const MembraneLaw& law,
+               linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) {
+  if (batches.empty()) return;
+  addNewton(batches.data(), static_cast<int>(batches.size()),
+            newtonOf(state, held, a, hessian, law, matrix, rhs));
+}
+/// @param held null without viscosity
+template <typename Batch>
+double potential(const std::vector<Batch>& batches, const ForceState& state,
+                 const Eigen::Vector3d* held, double a, const MembraneLaw& law) {
+  if (batches.empty()) return 0.0;
+  return potential(batches.data(), static_cast<int>(batches.size()), state.positions.data()->data(),
+                   held == nullptr ? nullptr : held->data(), a, law);
+}
 
 }  // namespace haptex::cloth::kernels

@@ -99,7 +99,8 @@ class ClothNode {
   void advertiseServices();
   void publishMesh(const cloth::Cloth& cloth);
   void publishStep(const simulation::SimulatedCloth& simulation, double until_next);
-  void publishState(const simulation::SimulatedCloth& simulation, double until_next);
+  void publishState(const simulation::SimulatedCloth& simulation, double until_next,
+                    cloth::ForcesOnce& forces);
   void republishIfResting();
   void publishQuality(const simulation::SimulatedCloth& simulation);
   void publishQualityIfDue(const simulation::SimulatedCloth& simulation);
@@ -147,7 +148,7 @@ class ClothNode {
   ClothMarkers markers_;
   std::uint32_t mesh_ = 0;  // its number
   haptex::ClothState state_message_;
-  std::vector<Eigen::Vector3d> forces_;
+  std::vector<Eigen::Vector3d> forces_;  // N, buffer
   ros::Time state_stamp_;
   std::uint64_t stamped_step_ = 0;
   // SimulatedCloth::computedSteps() in state_message_; nothing: it is of no state of this cloth.

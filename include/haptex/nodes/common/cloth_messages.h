@@ -27,9 +27,9 @@ haptex::ClothMesh meshMessage(const cloth::Cloth& cloth, std::uint32_t mesh,
 /// Fills a state message in place but for until_next, without allocation once its arrays have their
 /// size.
 /// @param stamp  when the state was computed
-/// @param forces buffer for Cloth::computeForces()
+/// @param forces on the particles of the state (N): Cloth::computeForces()
 void fillStateMessage(const simulation::SimulatedCloth& simulation, const ros::Time& stamp,
-                      std::vector<Eigen::Vector3d>& forces, haptex::ClothState& message);
+                      const std::vector<Eigen::Vector3d>& forces, haptex::ClothState& message);
 
 /// Only what changes while the cloth sleeps: stamp, step and simulated time.
 /// @param message filled with the same state before

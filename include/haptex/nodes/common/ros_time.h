@@ -14,4 +14,8 @@ ros::Time rosTimeOf(base::Time time);
 /// (ros::Duration would throw for stamps beyond 68 years.)
 base::Time between(const ros::Time& earlier, const ros::Time& later);
 
+/// How long ago the stamp of a transform was: 0 of a static one, whose stamp is zero, and of one
+/// that is ahead.
+base::Time ageOf(const ros::Time& stamp);
+
 }  // namespace haptex::nodes

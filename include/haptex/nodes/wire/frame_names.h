@@ -18,6 +18,10 @@ void setFramePrefix(const std::string& prefix);
 const std::string& framePrefix();
 /// One that a scene names.
 std::string frameCalled(const std::string& name);
+/// What a scene would call the frame of a message, which carries particles.
+/// @param frame_id not fixedFrame() @throws std::invalid_argument naming it and what is allowed,
+///   unless it is framePrefix() and then a scene::isFrameName()
+std::string carryingFrame(const std::string& frame_id);
 /// The frame of the cloth and of everything that is not said otherwise, z up.
 const std::string& fixedFrame();
 /// The frame of everything that the exoskeleton measures and is commanded; its root in the URDF.

@@ -180,11 +180,7 @@ void BilinearCells::addForces(const ForceState& state, std::vector<Vector3d>& fo
 }
 
 double BilinearCells::energy(const ForceState& state) const {
-  double energy = 0.0;
-  if (!batches_.empty()) {
-    energy = kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
-                                state.positions.data()->data(), nullptr, 0.0, law(false));
-  }
+  double energy = kernels::potential(batches_, state, nullptr, 0.0, law(false));
   for (std::size_t c = batchedCount(); c < cells_.size(); ++c) {
     energy +=
         elasticEnergy(cells_[c], strainOf(cells_[c], distancesIn(cells_[c], state.positions)));
@@ -195,15 +191,7 @@ double BilinearCells::energy(const ForceState& state) const {
 void BilinearCells::assembleLinearised(const ForceState& state, const StageTimes& times,
                                        linear::SymmetricBlockMatrix& matrix,
                                        linear::BlockVector& rhs) const {
-  if (!batches_.empty()) {
-    kernels::addStep(batches_.data(), static_cast<int>(batches_.size()),
-                     {state.positions.data()->data(),
-                      state.velocities.data()->data(),
-                      times.a,
-                      times.ahead,
-                      law(viscosity_),
-                      {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
-  }
+  kernels::addStep(batches_, state, times, law(viscosity_), matrix, rhs);
   for (std::size_t c = batchedCount(); c < cells_.size(); ++c) {
     const BilinearCell& cell = cells_[c];
     const Distances at = distancesIn(cell, state.positions);
@@ -238,15 +226,7 @@ void BilinearCells::hold(const NewtonStart& start, Vector3d* held) const {
 void BilinearCells::assembleNewton(const ForceState& state, const Vector3d* held, double a,
                                    Hessian hessian, linear::SymmetricBlockMatrix& matrix,
                                    linear::BlockVector& rhs) const {
-  if (!batches_.empty()) {
-    kernels::addNewton(batches_.data(), static_cast<int>(batches_.size()),
-                       {state.positions.data()->data(),
-                        held->data(),
-                        a,
-                        hessian == Hessian::kExact,
-                        law(viscosity_),
-                        {matrix.diagonal(0).data(), matrix.lower(0).data(), rhs.data()}});
-  }
+  kernels::addNewton(batches_, state, held, a, hessian, law(viscosity_), matrix, rhs);
   for (std::size_t c = batchedCount(); c < cells_.size(); ++c) {
     const BilinearCell& cell = cells_[c];
     const Distances at = distancesIn(cell, state.positions);
@@ -264,12 +244,7 @@ void BilinearCells::assembleNewton(const ForceState& state, const Vector3d* held
 
 double BilinearCells::incrementalPotential(const ForceState& state, const Vector3d* held,
                                            double a) const {
-  double potential = 0.0;
-  if (!batches_.empty()) {
-    potential =
-        kernels::potential(batches_.data(), static_cast<int>(batches_.size()),
-                           state.positions.data()->data(), held->data(), a, law(viscosity_));
-  }
+  double potential = kernels::potential(batches_, state, held, a, law(viscosity_));
   for (std::size_t c = batchedCount(); c < cells_.size(); ++c) {
     const BilinearCell& cell = cells_[c];
     const CellStrain strain = strainOf(cell, distancesIn(cell, state.positions));

@@ -5,18 +5,9 @@
 #include <ostream>
 #include <sstream>
 
+#include "haptex/base/checksum.h"
+
 namespace haptex::oracles {
-namespace {
-
-/// FNV-1a, so that every kind has a sequence of its own whatever else is there.
-std::uint64_t hashOf(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const char letter : text)
-    hash = (hash ^ static_cast<unsigned char>(letter)) * 1099511628211u;
-  return hash;
-}
-
-}  // namespace
 
 const std::vector<RandomCheck>& randomChecks() {
   static const std::vector<RandomCheck> all = {
@@ -57,7 +48,7 @@ void validateAtRandom(const std::string& room, std::uint64_t seed,
                       const std::string& kind) {
   for (const RandomCheck& check : randomChecks()) {
     if (check.room != room || (!kind.empty() && check.kind != kind)) continue;
-    base::RepeatableRandom random(seed ^ hashOf(check.room + "/" + check.kind));
+    base::RepeatableRandom random(seed ^ base::checksum(check.room + "/" + check.kind));
     check.run(config_directory, random, sink);
   }
 }

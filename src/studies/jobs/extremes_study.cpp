@@ -1,0 +1,146 @@
+#include "haptex/studies/jobs/extremes_study.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <ostream>
+#include <stdexcept>
+
+#include "haptex/base/parse_number.h"
+#include "haptex/base/quoted.h"
+#include "haptex/base/require.h"
+#include "haptex/studies/extreme_run.h"
+#include "haptex/studies/extreme_shrink.h"
+#include "haptex/studies/extreme_tally.h"
+
+namespace haptex::studies {
+namespace {
+
+constexpr std::size_t kFields = 10;        // of a case that did not fail
+constexpr std::size_t kFailedFields = 12;  // with message and shrunk case
+
+/// The shortest text that is read back as the same number. One text for every NaN, whose sign and
+/// bits differ by how it came about.
+std::string textOf(double number) {
+  if (std::isnan(number)) return "nan";
+  char digits[32];
+  const std::to_chars_result end = std::to_chars(digits, digits + sizeof(digits), number);
+  return {digits, end.ptr};
+}
+
+/// Of an exception, as a part of a line.
+std::string asField(const std::string& message) {
+  std::string text = base::shortened(message);  // no line breaks or tabs
+  std::replace(text.begin(), text.end(), '\t', ' ');
+  return text;
+}
+
+std::vector<std::string> fieldsOf(const std::string& record) {
+  std::vector<std::string> fields(1);
+  for (const char letter : record) {
+    if (letter == '\t') {
+      fields.emplace_back();
+    } else {
+      fields.back() += letter;
+    }
+  }
+  return fields;
+}
+
+[[noreturn]] void refuseRecord(const std::string& record) {
+  base::refuse(base::quoted(record), " is no result of an extreme case");
+}
+
+ExtremeFailure failureCalled(const std::string& name, const std::string& record) {
+  constexpr ExtremeFailure kAll[] = {ExtremeFailure::kThrew,      ExtremeFailure::kNotFinite,
+                                     ExtremeFailure::kStuck,      ExtremeFailure::kEnergyGrew,
+                                     ExtremeFailure::kIntersects, ExtremeFailure::kNoReturn,
+                                     ExtremeFailure::kNone};
+  for (const ExtremeFailure failure : kAll) {
+    if (name == nameOf(failure)) return failure;
+  }
+  refuseRecord(record);
+}
+
+template <typename Number>
+Number numberIn(const std::string& field, const std::string& record) {
+  const std::optional<Number> number = base::parseNumber<Number>(field);
+  if (!number) refuseRecord(record);
+  return *number;
+}
+
+ExtremeOutcome outcomeIn(const std::vector<std::string>& fields, const std::string& record) {
+  ExtremeOutcome outcome;
+  outcome.failure = failureCalled(fields[1], record);
+  outcome.growth = numberIn<double>(fields[2], record);
+  outcome.return_error = numberIn<double>(fields[3], record);
+  outcome.steps = numberIn<int>(fields[4], record);
+  outcome.rejected = numberIn<int>(fields[5], record);
+  outcome.settling_steps = numberIn<int>(fields[6], record);
+  outcome.slow = numberIn<int>(fields[7], record) != 0;
+  outcome.other_rest = numberIn<int>(fields[8], record) != 0;
+  outcome.unsettled = numberIn<int>(fields[9], record) != 0;
+  return outcome;
+}
+
+}  // namespace
+
+ExtremesStudy::ExtremesStudy(const ExtremesSettings& settings) : settings_(settings) {
+  const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / 2;
+  if (settings.cases < 1) base::refuse("cases = 0: allowed is at least 1");
+  if (settings.seed > most || settings.cases > most - settings.seed) {
+    base::refuse("cases = ", settings.cases, " from seed ", settings.seed,
+                 " on: allowed are seeds up to ", most);
+  }
+  if (!settings.self_colliding) return;
+  for (const ExtremeCase& extreme : drawSelfCollidingCases(settings.seed, settings.cases)) {
+    seeds_.push_back(extreme.seed);
+  }
+}
+
+StudyInputs ExtremesStudy::inputs() const {
+  return {{"cases", std::to_string(settings_.cases)},
+          {"seed", std::to_string(settings_.seed)},
+          {"self_collision", settings_.self_colliding ? "1" : "0"}};
+}
+
+ExtremeCase ExtremesStudy::caseOf(std::size_t unit) const {
+  if (!settings_.self_colliding) return drawExtremeCase(settings_.seed + unit);
+  ExtremeCase extreme = drawExtremeCase(seeds_[unit]);
+  extreme.self_collision = true;
+  return extreme;
+}
+
+std::string ExtremesStudy::run(std::size_t unit) const {
+  const ExtremeCase extreme = caseOf(unit);
+  const ExtremeOutcome outcome = runExtremeCase(extreme);
+  std::string record = "seed=" + std::to_string(extreme.seed) + " kind=" + nameOf(extreme.kind) +
+                       " method=" + cloth::nameOf(extreme.method) + '\t' + nameOf(outcome.failure);
+  for (const double number : {outcome.growth, outcome.return_error}) {
+    record += '\t' + textOf(number);
+  }
+  for (const int number : {outcome.steps, outcome.rejected, outcome.settling_steps,
+                           int{outcome.slow}, int{outcome.other_rest}, int{outcome.unsettled}}) {
+    record += '\t' + std::to_string(number);
+  }
+  if (outcome.failure == ExtremeFailure::kNone) return record;
+  return record + '\t' + asField(outcome.message) + '\t' +
+         toText(shrinkFailure(extreme, outcome.failure));
+}
+
+void ExtremesStudy::summarise(const std::vector<std::string>& records, std::ostream& out) const {
+  ExtremeTally tally;
+  for (const std::string& record : records) {
+    const std::vector<std::string> fields = fieldsOf(record);
+    if (fields.size() != kFields && fields.size() != kFailedFields) refuseRecord(record);
+    tally.add(parseExtremeCase(fields[0]), outcomeIn(fields, record));
+  }
+  tally.print(settings_.self_colliding ? "stability/self_colliding/" : "stability/",
+              [&](const std::string& name, double value, const char* unit) {
+                out << name << '\t' << value << '\t' << unit << '\n';
+              });
+}
+
+}  // namespace haptex::studies
