@@ -3,9 +3,12 @@
 import numpy as np
 import rospy
 import rostest
-from geometry_msgs.msg import PoseStamped, Quaternion, WrenchStamped
+import tf2_ros
+from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped, WrenchStamped
 from haptex.msg import ClothState
-from ros_fixtures import NodeTest
+from haptex.srv import AttachParticles, ReleaseParticles
+from ros_fixtures import Diagnostics, NodeTest
+from std_msgs.msg import Header
 from std_srvs.srv import SetBool
 from tf.transformations import quaternion_about_axis, rotation_matrix
 
@@ -83,6 +86,33 @@ class Grab(NodeTest):
         answer = self.grasp(True)
         self.assertFalse(answer.success)
         self.assertIn('no free particle is within 20 mm', answer.message)
+
+    def test_a_pose_of_tf_that_is_refused_leaves_the_cloth_where_it_was_and_is_told(self):
+        broadcaster = tf2_ros.TransformBroadcaster()
+        attach = rospy.ServiceProxy('cloth/attach', AttachParticles)
+
+        def tell(x):
+            lost = TransformStamped(header=Header(frame_id='world', stamp=rospy.Time.now()), child_frame_id='lost')
+            lost.transform.translation.x, lost.transform.rotation.w = x, 1.0
+            broadcaster.sendTransform(lost)
+            rospy.sleep(0.3)  # longer than anything is extrapolated
+
+        def attached():
+            tell(0.0)  # until the node is connected
+            return attach(header=Header(frame_id='lost'), particles=[CORNER]).success
+
+        self.eventually(attached, 'the corner to be attached')
+        start = self.place()
+        tell(1e300)
+        self.assertLess(np.linalg.norm(self.place() - start), 1e-6)
+        told = Diagnostics().values('cloth simulation')
+        self.assertEqual(told['poses of frame lost refused'], '1')
+        self.assertEqual(told['last poses of frame lost refused for'],
+                         "the origin of frame 'lost' = (1e+300, 0, 0) m: allowed are finite components from -100 to 100 m")
+        tell(0.01)  # what was refused is not remembered
+        self.eventually(lambda: np.linalg.norm(self.place() - start - [0.01, 0, 0]) < 1e-6, 'the corner where the frame is')
+        answer = rospy.ServiceProxy('cloth/release', ReleaseParticles)([CORNER])
+        self.assertTrue(answer.success, answer.message)
 
     def test_poses_that_make_no_sense_leave_it_where_it_is(self):
         _, start = self.grasp_corner()
