@@ -1,7 +1,6 @@
 #include "haptex/scene/attachment_values.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <string>
 #include <utility>
@@ -23,15 +22,6 @@ mesh::Side readSide(const YamlValue& value) {
   if (side == "top") return mesh::Side::kTop;
   if (side == "bottom") return mesh::Side::kBottom;
   return side == "left" ? mesh::Side::kLeft : mesh::Side::kRight;
-}
-
-int readParticle(const YamlValue& value, const mesh::ClothMesh& mesh) {
-  const int particle = value.integer();
-  const int count = static_cast<int>(mesh.rest_coordinates.size());
-  if (particle < 0 || particle >= count) {
-    value.refuse("must be a particle from 0 to " + std::to_string(count - 1));
-  }
-  return particle;
 }
 
 Vector2d readCoordinates(const YamlValue& value) {
@@ -98,16 +88,6 @@ std::string readFrame(const YamlValue& item, const std::map<std::string, YamlVal
   for (const auto& frame : frames) known += (known.empty() ? "" : ", ") + frame.first;
   value.refuse("must be one of the key frames: " +
                (known.empty() ? "there is none" : base::shortened(known)));
-}
-
-/// It becomes part of a topic.
-std::string readName(const YamlValue& value) {
-  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-  std::string name = value.text();
-  const bool sound = std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
-                     std::all_of(name.begin(), name.end(), allowed);
-  if (!sound) value.refuse("must be a letter, and then letters, digits or _");
-  return name;
 }
 
 /// By name.

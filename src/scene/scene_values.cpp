@@ -1,5 +1,7 @@
 #include "haptex/scene/scene_values.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -91,6 +93,33 @@ Eigen::Isometry3d readPose(const YamlValue& value) {
   if (value.has("position")) pose.translation() = readPosition(value.at("position"));
   if (value.has("rpy")) pose.linear() = readRotation(value.at("rpy"));
   return pose;
+}
+
+std::string readName(const YamlValue& value) {
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  std::string name = value.text();
+  const bool sound = std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
+                     std::all_of(name.begin(), name.end(), allowed);
+  if (!sound) value.refuse("must be a letter, and then letters, digits or _");
+  return name;
+}
+
+int readParticle(const YamlValue& value, const mesh::ClothMesh& mesh) {
+  const int particle = value.integer();
+  const int count = static_cast<int>(mesh.rest_coordinates.size());
+  if (particle < 0 || particle >= count) {
+    value.refuse("must be a particle from 0 to " + std::to_string(count - 1));
+  }
+  return particle;
+}
+
+const std::vector<int>& readGroup(const YamlValue& value, const mesh::MeshGroups& groups) {
+  const auto group = groups.find(value.text());
+  if (group != groups.end()) return group->second;
+  std::string names;
+  for (const auto& [name, triangles] : groups) names += (names.empty() ? "" : ", ") + name;
+  value.refuse("must be a group ('g') of the mesh that has a face: " +
+               (names.empty() ? "there is none" : base::shortened(names)));
 }
 
 }  // namespace haptex::scene
