@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "haptex/base/yaml_reader.h"
-#include "haptex/cloth/forces/fasteners.h"
+#include "haptex/cloth/forces/fasteners/fasteners.h"
 #include "haptex/mesh/mesh.h"
 #include "haptex/mesh/obj_file.h"
 

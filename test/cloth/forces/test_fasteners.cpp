@@ -7,7 +7,7 @@
 #include "derivatives.h"
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/cloth/forces/fasteners.h"
+#include "haptex/cloth/forces/fasteners/fasteners.h"
 #include "self_contact_fixtures.h"
 
 namespace haptex::cloth::test_fasteners {

@@ -7,7 +7,7 @@
 
 #include "haptex/cloth/forces/aerodynamics.h"
 #include "haptex/cloth/forces/bending/bending.h"
-#include "haptex/cloth/forces/fasteners.h"
+#include "haptex/cloth/forces/fasteners/fasteners.h"
 #include "haptex/cloth/forces/force_sum.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"

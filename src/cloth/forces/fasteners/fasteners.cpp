@@ -1,4 +1,4 @@
-#include "haptex/cloth/forces/fasteners.h"
+#include "haptex/cloth/forces/fasteners/fasteners.h"
 
 #include <algorithm>
 #include <cmath>
