@@ -29,7 +29,11 @@ ClothPlace readCoordinates(const YamlValue& value, const mesh::ClothMesh& mesh,
   const Eigen::Vector2d rest(items[0].number(), items[1].number());
   const std::optional<mesh::RestPlace> place =
       group != nullptr ? mesh::findRestPlace(mesh, *group, rest) : mesh::findRestPlace(mesh, rest);
-  if (!place) value.refuse("must be rest coordinates (m) within the cloth");
+  if (!place) {
+    value.refuseBecause("[" + base::shortNumber(rest.x()) + ", " + base::shortNumber(rest.y()) +
+                        "] must be rest coordinates (m) within the cloth" +
+                        (group != nullptr ? ", in this group" : ""));
+  }
   const Eigen::Vector3d& weights = place->weights;
   return {mesh.triangles[place->triangle], {weights[0], weights[1], weights[2]}};
 }
