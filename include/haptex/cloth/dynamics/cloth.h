@@ -67,8 +67,8 @@ class Cloth {
   /// Lumped particle masses (kg): a third of each adjacent triangle. Those of tied particles are
   /// with the particles that they are tied to, and theirs are 0.
   const std::vector<double>& masses() const { return masses_; }
-  /// All that act, but for contacts: gravity and user-defined forces, the fabric's, the air's, and
-  /// point loads.
+  /// All that act, but for contacts: gravity and user-defined forces, fasteners, the fabric's, the
+  /// air's, and point loads.
   const ForceSum& forces() const { return *forces_; }
   /// That of the cloth with itself among them; null if it is not modelled.
   const SelfContact* selfContact() const { return self_contact_; }
