@@ -24,15 +24,6 @@ mesh::Side readSide(const YamlValue& value) {
   return side == "left" ? mesh::Side::kLeft : mesh::Side::kRight;
 }
 
-int readParticle(const YamlValue& value, const mesh::ClothMesh& mesh) {
-  const int particle = value.integer();
-  const int count = static_cast<int>(mesh.rest_coordinates.size());
-  if (particle < 0 || particle >= count) {
-    value.refuse("must be a particle from 0 to " + std::to_string(count - 1));
-  }
-  return particle;
-}
-
 Vector2d readCoordinates(const YamlValue& value) {
   const std::vector<YamlValue> items = value.items(2);
   return {items[0].number(), items[1].number()};
@@ -97,12 +88,6 @@ std::string readFrame(const YamlValue& item, const std::map<std::string, YamlVal
   for (const auto& frame : frames) known += (known.empty() ? "" : ", ") + frame.first;
   value.refuse("must be one of the key frames: " +
                (known.empty() ? "there is none" : base::shortened(known)));
-}
-
-std::string readName(const YamlValue& value) {
-  std::string name = value.text();
-  if (!isFrameName(name)) value.refuse(std::string("must be ") + kFrameNames);
-  return name;
 }
 
 /// By name.

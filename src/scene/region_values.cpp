@@ -57,15 +57,9 @@ std::vector<int> readRectangle(const YamlValue& region, const mesh::ClothMesh& m
   return triangles;
 }
 
-const std::vector<int>& readGroup(const YamlValue& region, const mesh::MeshGroups& groups) {
+const std::vector<int>& readRegionGroup(const YamlValue& region, const mesh::MeshGroups& groups) {
   region.requireKeys({"fabric", "group"});
-  const YamlValue value = region.at("group");
-  const auto group = groups.find(value.text());
-  if (group != groups.end()) return group->second;
-  std::string names;
-  for (const auto& [name, triangles] : groups) names += (names.empty() ? "" : ", ") + name;
-  value.refuse("must be a group ('g') of the mesh that has a face: " +
-               (names.empty() ? "there is none" : base::shortened(names)));
+  return readGroup(region.at("group"), groups);
 }
 
 /// Which of the cloth's fabrics; a new one is added.
@@ -109,7 +103,7 @@ std::vector<std::string> readRegions(const YamlValue& file, const std::string& f
   std::vector<std::string> paths;
   for (std::size_t r = 0; r < regions.size(); ++r) {
     const std::vector<int> members =
-        file.has("sheet") ? readRectangle(regions[r], mesh) : readGroup(regions[r], groups);
+        file.has("sheet") ? readRectangle(regions[r], mesh) : readRegionGroup(regions[r], groups);
     const int fabric = readFabric(regions[r].at("fabric"), fabric_path, paths);
     for (const int triangle : members) {
       if (region_of[triangle] >= 0) {

@@ -17,6 +17,7 @@
 #include "haptex/scene/attachment_values.h"
 #include "haptex/scene/body_values.h"
 #include "haptex/scene/cloth_state_file.h"
+#include "haptex/scene/fastener_values.h"
 #include "haptex/scene/obstacle_file.h"
 #include "haptex/scene/region_values.h"
 #include "haptex/scene/scene_values.h"
@@ -139,6 +140,7 @@ void startFrom(const YamlValue& value, Scene& scene) {
 
 bool allowsAnyCells(const YamlValue& scene) {
   if (!scene.has("sheet") || scene.has("state") || scene.has("regions")) return false;
+  if (scene.has("fasteners") && nameParticles(scene.at("fasteners"))) return false;
   const std::vector<YamlValue> attached = scene.at("attach").items();
   return std::none_of(attached.begin(), attached.end(),
                       [](const YamlValue& item) { return item.isMap(); });
@@ -286,7 +288,7 @@ Scene readScene(const std::string& path, OtherSheet other) {
   file.requireKeys(
       {"fabric", "attach", "model", "time_step"},
       {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind", "integrator", "solver",
-       "obstacles", "penalty", "haptics", "state", "regions", "frames"});
+       "obstacles", "penalty", "haptics", "state", "regions", "frames", "fasteners"});
   Scene scene;
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.any_cells = allowsAnyCells(file);
@@ -300,6 +302,9 @@ Scene readScene(const std::string& path, OtherSheet other) {
   const Listed listed = readModel(file);
   requireListedKeys(file, listed);
   scene.effects = readEffects(file, listed);
+  if (file.has("fasteners")) {
+    scene.effects.fasteners = readFasteners(file.at("fasteners"), scene.mesh, groups);
+  }
   scene.fingers = listed.count("fingers") > 0;
   scene.tactile = listed.count("tactile") > 0;
   scene.recording = listed.count("recording") > 0;

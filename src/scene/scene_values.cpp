@@ -1,5 +1,6 @@
 #include "haptex/scene/scene_values.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -7,6 +8,7 @@
 
 #include "haptex/base/quoted.h"
 #include "haptex/mesh/obj_file.h"
+#include "haptex/scene/attachment_values.h"
 
 namespace haptex::scene {
 namespace {
@@ -91,6 +93,30 @@ Eigen::Isometry3d readPose(const YamlValue& value) {
   if (value.has("position")) pose.translation() = readPosition(value.at("position"));
   if (value.has("rpy")) pose.linear() = readRotation(value.at("rpy"));
   return pose;
+}
+
+std::string readName(const YamlValue& value) {
+  std::string name = value.text();
+  if (!isFrameName(name)) value.refuse(std::string("must be ") + kFrameNames);
+  return name;
+}
+
+int readParticle(const YamlValue& value, const mesh::ClothMesh& mesh) {
+  const int particle = value.integer();
+  const int count = static_cast<int>(mesh.rest_coordinates.size());
+  if (particle < 0 || particle >= count) {
+    value.refuse("must be a particle from 0 to " + std::to_string(count - 1));
+  }
+  return particle;
+}
+
+const std::vector<int>& readGroup(const YamlValue& value, const mesh::MeshGroups& groups) {
+  const auto group = groups.find(value.text());
+  if (group != groups.end()) return group->second;
+  std::string names;
+  for (const auto& [name, triangles] : groups) names += (names.empty() ? "" : ", ") + name;
+  value.refuse("must be a group ('g') of the mesh that has a face: " +
+               (names.empty() ? "there is none" : base::shortened(names)));
 }
 
 }  // namespace haptex::scene

@@ -77,6 +77,7 @@ SimulatedCloth::SimulatedCloth(scene::Scene scene, std::vector<material::Fabric>
   }
   attachInitially();
   makeIntegrators();
+  requireFastened();
 }
 
 /// Of explicit steps alone: implicit ones keep their contacts exactly.
@@ -115,6 +116,7 @@ bool SimulatedCloth::stepInRealTime(double waited) {
 
 bool SimulatedCloth::run(double duration, int cycles, double waited) {
   last_duration_ = duration;
+  opened_.clear();
   if (asleep_ && frames_.moves(cloth_, state_)) wake();
   if (asleep_) {
     state_.time += duration;
@@ -137,6 +139,7 @@ bool SimulatedCloth::run(double duration, int cycles, double waited) {
   }
   ++steps_;
   ++computed_steps_;
+  noteOpenedFasteners();
   sleepIfResting();
   return true;
 }
@@ -262,6 +265,8 @@ void SimulatedCloth::reset() {
   adaptive_report_ = AdaptiveReport{};
   last_step_rejected_ = false;
   steps_ = 0;
+  readFastened();
+  opened_.clear();
   wake();
 }
 

@@ -29,6 +29,12 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
     effects.air->wind.gusts = {{{1.0, 0.0, 0.0}, 1.0, 0.0}};
     effects.bending = effects.bending_hysteresis = effects.membrane_hysteresis = true;
     effects.bending_settings.rest_curvature << 5.0, -2.0;
+    effects.fasteners = {{"band",
+                          FastenerKind::kElastic,
+                          {ClothPlace{{0, -1, -1}}, ClothPlace{{16, -1, -1}}},
+                          10.0,
+                          0.01,
+                          5.0}};
     material::Fabric fabric = stiffeningFabric();
     fabric.bending = {1e-5, 2e-5};
     fabric.bending_hysteresis = {3e-4, 1e-4};
@@ -58,6 +64,7 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
     for (double share : {0.3, 0.02, 0.03, 1.0, 1e-3}) {
       const double h = share * longest;
       cloth.setPointLoads(loads);
+      Fasteners::set(0, share < 0.5, state.memory.data());
       EXPECT_TRUE(integrator.step(cloth, state, h).accepted);
       cloth.computeForces(state, forces);
     }

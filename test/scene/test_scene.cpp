@@ -325,9 +325,10 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
   }
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{
-                       "acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet", "hemmed_wool",
-                       "linear_sheet", "net", "orbiting_sphere", "soft_top", "sphere_mass_spring",
-                       "table", "tshirt", "wool_among_obstacles", "wool_in_wind", "wool_sample"}));
+                       "acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet",
+                       "gathered_wool", "hemmed_wool", "linear_sheet", "net", "orbiting_sphere",
+                       "soft_top", "sphere_mass_spring", "table", "tshirt", "wool_among_obstacles",
+                       "wool_in_wind", "wool_sample"}));
 }
 
 TEST_F(SceneFile, MayHaveAnotherSheet) {

@@ -89,9 +89,9 @@ TEST_F(SceneFabric, IsRefusedWithAWrongKeyHaptics) {
 }
 
 TEST(ShippedScenes, HaveFabricsWithWhatTheyList) {
-  for (const char* name :
-       {"acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet", "linear_sheet",
-        "orbiting_sphere", "hemmed_wool", "wool_among_obstacles", "wool_in_wind", "wool_sample"}) {
+  for (const char* name : {"acrylic_knit_sample", "cotton_knit_sample", "dropped_sheet",
+                           "gathered_wool", "linear_sheet", "orbiting_sphere", "hemmed_wool",
+                           "wool_among_obstacles", "wool_in_wind", "wool_sample"}) {
     const std::string path = kConfig + "/scenes/" + name + ".yaml";
     EXPECT_NO_THROW(loadSceneFabrics(path, loadScene(path))) << name;
   }

@@ -20,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"UnknownKey", "fabric: silk", "fabric: silk\nwaves: 3",
                 "waves: unknown key, allowed here: fabric, attach, model, time_step, sheet, mesh, "
                 "elasticity, gravity, bending, air, wind, integrator, solver, obstacles, "
-                "penalty, haptics, state, regions, frames"},
+                "penalty, haptics, state, regions, frames, fasteners"},
         Refusal{"MissingModel", "model: [gravity, viscosity]\n", "",
                 "the key 'model' is missing, required here: fabric, attach, model, time_step"},
         Refusal{"MissingAttach", "attach: [top]\n", "",

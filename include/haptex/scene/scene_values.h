@@ -3,8 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <vector>
 
 #include "haptex/base/yaml_reader.h"
+#include "haptex/mesh/obj_file.h"
 
 namespace haptex::scene {
 
@@ -38,6 +40,17 @@ Eigen::Vector3d readPosition(const base::YamlValue& value);
 /// in URDF: rotations about the fixed axes x, y and z, in this order.
 /// @throws std::invalid_argument naming file, key, value and what is allowed
 Eigen::Isometry3d readPose(const base::YamlValue& value);
+
+/// A name that may become part of a topic: isFrameName().
+/// @throws std::invalid_argument naming file, key, value and what is allowed
+std::string readName(const base::YamlValue& value);
+
+/// @throws std::invalid_argument naming file, key, value and what is allowed
+int readParticle(const base::YamlValue& value, const mesh::ClothMesh& mesh);
+
+/// Triangles of a group of the mesh.
+/// @throws std::invalid_argument naming file, key, value and the groups that there are
+const std::vector<int>& readGroup(const base::YamlValue& value, const mesh::MeshGroups& groups);
 
 /// @throws std::invalid_argument naming file, key, number and the most that are allowed
 void requireTriangleCount(const base::YamlValue& value, long long triangles);

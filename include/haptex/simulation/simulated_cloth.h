@@ -43,6 +43,12 @@ struct AdaptiveReport {
   bool missed = false;    ///< the error that is allowed, by a substep of the shortest length
 };
 
+/// A fastener that opened by itself.
+struct OpenedFastener {
+  std::size_t fastener;  ///< of Cloth::fasteners()
+  double force;          ///< N, at which it did
+};
+
 /// Steps a scene and changes it between two steps. Every change checks its whole request first and
 /// throws without having changed anything. Units SI, places in the world frame.
 ///
@@ -188,6 +194,22 @@ class SimulatedCloth {
   void moveFrame(std::size_t frame, const Eigen::Isometry3d& pose);
   const CarryingFrames& frames() const { return frames_; }
 
+  /// Fastens what is open, from the next step on. Those that are fastened stay so.
+  /// @param names of the scene's fasteners; empty: all
+  /// @throws std::invalid_argument if there is no fastener of a name, or the places of one are
+  ///   farther apart than Fasteners::reach()
+  void fasten(const std::vector<std::string>& names);
+  /// Opens what is fastened, likewise.
+  /// @throws std::invalid_argument if there is no fastener of a name
+  void unfasten(const std::vector<std::string>& names);
+  /// @param fastener of Cloth::fasteners()
+  bool isFastened(std::size_t fastener) const { return fastened_[fastener] != 0; }
+  /// N, that it carries; 0 if it is open.
+  double fastenerForce(std::size_t fastener) const;
+  /// What opened by itself in the last step, in the order of Cloth::fasteners(). A step that was
+  /// rejected opens nothing.
+  const std::vector<OpenedFastener>& openedFasteners() const { return opened_; }
+
   /// Takes particles out of the computation: they stand still where they are, attached, and what
   /// only they would need is not computed. Obstacles and loads go through them. Those that are
   /// excluded stay so.
@@ -233,6 +255,11 @@ class SimulatedCloth {
   cloth::StepReport runSubstep(double duration);
   void wake();
   void sleepIfResting();
+  std::vector<std::size_t> requireFasteners(const std::vector<std::string>& names) const;
+  void setFastened(std::size_t fastener, bool fastened);
+  void requireFastened();
+  void readFastened();
+  void noteOpenedFasteners();
 
   cloth::Cloth cloth_;
   std::vector<char> excluded_;            // whether it was attached before, too; empty: none is
@@ -261,7 +288,9 @@ class SimulatedCloth {
   bool last_step_rejected_ = false;
   std::uint64_t steps_ = 0;
   std::uint64_t computed_steps_ = 0;
-  bool disturbed_;  // for ever, by an obstacle that moves
+  std::vector<char> fastened_;          // of state_
+  std::vector<OpenedFastener> opened_;  // has the capacity of all
+  bool disturbed_;                      // for ever, by an obstacle that moves
   cloth::RestDetector rest_;
   bool asleep_ = false;
 };

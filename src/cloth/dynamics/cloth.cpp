@@ -94,6 +94,13 @@ void Cloth::takeFabrics(std::vector<material::Fabric> fabrics) {
   auto constant = std::make_unique<ConstantForces>(masses, effects_.gravity);
   if (constant_ != nullptr) constant->copyUserForces(*constant_);
   ConstantForces& added = forces->add(std::move(constant));
+  const Fasteners* fasteners = nullptr;
+  if (!effects_.fasteners.empty()) {
+    const double thickness =
+        effects_.self_collision ? of_fabrics.find<SelfContact>()->law().thickness() : 0.0;
+    fasteners =
+        &forces->add(std::make_unique<Fasteners>(effects_.fasteners, masses.size(), thickness));
+  }
   forces->addAll(std::move(of_fabrics));
   PointLoads* loads = nullptr;
   if (effects_.point_loads) loads = &forces->add(std::make_unique<PointLoads>(mesh_));
@@ -108,6 +115,7 @@ void Cloth::takeFabrics(std::vector<material::Fabric> fabrics) {
   masses_ = std::move(masses);
   forces_ = std::move(forces);
   constant_ = &added;
+  fasteners_ = fasteners;
   point_loads_ = loads;
   self_contact_ = forces_->find<SelfContact>();
   if (obstacles_) self_contact_->setObstacles(obstacles_);
@@ -128,8 +136,14 @@ ClothState Cloth::initialState() const {
 
 void Cloth::forget(ClothState& state) const {
   requireParticles(state);
+  std::vector<double> fastened;
+  if (fasteners_ != nullptr && !state.memory.empty()) {
+    fastened.assign(state.memory.begin(),
+                    state.memory.begin() + static_cast<std::ptrdiff_t>(fasteners_->memorySize()));
+  }
   state.memory.resize(forces_->memorySize());
   forces_->forget(state.positions, state.memory.data());
+  std::copy(fastened.begin(), fastened.end(), state.memory.begin());
 }
 
 void Cloth::remember(ClothState& state) const {

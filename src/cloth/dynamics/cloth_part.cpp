@@ -27,6 +27,27 @@ std::vector<char> touching(const mesh::ClothMesh& mesh, const std::vector<char>&
   return triangles;
 }
 
+bool isAt(const ClothPlace& place, const std::vector<char>& particles) {
+  for (int i = 0; i < 3; ++i) {
+    if (place.weights[i] != 0.0 && particles[place.particles[i]] != 0) return true;
+  }
+  return false;
+}
+
+/// The particles, and those that fasteners hold them to.
+std::vector<char> withFastened(const Cloth& whole, const std::vector<char>& particles) {
+  std::vector<char> all = particles;
+  for (const Fastener& fastener : whole.effects().fasteners) {
+    if (!isAt(fastener.places[0], particles) && !isAt(fastener.places[1], particles)) continue;
+    for (const ClothPlace& place : fastener.places) {
+      for (int i = 0; i < 3; ++i) {
+        if (place.weights[i] != 0.0) all[place.particles[i]] = 1;
+      }
+    }
+  }
+  return all;
+}
+
 std::vector<char> cornersOf(const mesh::ClothMesh& mesh, const std::vector<char>& triangles) {
   std::vector<char> particles(mesh.rest_coordinates.size(), 0);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -98,7 +119,7 @@ std::vector<int> trianglesAround(const Cloth& whole, const std::vector<char>& in
         "self_collision is modelled, and the cloth would pass through what is excluded: allowed is "
         "one of both");
   }
-  std::vector<char> triangles = touching(mesh, included);
+  std::vector<char> triangles = touching(mesh, withFastened(whole, included));
   for (int ring = 0; whole.effects().bending && ring < kBendingRings; ++ring) {
     triangles = touching(mesh, cornersOf(mesh, triangles));
   }
@@ -142,9 +163,27 @@ mesh::ClothMesh meshOf(const mesh::ClothMesh& whole, const std::vector<int>& tri
   return part;
 }
 
+/// Those whose particles are all in the part.
+std::vector<Fastener> fastenersOf(const Cloth& whole, const std::vector<int>& particle_place) {
+  std::vector<Fastener> result;
+  for (Fastener fastener : whole.effects().fasteners) {
+    bool complete = true;
+    for (ClothPlace& place : fastener.places) {
+      for (int i = 0; i < 3; ++i) {
+        if (place.weights[i] == 0.0) continue;
+        place.particles[i] = particle_place[place.particles[i]];
+        complete = complete && place.particles[i] >= 0;
+      }
+    }
+    if (complete) result.push_back(std::move(fastener));
+  }
+  return result;
+}
+
 /// So that the part has the hinges that the whole has: those that are not exact may lie elsewhere.
-ModelledEffects effectsOf(const Cloth& whole) {
+ModelledEffects effectsOf(const Cloth& whole, const std::vector<int>& particle_place) {
   ModelledEffects effects = whole.effects();
+  effects.fasteners = fastenersOf(whole, particle_place);
   const std::vector<const Bending*> all = whole.forces().findAll<Bending>();
   if (all.empty()) return effects;
   effects.bending_settings.model = all.front()->model();
@@ -190,7 +229,7 @@ ClothPart::ClothPart(const Cloth& whole, const std::vector<char>& included,
       triangle_place_(inverse(triangles, whole.mesh().triangles.size())),
       particle_place_(inverse(particles_, whole.particleCount())),
       cloth_(meshOf(whole.mesh(), triangles, particles_, particle_place_, triangle_place_),
-             whole.fabrics(), effectsOf(whole)),
+             whole.fabrics(), effectsOf(whole, particle_place_)),
       state_(cloth_.initialState()),
       memory_(memoryPlaces(whole, cloth_, particles_)) {
   for (std::size_t i = 0; i < particles_.size(); ++i) {

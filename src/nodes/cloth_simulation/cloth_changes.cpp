@@ -183,6 +183,7 @@ void ClothNode::exchange(simulation::SimulatedCloth next, const scene::Scene& sc
     state_stamp_ = ros::Time::now();
     stamped_step_ = simulation.steps();
     filled_step_.reset();
+    fasteners_.restart();
     publishMesh(simulation.cloth());
     publishQuality(simulation);
   });

@@ -138,6 +138,7 @@ ClothNode::ClothNode(const ros::NodeHandle& node, const ros::NodeHandle& private
       contact_input_(scene.fingers ? std::make_unique<ContactInput>(node, triangle_count_)
                                    : nullptr),
       frames_(node),
+      fasteners_(node),
       heartbeat_(node, "cloth/heartbeat"),
       loop_(
           simulate(parameters, quality, scene),
@@ -208,6 +209,7 @@ void ClothNode::publishStep(const simulation::SimulatedCloth& simulation, double
     obstacle_publisher_.publish(markers_.updateMovingObstacles(simulation, state_stamp_));
   }
   frames_.publish(simulation, state_stamp_, forces);
+  fasteners_.publish(simulation, state_stamp_, state_due);
   publishQualityIfDue(simulation);
 }
 
@@ -316,6 +318,10 @@ void ClothNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("triangles", triangle_count_.load());
   if (quality_) diagnoseQuality(status);
   diagnoseFrames(status);
+  if (const FastenerCount fasteners = fasteners_.count(); fasteners.all > 0) {
+    status.addf("open fasteners", "%zu of %zu", fasteners.open, fasteners.all);
+    status.add("fasteners opened by force", fasteners.opened);
+  }
   addInput(status, "external forces", force_input_.status());
   status.add("sources of external forces", force_input_.sources().size());
   if (contact_input_) addInput(status, "contact forces", contact_input_->status());

@@ -31,6 +31,13 @@ std::string excludedOf(const simulation::SimulatedCloth& simulation) {
          std::to_string(simulation.cloth().particleCount()) + " excluded";
 }
 
+std::string openOf(const simulation::SimulatedCloth& simulation) {
+  const std::size_t count = simulation.cloth().fasteners()->all().size();
+  std::size_t open = 0;
+  for (std::size_t f = 0; f < count; ++f) open += simulation.isFastened(f) ? 0 : 1;
+  return counted(open, "fastener") + " of " + std::to_string(count) + " open";
+}
+
 }  // namespace
 
 void ClothNode::advertiseServices() {
@@ -43,6 +50,8 @@ void ClothNode::advertiseServices() {
                advertiseChecked(node_, "cloth/attach", &ClothNode::attach, this),
                advertiseChecked(node_, "cloth/move", &ClothNode::move, this),
                advertiseChecked(node_, "cloth/release", &ClothNode::release, this),
+               advertiseChecked(node_, "cloth/fasten", &ClothNode::fasten, this),
+               advertiseChecked(node_, "cloth/unfasten", &ClothNode::unfasten, this),
                advertiseChecked(node_, "cloth/exclude", &ClothNode::exclude, this),
                advertiseChecked(node_, "cloth/include", &ClothNode::include, this),
                advertiseChecked(node_, "cloth/get_jacobian", &ClothNode::getJacobian, this),
@@ -134,6 +143,27 @@ bool ClothNode::release(ReleaseParticles::Request& request, ReleaseParticles::Re
     loop_.execute(
         [&](simulation::SimulatedCloth& simulation) { simulation.release(request.particles); });
     return "released " + counted(request.particles.size(), "particle");
+  });
+}
+
+bool ClothNode::fasten(SelectFasteners::Request& request, SelectFasteners::Response& response) {
+  return changeFasteners("fasten", &simulation::SimulatedCloth::fasten, request, response);
+}
+
+bool ClothNode::unfasten(SelectFasteners::Request& request, SelectFasteners::Response& response) {
+  return changeFasteners("unfasten", &simulation::SimulatedCloth::unfasten, request, response);
+}
+
+bool ClothNode::changeFasteners(const char* service, ChangeFasteners change,
+                                const SelectFasteners::Request& request,
+                                SelectFasteners::Response& response) {
+  return answer(service, response, [&] {
+    std::string left;
+    loop_.execute([&](simulation::SimulatedCloth& simulation) {
+      (simulation.*change)(request.names);
+      left = openOf(simulation);
+    });
+    return left;
   });
 }
 

@@ -67,11 +67,13 @@ class Cloth {
   /// Lumped particle masses (kg): a third of each adjacent triangle. Those of tied particles are
   /// with the particles that they are tied to, and theirs are 0.
   const std::vector<double>& masses() const { return masses_; }
-  /// All that act, but for contacts: gravity and user-defined forces, the fabric's, the air's, and
-  /// point loads.
+  /// All that act, but for contacts: gravity and user-defined forces, fasteners, the fabric's, the
+  /// air's, and point loads.
   const ForceSum& forces() const { return *forces_; }
   /// That of the cloth with itself among them; null if it is not modelled.
   const SelfContact* selfContact() const { return self_contact_; }
+  /// Those of effects(); null if there are none. Their memory comes first in that of a state.
+  const Fasteners* fasteners() const { return fasteners_; }
   /// Which particles are sewn to others. They go with them in every step, act by them, and have no
   /// contacts of their own.
   const Ties& ties() const { return *ties_; }
@@ -97,7 +99,8 @@ class Cloth {
   void setMaterial(std::vector<material::Fabric> fabrics, const Eigen::Vector3d& gravity,
                    const std::optional<Air>& air);
 
-  /// Makes the state one without friction in what is bent: the fabric's past is forgotten.
+  /// Makes the state one without friction in what is bent: the fabric's past is forgotten. What is
+  /// fastened stays so; in a state without memory it is as effects() say.
   /// @throws std::invalid_argument if positions or velocities are not as many as particles
   void forget(ClothState& state) const;
   /// Lets what forces remember follow the positions (Force::remember()); what every step does at
@@ -199,7 +202,8 @@ class Cloth {
   std::unique_ptr<Ties> ties_;  // not null
   std::unique_ptr<ForceSum> forces_;
   ConstantForces* constant_ = nullptr;           // of forces_
-  PointLoads* point_loads_ = nullptr;            // of forces_; null if they are not modelled
+  const Fasteners* fasteners_ = nullptr;         // of forces_; null if there are none
+  PointLoads* point_loads_ = nullptr;            // likewise, if they are not modelled
   SelfContact* self_contact_ = nullptr;          // likewise
   std::shared_ptr<ObstacleSurfaces> obstacles_;  // of self_contact_; null if there are none
   int pattern_size_ = 0;

@@ -7,6 +7,7 @@
 
 #include "haptex/cloth/forces/aerodynamics.h"
 #include "haptex/cloth/forces/bending/bending.h"
+#include "haptex/cloth/forces/fasteners/fasteners.h"
 #include "haptex/cloth/forces/force_sum.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
@@ -35,6 +36,7 @@ struct ModelledEffects {
   bool contacts = false;                                 ///< of particles with bodies
   bool self_collision = false;                           ///< of the cloth with itself
   bool point_loads = false;                              ///< forces on points of triangles
+  std::vector<Fastener> fasteners = {};                  ///< buttons, hooks and elastic bands
 };
 
 /// Adds the forces that fabrics and the air have on a cloth; a new kind of force is added here.

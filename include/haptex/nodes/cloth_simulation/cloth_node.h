@@ -11,6 +11,7 @@
 #include <haptex/QueryBudget.h>
 #include <haptex/ReleaseParticles.h>
 #include <haptex/SaveState.h>
+#include <haptex/SelectFasteners.h>
 #include <haptex/SelectParticles.h>
 #include <haptex/SetFabric.h>
 #include <haptex/SetProperties.h>
@@ -36,6 +37,7 @@
 #include "haptex/nodes/cloth_simulation/cloth_markers.h"
 #include "haptex/nodes/cloth_simulation/contact_input.h"
 #include "haptex/nodes/cloth_simulation/external_force_input.h"
+#include "haptex/nodes/cloth_simulation/fastener_topics.h"
 #include "haptex/nodes/cloth_simulation/frame_links.h"
 #include "haptex/nodes/cloth_simulation/heartbeat.h"
 #include "haptex/nodes/cloth_simulation/runtime_quality.h"
@@ -67,11 +69,12 @@ struct ClothNodeParameters {
 ///   cloth/heartbeat (std_msgs/Header, 200 Hz), whether it is paused or not;
 ///   cloth/quality (ClothQuality, latched), with ~quality or ~budget_ms;
 ///   cloth/frames/<name> (geometry_msgs/WrenchStamped) of each frame that carries particles;
+///   cloth/fasteners and cloth/fastener_events, in a scene with fasteners (FastenerTopics);
 ///   services cloth/reset (std_srvs/Trigger), cloth/pause (std_srvs/SetBool), cloth/step,
-///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/get_jacobian,
-///   cloth/query_budget, cloth/set_quality, cloth/set_state, cloth/save_state, cloth/set_sheet,
-///   cloth/set_properties (srv/). By dynamic_reconfigure the same properties can be set
-///   (cfg/Cloth.cfg), which begin with the scene's.
+///   cloth/set_fabric, cloth/attach, cloth/move, cloth/release, cloth/fasten, cloth/unfasten,
+///   cloth/get_jacobian, cloth/query_budget, cloth/set_quality, cloth/set_state, cloth/save_state,
+///   cloth/set_sheet, cloth/set_properties (srv/). By dynamic_reconfigure the same properties can
+///   be set (cfg/Cloth.cfg), which begin with the scene's.
 /// It subscribes to cloth/external_forces (ExternalForces; simulation::ForceSources). In a scene
 /// with fingers it subscribes to cloth/contact_forces (ContactForces), which act for
 /// NewestLoads::kLifetime.
@@ -121,6 +124,12 @@ class ClothNode {
   bool attach(AttachParticles::Request& request, AttachParticles::Response& response);
   bool move(MoveParticles::Request& request, MoveParticles::Response& response);
   bool release(ReleaseParticles::Request& request, ReleaseParticles::Response& response);
+  bool fasten(SelectFasteners::Request& request, SelectFasteners::Response& response);
+  bool unfasten(SelectFasteners::Request& request, SelectFasteners::Response& response);
+  using ChangeFasteners = void (simulation::SimulatedCloth::*)(const std::vector<std::string>&);
+  bool changeFasteners(const char* service, ChangeFasteners change,
+                       const SelectFasteners::Request& request,
+                       SelectFasteners::Response& response);
   bool exclude(SelectParticles::Request& request, SelectParticles::Response& response);
   bool include(SelectParticles::Request& request, SelectParticles::Response& response);
   bool getJacobian(GetJacobian::Request& request, GetJacobian::Response& response);
@@ -175,6 +184,7 @@ class ClothNode {
   ExternalForceInput force_input_;
   std::unique_ptr<ContactInput> contact_input_;  // null in a scene without fingers
   FrameLinks frames_;
+  FastenerTopics fasteners_;
   Heartbeat heartbeat_;
 
   simulation::RealTimeLoop loop_;  // its thread uses the members above

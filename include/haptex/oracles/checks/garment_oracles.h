@@ -29,4 +29,8 @@ void validatePreposition(const std::string& config_directory, const Sink& sink);
 /// against virtual work, and the sheet after 100 turns to and fro.
 void validateLinkage(const std::string& config_directory, const Sink& sink);
 
+/// Buttons, hooks and elastic bands between two pieces of cloth: the force at which one opens, of
+/// elastic bands the tension by length, and energy and momentum of what is torn apart.
+void validateFasteners(const std::string& config_directory, const Sink& sink);
+
 }  // namespace haptex::oracles

@@ -76,6 +76,7 @@ void randomRoll(const std::string&, Random& random, const Sink& sink);
 void randomCone(const std::string&, Random& random, const Sink& sink);
 void randomPatch(const std::string&, Random& random, const Sink& sink);
 void randomLinkage(const std::string& config_directory, Random& random, const Sink& sink);
+void randomFastener(const std::string& config_directory, Random& random, const Sink& sink);
 void randomGrating(const std::string&, Random& random, const Sink& sink);
 void randomContactors(const std::string&, Random& random, const Sink& sink);
 void randomPose(const std::string& config_directory, Random& random, const Sink& sink);

@@ -56,6 +56,7 @@ void validateRegions(const std::string& config_directory, const Sink& sink);
 
 /// Panels that are sewn together: uniform stress across seams, gaps, mass, momentum, cones of discs
 /// with a sector cut out, and strips with a seam. Bodies with measurements, and panels around them.
+/// What opens at its release force.
 /// @throws what loadPattern() and loadBody() throw
 void validateGarment(const std::string& config_directory, const Sink& sink);
 

@@ -35,6 +35,7 @@ const std::vector<RandomCheck>& randomChecks() {
       {"garment", "patch", randomPatch},
       {"garment", "cone", randomCone},
       {"garment", "linkage", randomLinkage},
+      {"garment", "fastener", randomFastener},
       {"exoskeleton", "pose", randomPose},
       {"exoskeleton", "static_force", randomStaticForce},
       {"tactile", "grating", randomGrating},

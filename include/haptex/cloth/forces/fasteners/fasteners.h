@@ -1,0 +1,135 @@
+// Buttons, hooks and elastic bands: springs between two places of a cloth that open under load.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "haptex/cloth/forces/force.h"
+
+namespace haptex::cloth {
+
+enum class FastenerKind { kButton, kHook, kElastic };
+
+constexpr const char* nameOf(FastenerKind kind) {
+  switch (kind) {
+    case FastenerKind::kButton:
+      return "button";
+    case FastenerKind::kHook:
+      return "hook";
+    default:
+      return "elastic";
+  }
+}
+
+/// A particle, or a place in a triangle: the weighted sum of up to three particles.
+struct ClothPlace {
+  std::array<int, 3> particles = {-1, -1, -1};
+  std::array<double, 3> weights = {1.0, 0.0, 0.0};  ///< sum 1; particles of weight 0 are not read
+};
+
+/// Two places of a cloth that a spring holds together until it is pulled too hard.
+struct Fastener {
+  std::string name;
+  FastenerKind kind = FastenerKind::kButton;
+  std::array<ClothPlace, 2> places;
+  double stiffness = 0.0;      ///< N/m, > 0
+  double length = 0.0;         ///< m, >= 0, up to which it is slack; 0 of buttons and hooks
+  double release_force = 0.0;  ///< N, > 0, the most that it carries
+  bool fastened = true;        ///< of a cloth that no step has opened anything of
+};
+
+/// Fasteners pull their places towards each other and never push them apart. At the distance r of
+/// the places the tension (N) is
+///   0                       for r <= length,
+///   stiffness (r - length)  up to release_force, and
+///   release_force           beyond,
+/// because none carries more than what it opens at. So the energy is convex in r, the tension is
+/// continuous, and no step, however long, pulls harder than the fastener holds once Newton
+/// iterations have converged. What is beyond release_force at the end of an accepted step is open
+/// from then on (remember()): what the spring held then is lost, and no other force changes, so
+/// that neither energy nor momentum is made.
+///
+/// Whether each is fastened is in the memory of the state, two numbers each: 1 or 0, and the
+/// tension (N) at which it opened by itself, else 0. All pairs of their particles are in the
+/// matrix's pattern, fastened or not, so that opening and fastening change no pattern and allocate
+/// nothing.
+///
+/// Layers that collide lie a thickness apart. A fastener is slack up to there, so that it does not
+/// press them together for ever.
+class Fasteners final : public Force {
+ public:
+  /// @param particles of the cloth
+  /// @param thickness m, >= 0: no fastener is shorter
+  /// @throws std::invalid_argument naming fastener, value and what is allowed: a name that another
+  ///   has, a particle that does not exist, weights that are not finite or do not sum to 1 within
+  ///   1e-6, two places that are the same, a stiffness, length or release force out of its range
+  Fasteners(std::vector<Fastener> fasteners, std::size_t particles, double thickness);
+
+  /// As they were given.
+  const std::vector<Fastener>& all() const { return fasteners_; }
+  /// m, up to which a fastener is slack: its length, or the thickness.
+  double slackLength(std::size_t fastener) const { return links_[fastener].length; }
+  /// m, beyond which it opens.
+  double reach(std::size_t fastener) const;
+  /// m, of its places.
+  double distance(std::size_t fastener, const Positions& positions) const;
+  /// N, that it has at these positions if it is fastened.
+  double tension(std::size_t fastener, const Positions& positions) const;
+  /// @throws std::invalid_argument naming the fastener if its places are beyond reach(), with their
+  ///   distance and what is allowed
+  void requireWithinReach(std::size_t fastener, const Positions& positions) const;
+
+  /// @param memory of this force
+  static bool isFastened(std::size_t fastener, const double* memory);
+  /// N, at which it opened by itself; 0 if it did not since it was fastened or unfastened.
+  static double openedAt(std::size_t fastener, const double* memory);
+  static void set(std::size_t fastener, bool fastened, double* memory);
+
+  std::vector<std::array<int, 2>> pairs() const override;
+  void bind(const linear::SymmetricBlockMatrix& matrix) override;
+  std::size_t memorySize() const override { return 2 * links_.size(); }
+  std::vector<std::vector<int>> memoryOwners() const override;
+  /// Each is as Fastener::fastened says.
+  void forget(const Positions& positions, double* memory) const override;
+  /// Opens what is pulled beyond its release force.
+  void remember(const Positions& positions, double* memory) const override;
+
+  void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;
+  double energy(const ForceState& state) const override;
+  void addJacobian(const ForceState& state, JacobianRows& rows) const override;
+  /// With the exact Jacobian, which is negative semidefinite: tension >= 0, and its slope by r,
+  /// too.
+  void assembleLinearised(const ForceState& state, const StageTimes& times,
+                          linear::SymmetricBlockMatrix& matrix,
+                          linear::BlockVector& rhs) const override;
+
+ private:
+  /// A fastener in the particles that it acts on; what it acts by is the extent, the sum of weights
+  /// times positions: the second place less the first one.
+  struct Link {
+    int count = 0;
+    std::array<int, 6> particles{};  // ascending
+    std::array<double, 6> weights{};
+    std::array<int, 15> slots{};  // of pairs (1, 0), (2, 0), (2, 1), (3, 0), ...
+    double length = 0.0;          // m
+  };
+  /// Of a fastened one at some positions.
+  struct Response {
+    Eigen::Vector3d pull;       // N, tension along the extent
+    Eigen::Matrix3d stiffness;  // N/m, derivative of the pull by the extent
+  };
+
+  static Link linkOf(const Fastener& fastener, std::size_t particles, double thickness);
+  Eigen::Vector3d extent(const Link& link, const std::vector<Eigen::Vector3d>& vectors) const;
+  double tensionAt(std::size_t fastener, double distance) const;
+  Eigen::Vector3d pull(std::size_t fastener, const Eigen::Vector3d& extent) const;
+  Response respond(std::size_t fastener, const Eigen::Vector3d& extent) const;
+
+  std::vector<Fastener> fasteners_;
+  std::vector<Link> links_;  // likewise
+};
+
+}  // namespace haptex::cloth

@@ -1,0 +1,113 @@
+#include "haptex/scene/fastener_values.h"
+
+#include <optional>
+#include <set>
+#include <string>
+
+#include "haptex/base/require.h"
+#include "haptex/mesh/rest_place.h"
+#include "haptex/scene/scene_values.h"
+
+namespace haptex::scene {
+namespace {
+
+using base::YamlValue;
+using cloth::ClothPlace;
+
+constexpr double kMostStiffness = 1e6;  // N/m
+constexpr double kMostForce = 1e4;      // N
+
+double readUpTo(const YamlValue& value, double most, const char* unit) {
+  const double number = value.number();
+  if (number > 0.0 && number <= most) return number;
+  value.refuse("must be > 0 and <= " + base::shortNumber(most) + " " + unit);
+}
+
+ClothPlace readCoordinates(const YamlValue& value, const mesh::ClothMesh& mesh,
+                           const std::vector<int>* group) {
+  const std::vector<YamlValue> items = value.items(2);
+  const Eigen::Vector2d rest(items[0].number(), items[1].number());
+  const std::optional<mesh::RestPlace> place =
+      group != nullptr ? mesh::findRestPlace(mesh, *group, rest) : mesh::findRestPlace(mesh, rest);
+  if (!place) {
+    value.refuseBecause("[" + base::shortNumber(rest.x()) + ", " + base::shortNumber(rest.y()) +
+                        "] must be rest coordinates (m) within the cloth" +
+                        (group != nullptr ? ", in this group" : ""));
+  }
+  const Eigen::Vector3d& weights = place->weights;
+  return {mesh.triangles[place->triangle], {weights[0], weights[1], weights[2]}};
+}
+
+ClothPlace readPlace(const YamlValue& value, const mesh::ClothMesh& mesh,
+                     const mesh::MeshGroups& groups) {
+  if (value.isMap()) {
+    value.requireKeys({"group", "at"});
+    return readCoordinates(value.at("at"), mesh, &readGroup(value.at("group"), groups));
+  }
+  if (!value.isList()) return ClothPlace{{readParticle(value, mesh), -1, -1}};
+  if (!mesh.corner_coordinates.empty()) {
+    value.refuse("must be a particle or {group: ..., at: [...]}: the mesh has seams");
+  }
+  return readCoordinates(value, mesh, nullptr);
+}
+
+cloth::FastenerKind readKind(const YamlValue& value) {
+  const std::string kind = value.oneOf({"button", "hook", "elastic"});
+  if (kind == "button") return cloth::FastenerKind::kButton;
+  return kind == "hook" ? cloth::FastenerKind::kHook : cloth::FastenerKind::kElastic;
+}
+
+cloth::Fastener readFastener(const YamlValue& value, const mesh::ClothMesh& mesh,
+                             const mesh::MeshGroups& groups) {
+  value.requireKeys({"name", "kind", "between", "stiffness", "release_force"},
+                    {"length", "fastened"});
+  cloth::Fastener fastener;
+  fastener.name = readName(value.at("name"));
+  fastener.kind = readKind(value.at("kind"));
+  const std::vector<YamlValue> places = value.at("between").items(2);
+  for (int i : {0, 1}) fastener.places[i] = readPlace(places[i], mesh, groups);
+  fastener.stiffness = readUpTo(value.at("stiffness"), kMostStiffness, "N/m");
+  fastener.release_force = readUpTo(value.at("release_force"), kMostForce, "N");
+  const bool elastic = fastener.kind == cloth::FastenerKind::kElastic;
+  if (value.has("length") != elastic) {
+    value.refuseBecause(elastic ? "is elastic, and lacks the key length"
+                                : "has the key length, which is allowed of the kind elastic only");
+  }
+  if (elastic) fastener.length = readSize(value.at("length"));
+  if (value.has("fastened")) {
+    fastener.fastened = value.at("fastened").oneOf({"true", "false"}) == "true";
+  }
+  return fastener;
+}
+
+}  // namespace
+
+std::vector<cloth::Fastener> readFasteners(const YamlValue& value, const mesh::ClothMesh& mesh,
+                                           const mesh::MeshGroups& groups) {
+  std::vector<cloth::Fastener> fasteners;
+  std::set<std::string> names;
+  for (const YamlValue& item : value.items()) {
+    fasteners.push_back(readFastener(item, mesh, groups));
+    if (!names.insert(fasteners.back().name).second) {
+      item.at("name").refuse("is the name of another fastener, too");
+    }
+    try {  // what a cloth refuses is told with the place in the file
+      cloth::Fasteners({fasteners.back()}, mesh.rest_coordinates.size(), 0.0);
+    } catch (const std::invalid_argument& error) {
+      item.refuseBecause(error.what());
+    }
+  }
+  return fasteners;
+}
+
+bool nameParticles(const YamlValue& fasteners) {
+  for (const YamlValue& item : fasteners.items()) {
+    if (!item.isMap() || !item.has("between")) continue;
+    for (const YamlValue& place : item.at("between").items()) {
+      if (!place.isMap() && !place.isList()) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace haptex::scene
