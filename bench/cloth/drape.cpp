@@ -63,8 +63,9 @@ std::vector<Case> casesOf(const material::Fabric& fabric) {
   };
   add("step_2.5").test.time_step = 0.0025;
   add("step_12.5").test.time_step = 0.0125;
-  add("triangles_5926").test.rings = 33;
-  add("triangles_13049").test.rings = 49;
+  add("triangles_3193").test.cell = 2.6e-3;
+  add("triangles_5624").test.cell = 1.6e-3;
+  add("triangles_11450").test.cell = 0.8e-3;
   add("lowered_half_as_fast").test.lowering_time *= 2.0;
   add("lowered_on_a_plane").test.descent = studies::Descent::kOnPlane;
   add("without_hysteresis").fabric.bending_hysteresis.reset();

@@ -140,11 +140,7 @@ int main(int argc, char** argv) {
   const material::Fabric fabric =
       material::loadFabric(std::string(HAPTEX_CONFIG_DIRECTORY) + "/fabrics/" + name + ".yaml");
   const auto sample = [&](double rate) {
-    oracles::HapticLoopSettings settings =
-        oracles::hangingSample(fabric, kes::Direction::kWarp, rate, cells);
-    settings.haptics.refinement = 1;
-    settings.haptics.surround = oracles::kCarriedSurround;
-    return settings;
+    return oracles::carriedSample(fabric, rate, oracles::kCarriedSurround, cells);
   };
   std::vector<MovedPinch> exact;
   std::optional<double> gap;

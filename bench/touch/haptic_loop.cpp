@@ -13,6 +13,7 @@
 #include "haptex/oracles/exact/finger_geometry.h"
 #include "haptex/oracles/experiments/touch_loop.h"
 #include "haptex/proximity/kdop_hierarchy.h"
+#include "haptex/scene/usual_elasticity.h"
 #include "tab_lines.h"
 
 namespace {
@@ -31,6 +32,7 @@ oracles::HapticLoopSettings woolSample(double large_scale_step) {
   settings.fabric = material::loadFabric(kConfig + "/fabrics/wool.yaml");
   settings.effects.viscosity = true;
   settings.effects.bending = true;
+  settings.effects.elasticity = scene::usualElasticity(settings.effects);
   settings.effects.gravity = Vector3d(0.0, 0.0, -9.80665);
   settings.attached_particles = mesh::sideParticles(settings.mesh, mesh::Side::kTop);
   settings.large_scale_step = large_scale_step;

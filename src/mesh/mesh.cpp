@@ -160,46 +160,6 @@ ClothMesh makeRectangle(double width, double height, int cells_u, int cells_v,
   return mesh;
 }
 
-ClothMesh makeDisc(double radius, int rings) {
-  requireLength("radius", radius);
-  requireCells("rings", rings);
-  const double golden_angle = M_PI * (3.0 - std::sqrt(5.0));
-  ClothMesh mesh;
-  mesh.rest_coordinates.push_back(Eigen::Vector2d::Zero());
-  int inner_begin = 0, inner_count = 1;
-  double inner_phase = 0.0;
-  for (int ring = 1; ring <= rings; ++ring) {
-    // The height of an equilateral triangle is sqrt 3 / 2 of its side.
-    const int count = static_cast<int>(std::lround(M_PI * std::sqrt(3.0) * ring));
-    const int begin = static_cast<int>(mesh.rest_coordinates.size());
-    const double step = 2.0 * M_PI / count;
-    const double phase = std::fmod(ring * golden_angle, step);
-    for (int i = 0; i < count; ++i) {
-      const double angle = phase + i * step, r = radius * ring / rings;
-      mesh.rest_coordinates.emplace_back(r * std::cos(angle), r * std::sin(angle));
-    }
-    // Around both circles at once, from the side that lags behind.
-    const double inner_step = 2.0 * M_PI / inner_count;
-    for (int inner = 0, outer = 0; outer < count || (inner_count > 1 && inner < inner_count);) {
-      const bool by_outer = inner_count == 1 || inner == inner_count ||
-                            (outer < count && phase + (outer + 0.5) * step <=
-                                                  inner_phase + (inner + 0.5) * inner_step);
-      // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): a ring has five particles or more.
-      const int a = inner_begin + inner % inner_count, b = begin + outer % count;
-      if (by_outer) {
-        mesh.triangles.push_back({a, b, begin + ++outer % count});
-      } else {
-        mesh.triangles.push_back({a, b, inner_begin + ++inner % inner_count});
-      }
-    }
-    inner_begin = begin;
-    inner_count = count;
-    inner_phase = phase;
-  }
-  mesh.initial_positions = flatPositions(mesh);
-  return mesh;
-}
-
 std::vector<Eigen::Vector3d> flatPositions(const ClothMesh& mesh) {
   std::vector<Eigen::Vector3d> positions;
   positions.reserve(mesh.rest_coordinates.size());

@@ -22,6 +22,7 @@
 #include "haptex/scene/region_values.h"
 #include "haptex/scene/scene_values.h"
 #include "haptex/scene/step_values.h"
+#include "haptex/scene/usual_elasticity.h"
 
 namespace haptex::scene {
 namespace {
@@ -205,7 +206,7 @@ cloth::BendingSettings readBending(const YamlValue& value) {
   return settings;
 }
 
-cloth::Elasticity readElasticity(const YamlValue& value, const mesh::ClothMesh& mesh) {
+cloth::Elasticity namedElasticity(const YamlValue& value, const mesh::ClothMesh& mesh) {
   const std::string name =
       value.oneOf({"green_lagrange", "bilinear", "mass_spring", "corotational"});
   if (name == "green_lagrange") return cloth::Elasticity::kGreenLagrange;
@@ -274,6 +275,29 @@ cloth::ModelledEffects readEffects(const YamlValue& scene, const Listed& listed)
   return effects;
 }
 
+/// What the file says, or else what a sheet or a mesh usually has.
+/// @param scene with its effects and its mesh
+cloth::Elasticity readElasticity(const YamlValue& file, const Listed& listed, const Scene& scene) {
+  if (!file.has("elasticity")) {
+    return file.has("sheet") ? usualElasticity(scene.effects) : cloth::Elasticity::kGreenLagrange;
+  }
+  const YamlValue value = file.at("elasticity");
+  const cloth::Elasticity elasticity = namedElasticity(value, scene.mesh);
+  if (elasticity == cloth::Elasticity::kGreenLagrange) return elasticity;
+  for (const char* effect : {"contraction", "membrane_hysteresis"}) {
+    if (listed.count(effect) == 0) continue;
+    value.refuse(std::string("is not allowed if model lists ") + effect);
+  }
+  if (elasticity != cloth::Elasticity::kMassSpring) return elasticity;
+  if (scene.effects.bending_hysteresis) {
+    value.refuse("is not allowed if model lists bending_hysteresis");
+  }
+  if (file.has("bending")) {
+    file.at("bending").refuseBecause("is not allowed with mass_spring, which bends by springs");
+  }
+  return elasticity;
+}
+
 void readTimeSteps(const YamlValue& value, Scene& scene) {
   if (value.isMap()) {
     scene.adaptive_steps = readAdaptiveSteps(value);
@@ -308,22 +332,7 @@ Scene readScene(const std::string& path, OtherSheet other) {
   scene.fingers = listed.count("fingers") > 0;
   scene.tactile = listed.count("tactile") > 0;
   scene.recording = listed.count("recording") > 0;
-  if (file.has("elasticity")) {
-    scene.effects.elasticity = readElasticity(file.at("elasticity"), scene.mesh);
-    if (scene.effects.elasticity != cloth::Elasticity::kGreenLagrange) {
-      for (const char* effect : {"contraction", "membrane_hysteresis"}) {
-        if (listed.count(effect) == 0) continue;
-        file.at("elasticity").refuse(std::string("is not allowed if model lists ") + effect);
-      }
-    }
-    if (scene.effects.bending_hysteresis &&
-        scene.effects.elasticity == cloth::Elasticity::kMassSpring) {
-      file.at("elasticity").refuse("is not allowed if model lists bending_hysteresis");
-    }
-    if (file.has("bending") && scene.effects.elasticity == cloth::Elasticity::kMassSpring) {
-      file.at("bending").refuseBecause("is not allowed with mass_spring, which bends by springs");
-    }
-  }
+  scene.effects.elasticity = readElasticity(file, listed, scene);
   if (file.has("regions")) {
     scene.region_fabric_paths =
         readRegions(file, scene.fabric_path, scene.effects, groups, scene.mesh);

@@ -192,6 +192,12 @@ void printTotal(const scene::Scene& scene, const Measurement& measurement, std::
   }
 }
 
+/// As the elements of the study do.
+bool followsTheCurves(cloth::Elasticity elasticity) {
+  return elasticity == cloth::Elasticity::kGreenLagrange ||
+         elasticity == cloth::Elasticity::kBilinear;
+}
+
 void printErrors(const scene::Scene& scene, const material::Fabric& fabric,
                  const std::vector<scene::Quality>& studied, std::ostream& out) {
   out << "\nerror to expect\n";
@@ -203,6 +209,9 @@ void printErrors(const scene::Scene& scene, const material::Fabric& fabric,
   printRow(out, "nearest studied",
            text("%s: cells of %.3g mm, steps of %.3g ms, %s", quality->name.c_str(),
                 1e3 * quality->cell_size, 1e3 * quality->time_step, nameOf(quality->step.method)));
+  if (scene.effects.elasticity == cloth::Elasticity::kBilinear) {
+    printRow(out, "", "with triangles (green_lagrange)");
+  }
   if (kNear * medianCellSize(scene.mesh) < quality->cell_size) {
     printRow(out, "", "the scene's cells are finer; most of these errors comes from the step");
   }
@@ -294,8 +303,7 @@ const scene::Quality* nearestQuality(const scene::Scene& scene,
   const scene::Quality* nearest = nullptr;
   double least = HUGE_VAL;
   for (const scene::Quality& quality : studied) {
-    if (scene.effects.elasticity != cloth::Elasticity::kGreenLagrange ||
-        quality.step.method != scene.step.method ||
+    if (!followsTheCurves(scene.effects.elasticity) || quality.step.method != scene.step.method ||
         quality.step.newton_iterations != scene.step.newton_iterations ||
         quality.step.newton_error != scene.step.newton_error) {
       continue;

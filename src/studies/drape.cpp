@@ -12,6 +12,7 @@
 #include "haptex/base/repeatable_random.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/mesh/circles.h"
 #include "haptex/studies/drape_shadow.h"
 
 namespace haptex::studies {
@@ -30,6 +31,7 @@ constexpr double kThreadStrain = 1e-4;  // by the weight of what hangs
 constexpr double kReach = 5e-3;         // m, of bodies that a particle may touch within a step
 constexpr double kProminence = 2e-3;    // m, of a fold in the shadow's edge
 constexpr int kAngles = 720;
+constexpr double kCellGrowth = 0.1;  // of cells, over their distance from the clamp
 
 void requireSound(const DrapeTest& test) {
   const auto require = [](const char* name, double value, double most) {
@@ -42,6 +44,8 @@ void requireSound(const DrapeTest& test) {
   const double any = INFINITY;
   require("fabric_radius", test.fabric_radius, any);
   require("support_radius", test.support_radius, test.fabric_radius);
+  require("cell", test.cell,
+          std::min(test.fabric_radius - test.support_radius, 2.0 * test.support_radius));
   require("time_step", test.time_step, any);
   require("damping", test.damping, any);
   require("lowering_time", test.lowering_time, any);
@@ -65,9 +69,7 @@ material::Fabric softened(material::Fabric fabric, const DrapeTest& test) {
 /// The circle (m) up to which particles are held: a clamp made of held particles ends half way
 /// between the last two circles of them (docs/mechanics.md, Bending), so the last one is half a
 /// cell beyond the support's edge.
-double heldRadius(const DrapeTest& test) {
-  return test.support_radius + 0.5 * test.fabric_radius / test.rings;
-}
+double heldRadius(const DrapeTest& test) { return test.support_radius + 0.5 * test.cell; }
 
 /// How far out of the clamp a place of the flat disc is, 0 to 1 at the rim.
 double share(const DrapeTest& test, const Vector3d& place) {
@@ -75,10 +77,26 @@ double share(const DrapeTest& test, const Vector3d& place) {
   return std::max(0.0, (place.norm() - held) / (test.fabric_radius - held));
 }
 
+/// The circles of particles (m): two that are held, half a cell on either side of the support's
+/// edge, and those beyond.
+std::vector<double> circlesOf(const DrapeTest& test) {
+  const double held = heldRadius(test);
+  std::vector<double> beyond = {test.cell};  // of the last circle that is held
+  const double free = test.fabric_radius - held;
+  while (beyond.back() < free) {
+    beyond.push_back(beyond.back() * (1.0 + kCellGrowth) + test.cell);
+  }
+  const std::size_t last = beyond.size() - 1;
+  if (last > 0 && beyond[last] - free > free - beyond[last - 1]) beyond.pop_back();
+  std::vector<double> radii = {held - test.cell, held};
+  for (const double distance : beyond) radii.push_back(held + free * distance / beyond.back());
+  return radii;
+}
+
 /// The disc as it is laid on, not quite centred. Its initial positions are flat, and without
 /// friction.
 mesh::ClothMesh layDisc(const DrapeTest& test, base::RepeatableRandom& random) {
-  mesh::ClothMesh mesh = mesh::makeDisc(test.fabric_radius, test.rings);
+  mesh::ClothMesh mesh = mesh::meshOfCircles(circlesOf(test));
   const Eigen::Rotation2Dd turn(random.uniform(0.0, 2.0 * M_PI));
   const Vector2d off = random.inSquare(-kOffCentre, kOffCentre);
   for (std::size_t i = 0; i < mesh.initial_positions.size(); ++i) {
@@ -119,6 +137,7 @@ class Drapemeter {
     effects.gravity = {0.0, 0.0, -base::kStandardGravity};
     effects.bending = effects.contacts = true;
     effects.bending_hysteresis = fabric.bending_hysteresis.has_value();
+    effects.elasticity = cloth::Elasticity::kBilinear;
     return effects;
   }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "haptex/mesh/circles.h"
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::mesh::test_mesh {
@@ -157,6 +158,52 @@ TEST(Disc, IsSoundRoundAndOfNearlyEqualTriangles) {
   EXPECT_EQ(mesh.triangles.size(), 2 * mesh.rest_coordinates.size() - 2 - rim);
   EXPECT_THROW(makeDisc(-1.0, 3), std::invalid_argument);
   EXPECT_THROW(makeDisc(1.0, 0), std::invalid_argument);
+}
+
+TEST(Circles, MakeASoundRingOfTrianglesAsHighAsTheCirclesAreApart) {
+  const std::vector<double> radii = {0.05, 0.052, 0.055, 0.06, 0.068, 0.08};
+  const ClothMesh mesh = meshOfCircles(radii);
+  EXPECT_TRUE(findDefects(mesh).none());
+  double area = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector2d ab = mesh.rest_coordinates[b] - mesh.rest_coordinates[a];
+    const Eigen::Vector2d ac = mesh.rest_coordinates[c] - mesh.rest_coordinates[a];
+    const double own = 0.5 * (ab.x() * ac.y() - ab.y() * ac.x());
+    EXPECT_GT(own, 0.0);
+    area += own;
+  }
+  const auto sides = [&](std::size_t circle, std::size_t other) {
+    return std::lround(M_PI * std::sqrt(3.0) * radii[circle] /
+                       std::abs(radii[circle] - radii[other]));
+  };
+  const long inner = sides(0, 1), outer = sides(5, 4);
+  const auto polygon = [](double radius, long count) {
+    return 0.5 * count * radius * radius * std::sin(2.0 * M_PI / count);
+  };
+  EXPECT_NEAR(area, polygon(radii[5], outer) - polygon(radii[0], inner), 1e-12 * area);
+  // A hole: V - E + F = 0 with 3 F = 2 E - both rims.
+  const auto rims = static_cast<std::size_t>(inner + outer);
+  EXPECT_EQ(mesh.triangles.size(), 2 * mesh.rest_coordinates.size() - rims);
+}
+
+TEST(Circles, RefuseRadiiThatDoNotAscend) {
+  const auto refusal = [](const std::vector<double>& radii) -> std::string {
+    try {
+      meshOfCircles(radii);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_EQ(refusal({0.1}), "a round mesh has 1 circles: allowed are 2 or more");
+  EXPECT_EQ(refusal({-0.1, 0.2}),
+            "radius 0 of a round mesh is -0.1 m: allowed are finite numbers >= 0");
+  EXPECT_EQ(refusal({0.1, 0.1}),
+            "radius 1 of a round mesh is 0.1 m: allowed are finite numbers > 0.1");
+  EXPECT_EQ(refusal({0.0, std::nan("")}),
+            "radius 1 of a round mesh is nan m: allowed are finite numbers > 0");
+  EXPECT_EQ(refusal({0.0, INFINITY}),
+            "radius 1 of a round mesh is inf m: allowed are finite numbers > 0");
 }
 
 }  // namespace

@@ -87,6 +87,23 @@ TEST_F(SceneFile, ReadsTheElasticity) {
                 "two triangles each; triangle 0 is not half of one");
 }
 
+TEST_F(SceneFile, GivesSheetsThatBendCellsUnlessWhatIsModelledNeedsTriangles) {
+  const auto with = [&](const std::string& effects) {
+    return load(replaced(kValid, "[gravity, viscosity]", "[" + effects + "]")).effects.elasticity;
+  };
+  EXPECT_EQ(with("gravity, bending"), cloth::Elasticity::kBilinear);
+  EXPECT_EQ(with("bending, bending_hysteresis"), cloth::Elasticity::kBilinear);
+  EXPECT_EQ(with("gravity"), cloth::Elasticity::kGreenLagrange);
+  for (const char* needs : {"contraction", "membrane_hysteresis"}) {
+    EXPECT_EQ(with(std::string("bending, ") + needs), cloth::Elasticity::kGreenLagrange);
+  }
+  const std::string bends = replaced(kValid, "viscosity]", "bending]");
+  EXPECT_EQ(load(bends + "elasticity: green_lagrange\n").effects.elasticity,
+            cloth::Elasticity::kGreenLagrange);
+  EXPECT_EQ(load(replaced(meshScene("corner"), "viscosity]", "bending]")).effects.elasticity,
+            cloth::Elasticity::kGreenLagrange);
+}
+
 TEST_F(SceneFile, ReadsGravity) {
   EXPECT_EQ(load(kValid + "gravity: [1, 0, -1.62]\n").effects.gravity,
             Eigen::Vector3d(1, 0, -1.62));

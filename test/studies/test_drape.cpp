@@ -19,7 +19,7 @@ material::Fabric wool() {
 
 DrapeTest coarse() {
   DrapeTest test;
-  test.rings = base::unlessSanitized(11, 6);
+  test.cell = base::unlessSanitized(4e-3, 8e-3);
   return test;
 }
 
@@ -49,7 +49,7 @@ TEST(Drape, StiffDiscSagsAsAClampedAnnularPlate) {
   fabric.bending_hysteresis.reset();
   fabric.bending->weft = fabric.bending->warp = 1e4 * fabric.bending->weft;
   DrapeTest test;
-  test.rings = 17;
+  test.cell = 4e-3;
   test.rest_speed = 1e-7;
   const DrapeOutcome outcome = drape(fabric, test, 1);
   double height = 0.0;
@@ -63,7 +63,8 @@ TEST(Drape, StiffDiscSagsAsAClampedAnnularPlate) {
       annulusDeflection(test.support_radius, test.fabric_radius,
                         fabric.areal_density * base::kStandardGravity, fabric.bending->weft);
   EXPECT_NEAR(exact, 60.7e-6, 0.1e-6);  // of the same equations solved numerically
-  // 1 % of what the clamp and the rim of 17 rings leave open, and as much for the disc off centre.
+  // 1 % of what the clamp and the rim of such a mesh leave open, and as much for the disc off
+  // centre.
   EXPECT_NEAR(-height / count, exact, 0.02 * exact);
 }
 
@@ -115,9 +116,9 @@ TEST(Drape, RefusesWhatIsNoTest) {
     return "none";
   };
   for (double DrapeTest::*member :
-       {&DrapeTest::fabric_radius, &DrapeTest::support_radius, &DrapeTest::time_step,
-        &DrapeTest::damping, &DrapeTest::lowering_time, &DrapeTest::rest_speed,
-        &DrapeTest::most_time}) {
+       {&DrapeTest::fabric_radius, &DrapeTest::support_radius, &DrapeTest::cell,
+        &DrapeTest::time_step, &DrapeTest::damping, &DrapeTest::lowering_time,
+        &DrapeTest::rest_speed, &DrapeTest::most_time}) {
     for (const double value : {0.0, -1.0, std::nan(""), double(INFINITY)}) {
       DrapeTest test = coarse();
       test.*member = value;

@@ -23,9 +23,10 @@ enum class Descent {
 struct DrapeTest {
   double fabric_radius = 0.127;    ///< m
   double support_radius = 0.0635;  ///< m
-  /// Of the mesh (mesh::makeDisc()). Odd if the fabric is twice as wide as the support: the clamp
-  /// ends half way between two circles of particles.
-  int rings = 25;
+  /// m, between the circles of particles (mesh::meshOfCircles()) on either side of the support's
+  /// edge. The fabric bends there with a radius of a few millimetres, so cells are finest there and
+  /// grow by a tenth of their distance from it.
+  double cell = 2.2e-3;
   Descent descent = Descent::kByWeight;
   double lowering_time = 2.0;  ///< s, until nothing carries the fabric but the clamp
   double time_step = 0.01;     ///< s
@@ -51,10 +52,12 @@ struct DrapeOutcome {
 /// Folds do not touch each other. The support is a solid cylinder that goes all the way down. Plane
 /// and cylinder are without friction.
 ///
+/// Only what is beyond the support is simulated, as cells of two triangles (Elasticity::kBilinear).
 /// Threads are as stiff as the fabric's, but only so stiff that its own weight stretches them by
-/// 0.01 %: stiffer triangles follow folds even less (docs/mechanics.md, Drape, by how much).
+/// 0.01 % (docs/mechanics.md, Drape, what stiffer ones change).
 /// @throws std::invalid_argument if the fabric has no bending rigidity, a number of the test is not
-///   finite and > 0, the support is not smaller than the fabric, or what makeDisc() says
+///   finite and > 0, the support is not smaller than the fabric, or the cell not smaller than the
+///   ring between them or not smaller than twice the support
 /// @throws std::runtime_error if a step is not finite
 DrapeOutcome drape(const material::Fabric& fabric, const DrapeTest& test, unsigned seed);
 

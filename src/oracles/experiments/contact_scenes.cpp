@@ -7,6 +7,7 @@
 
 #include "haptex/base/constants.h"
 #include "haptex/contact/obstacles/obstacle_collision.h"
+#include "haptex/scene/usual_elasticity.h"
 
 namespace haptex::oracles {
 namespace {
@@ -23,6 +24,7 @@ HapticLoopSettings sheetOf(const material::Fabric& fabric, double side, int cell
   settings.fabric = fabric;
   settings.effects.viscosity = true;
   settings.effects.bending = true;
+  settings.effects.elasticity = scene::usualElasticity(settings.effects);
   settings.step.newton_iterations = 4;
   // What the linear solves leave open is not what these scenes are about, and at 25 Hz 1e-6 can
   // keep the released sample in a small cycle.

@@ -8,6 +8,15 @@ namespace haptex::oracles {
 using base::Finger;
 using Eigen::Vector3d;
 
+HapticLoopSettings carriedSample(const material::Fabric& fabric, double rate, double surround,
+                                 int cells) {
+  HapticLoopSettings sample = hangingSample(fabric, kes::Direction::kWarp, rate, cells);
+  sample.haptics.refinement = 1;
+  sample.haptics.surround = surround;
+  sample.step.newton_iterations = 20;
+  return sample;
+}
+
 Felt feltIn(const RefinedCloth& cloth) {
   const Vector3d index = cloth.force(Finger::kIndex);
   return {index + cloth.force(Finger::kThumb), cloth.fabricPosition(Finger::kIndex), index.x()};

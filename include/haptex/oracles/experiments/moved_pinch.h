@@ -13,6 +13,15 @@ namespace haptex::oracles {
 constexpr double kMovedPinchStep = 1e-3;   ///< s, between two records
 constexpr double kCarriedSurround = 0.06;  ///< m, of patches that carry cloth: HapticSettings
 
+/// hangingSample() along the warp, with patches refined once, as fine as RefinedCloth is of it. Its
+/// large-scale steps are solved to the end: taut cloth that suddenly slackens buckles, and what
+/// few Newton iterations leave open there is felt as much as what this experiment is about
+/// (docs/contact.md, What is carried).
+/// @param rate     Hz, of large-scale states
+/// @param surround m, of patches: HapticSettings
+HapticLoopSettings carriedSample(const material::Fabric& fabric, double rate, double surround,
+                                 int cells = kSampleCells);
+
 /// After a millisecond.
 struct Felt {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, on both fingertips together

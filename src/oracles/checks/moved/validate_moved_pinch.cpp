@@ -12,26 +12,19 @@ struct Tolerance {
   double force;
 };
 
-HapticLoopSettings sampleAt(const material::Fabric& fabric, double rate, double surround) {
-  HapticLoopSettings sample = hangingSample(fabric, kes::Direction::kWarp, rate);
-  sample.haptics.refinement = 1;  // as fine as the whole cloth is
-  sample.haptics.surround = surround;
-  return sample;
-}
-
 std::string nameOf(const std::string& motion, double rate) {
   return "contact/" + motion + "/" + std::to_string(std::lround(rate)) + "Hz";
 }
 
 /// As scenes have it: what a hand feels that pulls taut fabric at once, by friction.
 void validatePulledPinch(const material::Fabric& fabric, const Sink& sink) {
-  RefinedCloth cloth(sampleAt(fabric, 80.0, 0.0));
+  RefinedCloth cloth(carriedSample(fabric, 80.0, 0.0));
   const MovedPinch exact = pullPinch([&](const Fingertips& fingertips) {
     cloth.step(fingertips, kMovedPinchStep);
     return feltIn(cloth);
   });
   for (const Tolerance& tolerance : {Tolerance{80.0, 0.05}, Tolerance{40.0, 0.1}}) {
-    HapticLoop loop(sampleAt(fabric, tolerance.rate, 0.0));
+    HapticLoop loop(carriedSample(fabric, tolerance.rate, 0.0));
     const MovedPinch felt = pullPinch([&](const Fingertips& fingertips) {
       loop.step(fingertips);
       return feltIn(loop);
@@ -45,13 +38,13 @@ void validatePulledPinch(const material::Fabric& fabric, const Sink& sink) {
 
 void validateMovedPinch(const material::Fabric& fabric, const Sink& sink) {
   validatePulledPinch(fabric, sink);
-  RefinedCloth cloth(sampleAt(fabric, 80.0, kCarriedSurround));
+  RefinedCloth cloth(carriedSample(fabric, 80.0, kCarriedSurround));
   const std::vector<MovedPinch> exact = movePinch([&](const Fingertips& fingertips) {
     cloth.step(fingertips, kMovedPinchStep);
     return feltIn(cloth);
   });
   for (const Tolerance& tolerance : {Tolerance{80.0, 0.03}, Tolerance{40.0, 0.1}}) {
-    HapticLoop loop(sampleAt(fabric, tolerance.rate, kCarriedSurround));
+    HapticLoop loop(carriedSample(fabric, tolerance.rate, kCarriedSurround));
     const std::vector<MovedPinch> felt = movePinch([&](const Fingertips& fingertips) {
       loop.step(fingertips);
       return feltIn(loop);
