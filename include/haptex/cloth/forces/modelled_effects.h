@@ -45,8 +45,8 @@ struct ModelledEffects {
 ///   elasticity needs (findLatticeSprings(), or several panels of springs), bending, a hysteresis
 ///   or contraction is modelled and the fabric has none, contraction or hysteresis of stretch and
 ///   shear is modelled with another elasticity than Green-Lagrange, that of bending without bending
-///   or with bend springs, collision of the cloth with itself is modelled and the cloth has
-///   several fabrics or what SelfContact says, or as Bending, BendingFriction,
+///   or with bend springs, what SelfContact says if collision of the cloth with itself is modelled,
+///   or as Bending, BendingFriction,
 ///   MembraneFriction and Aerodynamics
 void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                      const ModelledEffects& effects, ForceSum& forces);
