@@ -39,7 +39,8 @@ struct Scene {
 };
 constexpr Scene kScenes[] = {{"shirt", "meshes/figure.obj", 0.01, 0.02},
                              {"fitted_shirt", "bodies/woman.yaml", 1.5e-3, 2e-3},
-                             {"fitted_dress", "bodies/woman.yaml", 1.5e-3, 2e-3}};
+                             {"fitted_dress", "bodies/woman.yaml", 1.5e-3, 2e-3},
+                             {"skirt", "bodies/figure.yaml", 1.5e-3, 2e-3}};
 
 /// Panels before they are sewn, and what they are sewn around.
 struct Start {
