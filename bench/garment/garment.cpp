@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "cushion.h"
 #include "haptex/base/repeatable_random.h"
 #include "haptex/dressing/drape.h"
 #include "haptex/garment/body/body_file.h"
@@ -135,5 +136,6 @@ void measure(const Scene& scene, int starts) {
 int main(int argc, char** argv) {
   const int starts = argc > 1 ? std::atoi(argv[1]) : kStarts;
   bench::measureSoftTop();
+  bench::measureCushion();
   for (const Scene& scene : kScenes) measure(scene, starts);
 }

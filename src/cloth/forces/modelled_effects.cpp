@@ -180,6 +180,18 @@ void addBending(const mesh::CutPanel& cut, const std::vector<material::Fabric>& 
   forces.add(std::move(bending));
 }
 
+void addStuffing(const mesh::ClothMesh& mesh, const ModelledEffects& effects, ForceSum& forces) {
+  if (!mesh.ties.empty()) {
+    throw std::invalid_argument(
+        "stuffing is modelled, and particles are tied: allowed are edges that are merged");
+  }
+  if (effects.contacts && !effects.self_collision) {
+    throw std::invalid_argument(
+        "stuffing is modelled among obstacles, which needs self_collision modelled, too");
+  }
+  forces.add(std::make_unique<Stuffing>(mesh, *effects.stuffing));
+}
+
 }  // namespace
 
 void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
@@ -190,6 +202,7 @@ void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fa
   if (effects.self_collision) {
     forces.add(std::make_unique<SelfContact>(RestSurface(mesh), fabrics));
   }
+  if (effects.stuffing) addStuffing(mesh, effects, forces);
   if (effects.air) forces.add(std::make_unique<Aerodynamics>(restElements(mesh), *effects.air));
   if (!effects.bending || effects.elasticity == Elasticity::kMassSpring) return;
   for (int p = 0; p < mesh.panelCount(); ++p) {

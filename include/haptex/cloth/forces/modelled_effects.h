@@ -8,6 +8,7 @@
 #include "haptex/cloth/forces/aerodynamics.h"
 #include "haptex/cloth/forces/bending/bending.h"
 #include "haptex/cloth/forces/force_sum.h"
+#include "haptex/cloth/forces/stuffing/stuffing.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
 
@@ -35,6 +36,7 @@ struct ModelledEffects {
   bool contacts = false;                                 ///< of particles with bodies
   bool self_collision = false;                           ///< of the cloth with itself
   bool point_loads = false;                              ///< forces on points of triangles
+  std::optional<StuffingMass> stuffing = std::nullopt;   ///< of a closed cloth
 };
 
 /// Adds the forces that fabrics and the air have on a cloth; a new kind of force is added here.
@@ -46,7 +48,8 @@ struct ModelledEffects {
 ///   or contraction is modelled and the fabric has none, contraction or hysteresis of stretch and
 ///   shear is modelled with another elasticity than Green-Lagrange, that of bending without bending
 ///   or with bend springs, what SelfContact says if collision of the cloth with itself is modelled,
-///   or as Bending, BendingFriction,
+///   particles are tied and the cloth is stuffed, or it is among obstacles without colliding with
+///   itself, or as Stuffing, Bending, BendingFriction,
 ///   MembraneFriction and Aerodynamics
 void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                      const ModelledEffects& effects, ForceSum& forces);

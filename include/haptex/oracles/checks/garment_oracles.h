@@ -29,4 +29,8 @@ void validatePreposition(const std::string& config_directory, const Sink& sink);
 /// against virtual work, and the sheet after 100 turns to and fro.
 void validateLinkage(const std::string& config_directory, const Sink& sink);
 
+/// An inflated ball, whose radius and tension are those of Laplace's law; a stuffed cushion at rest,
+/// whose pressure and tension do as much virtual work when it grows.
+void validateStuffing(const Sink& sink);
+
 }  // namespace haptex::oracles

@@ -9,6 +9,7 @@ void validateGarment(const std::string& config_directory, const Sink& sink) {
   validateBodies(config_directory, sink);
   validatePreposition(config_directory, sink);
   validateLinkage(config_directory, sink);
+  validateStuffing(sink);
 }
 
 }  // namespace haptex::oracles
