@@ -18,7 +18,7 @@
 #include "haptex/base/repeatable_random.h"
 #include "haptex/dressing/drape.h"
 #include "haptex/garment/body/body_file.h"
-#include "haptex/garment/pattern/pattern_file.h"
+#include "haptex/garment/pattern/outfit.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/mesh/obj_file.h"
 #include "soft_top.h"
@@ -53,7 +53,7 @@ struct Start {
 Start startOf(const Scene& scene, double edge_length) {
   const std::string config = HAPTEX_CONFIG_DIRECTORY "/";
   const garment::Pattern pattern =
-      garment::loadPattern(config + "garments/" + scene.garment + ".yaml");
+      garment::loadOutfit(config + "garments/" + scene.garment + ".yaml");
   const std::string file = config + scene.body;
   Start start;
   if (file.substr(file.size() - 4) == ".obj") {

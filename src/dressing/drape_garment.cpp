@@ -11,7 +11,7 @@
 #include "haptex/base/require.h"
 #include "haptex/dressing/drape.h"
 #include "haptex/garment/body/body_file.h"
-#include "haptex/garment/pattern/pattern_file.h"
+#include "haptex/garment/pattern/outfit.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/mesh/obj_file.h"
 #include "haptex/mesh/obj_writer.h"
@@ -64,7 +64,7 @@ std::vector<material::Fabric> loadFabrics(const std::vector<std::string>& names,
 /// @param body its surface, as a file of a body or of a surface alone has it
 garment::GarmentMesh layOnBody(const Request& request, double edge_length,
                                mesh::ObstacleMesh& body) {
-  const garment::Pattern pattern = garment::loadPattern(request.garment);
+  const garment::Pattern pattern = garment::loadOutfit(request.garment);
   if (fs::path(request.body).extension() != ".yaml") {
     body = mesh::loadObjSurface(request.body);
     return garment::makeGarmentMesh(pattern, edge_length);
