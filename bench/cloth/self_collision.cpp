@@ -141,7 +141,7 @@ void printScene(const oracles::SelfCollidingCloth::Set& set, const std::string& 
   cloth::StepSettings settings;
   settings.newton_iterations = newton_iterations;
   oracles::SelfCollidingCloth scene(
-      set, material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml"), settings);
+      set, {material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml")}, settings);
   const auto& triangles = scene.cloth.mesh().triangles;
   const int steps = static_cast<int>(std::lround(set.duration / kStep));
   double seconds = 0.0;

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "cushion.h"
 #include "haptex/base/repeatable_random.h"
 #include "haptex/dressing/drape.h"
 #include "haptex/dressing/lay_garment.h"
@@ -37,7 +38,8 @@ struct Scene {
 };
 constexpr Scene kScenes[] = {{"shirt", "meshes/figure.obj", 0.01, 0.02},
                              {"fitted_shirt", "bodies/woman.yaml", 1.5e-3, 2e-3},
-                             {"fitted_dress", "bodies/woman.yaml", 1.5e-3, 2e-3}};
+                             {"fitted_dress", "bodies/woman.yaml", 1.5e-3, 2e-3},
+                             {"skirt", "bodies/figure.yaml", 1.5e-3, 2e-3}};
 
 std::vector<material::Fabric> fabricsOf(const garment::GarmentMesh& garment) {
   std::vector<material::Fabric> fabrics;
@@ -117,5 +119,6 @@ void measure(const Scene& scene, int starts) {
 int main(int argc, char** argv) {
   const int starts = argc > 1 ? std::atoi(argv[1]) : kStarts;
   bench::measureSoftTop();
+  bench::measureCushion();
   for (const Scene& scene : kScenes) measure(scene, starts);
 }

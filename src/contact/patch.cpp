@@ -95,7 +95,10 @@ Patch::Patch(const mesh::ClothMesh& coarse, RefinedCut& cut,
       solution_(3, cut_.free_count) {
   forces_.bind(matrix_);
   if (effects.self_collision) {
-    layers_.emplace(coarse, cut_, 2.0 * laws.front().halfThickness(), areas_);
+    const auto thickest = std::max_element(
+        laws.begin(), laws.end(),
+        [](const auto& a, const auto& b) { return a.halfThickness() < b.halfThickness(); });
+    layers_.emplace(coarse, cut_, 2.0 * thickest->halfThickness(), areas_);
   }
   if (obstacles != nullptr && !obstacles->bodies().empty()) {
     obstacles_.emplace(*obstacles, fabrics, cut_.fabrics, laws.front().tangentialStiffness(),

@@ -88,7 +88,7 @@ void SymmetricBlockMatrix::addBeyondPattern(int row, int column, const Eigen::Ma
     couplings_[after].block += block;
     return;
   }
-  const int added = couplingCount();
+  const int added = static_cast<int>(couplings_.size());
   couplings_.push_back({row, column, after, block});
   (before < 0 ? first_coupling_[row] : couplings_[before].next) = added;
 }
@@ -96,6 +96,12 @@ void SymmetricBlockMatrix::addBeyondPattern(int row, int column, const Eigen::Ma
 void SymmetricBlockMatrix::clearCouplings() {
   couplings_.clear();
   first_coupling_.clear();
+  outer_scale_ = 0.0;
+}
+
+void SymmetricBlockMatrix::setOuterProduct(double scale, const BlockVector& vector) {
+  outer_scale_ = scale;
+  outer_ = vector;
 }
 
 void SymmetricBlockMatrix::reserveCouplings(std::size_t count) {
@@ -133,6 +139,7 @@ void SymmetricBlockMatrix::multiply(const BlockVector& x, BlockVector& y) const 
     y.col(coupling.row) += coupling.block * x.col(coupling.column);
     y.col(coupling.column) += coupling.block.transpose() * x.col(coupling.row);
   });
+  if (outer_scale_ > 0.0) y += outer_scale_ * outer_.cwiseProduct(x).sum() * outer_;
 }
 
 void SymmetricBlockMatrix::eliminate(const std::vector<char>& fixed, const BlockVector& values,
@@ -148,6 +155,15 @@ void SymmetricBlockMatrix::eliminate(const std::vector<char>& fixed, const Block
   }
   forEachCoupling(
       [&](int k) { remove(couplings_[k].row, couplings_[k].column, couplings_[k].block); });
+  if (outer_scale_ > 0.0) {
+    double sum = 0.0;
+    for (int i = 0; i < size(); ++i) {
+      if (!fixed[i]) continue;
+      sum += outer_.col(i).dot(values.col(i));
+      outer_.col(i).setZero();
+    }
+    rhs -= outer_scale_ * sum * outer_;
+  }
   for (int i = 0; i < size(); ++i) {
     if (!fixed[i]) continue;
     diagonal_[i].setIdentity();
@@ -169,6 +185,16 @@ void SymmetricBlockMatrix::confine(const std::vector<char>& confined, const Bloc
   }
   forEachCoupling(
       [&](int k) { project(couplings_[k].row, couplings_[k].column, couplings_[k].block); });
+  if (outer_scale_ > 0.0) {
+    double sum = 0.0;
+    for (int i = 0; i < size(); ++i) {
+      if (confined[i]) sum += outer_.col(i).dot(values.col(i));
+    }
+    rhs -= outer_scale_ * sum * outer_;
+    for (int i = 0; i < size(); ++i) {
+      if (confined[i]) outer_.col(i) -= normals.col(i) * normals.col(i).dot(outer_.col(i));
+    }
+  }
   for (int i = 0; i < size(); ++i) {
     if (!confined[i]) continue;
     Eigen::Matrix3d& block = diagonal_[i];

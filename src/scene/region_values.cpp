@@ -79,7 +79,6 @@ void requireKnown(const YamlValue& regions, const cloth::ModelledEffects& effect
   const auto refuse_with = [&](bool has, const std::string& what) {
     if (has) regions.refuseBecause("is not allowed " + what + ", which knows one fabric");
   };
-  refuse_with(effects.self_collision, "if model lists self_collision");
   refuse_with(effects.bending_hysteresis, "if model lists bending_hysteresis");
   refuse_with(effects.elasticity == cloth::Elasticity::kMassSpring,
               "with the elasticity mass_spring");

@@ -22,6 +22,7 @@
 #include "haptex/scene/region_values.h"
 #include "haptex/scene/scene_values.h"
 #include "haptex/scene/step_values.h"
+#include "haptex/scene/stuffing_values.h"
 #include "haptex/scene/usual_elasticity.h"
 
 namespace haptex::scene {
@@ -228,8 +229,8 @@ Listed readModel(const YamlValue& scene) {
   for (const YamlValue& item : scene.at("model").items()) {
     const std::string name =
         item.oneOf({"gravity", "viscosity", "membrane_hysteresis", "bending", "bending_hysteresis",
-                    "contraction", "self_collision", "air", "wind", "obstacles", "fingers",
-                    "tactile", "recording"});
+                    "contraction", "self_collision", "stuffing", "air", "wind", "obstacles",
+                    "fingers", "tactile", "recording"});
     if (!listed.insert(name).second) item.refuse("is listed twice");
   }
   const auto require_both = [&](const std::string& effect, const std::string& base) {
@@ -239,6 +240,7 @@ Listed readModel(const YamlValue& scene) {
   require_both("bending_hysteresis", "bending");
   require_both("wind", "air");
   require_both("tactile", "fingers");
+  require_both("stuffing", "self_collision");
   return listed;
 }
 
@@ -252,10 +254,12 @@ void requireListedKeys(const YamlValue& scene, const Listed& listed) {
   require_listed("air", "air");
   require_listed("wind", "wind");
   require_listed("bending", "bending");
+  require_listed("stuffing", "stuffing");
   require_listed("haptics", "fingers");
   if (listed.count("wind") > 0 && !scene.has("wind")) {
     scene.at("model").refuseBecause("lists wind, so the key wind is required");
   }
+  if (listed.count("stuffing") > 0) requireStuffing(scene, listed.count("fingers") > 0);
 }
 
 cloth::ModelledEffects readEffects(const YamlValue& scene, const Listed& listed) {
@@ -269,6 +273,7 @@ cloth::ModelledEffects readEffects(const YamlValue& scene, const Listed& listed)
   effects.contacts = listed.count("obstacles") > 0;
   effects.point_loads = listed.count("fingers") > 0;
   if (listed.count("air") > 0) effects.air = readAir(scene);
+  if (listed.count("stuffing") > 0) effects.stuffing = readStuffing(scene.at("stuffing"));
   if (listed.count("gravity") > 0) effects.gravity = kDownwards;
   if (scene.has("gravity")) effects.gravity = readVector(scene.at("gravity"));
   if (scene.has("bending")) effects.bending_settings = readBending(scene.at("bending"));
@@ -312,7 +317,7 @@ Scene readScene(const std::string& path, OtherSheet other) {
   file.requireKeys(
       {"fabric", "attach", "model", "time_step"},
       {"sheet", "mesh", "elasticity", "gravity", "bending", "air", "wind", "integrator", "solver",
-       "obstacles", "penalty", "haptics", "state", "regions", "frames", "fasteners"});
+       "obstacles", "penalty", "haptics", "state", "regions", "frames", "fasteners", "stuffing"});
   Scene scene;
   scene.fabric_path = resolveFile(file.at("fabric"), "fabrics", ".yaml");
   scene.any_cells = allowsAnyCells(file);

@@ -245,6 +245,7 @@ std::vector<Effect> effectsOf(const scene::Scene& scene) {
       {"contraction", "stretched fabric becomes narrower", effects.contraction},
       {"self_collision", "layers that touch, and do not pass through each other",
        effects.self_collision},
+      {"stuffing", "pressure of what is inside", effects.stuffing.has_value()},
       {"air", "drag and lift of air", effects.air.has_value()},
       {"wind", "air that moves", wind},
       {"obstacles", "collision with rigid bodies", effects.contacts},
@@ -270,6 +271,10 @@ scene::Scene withoutEffect(scene::Scene scene, const std::string& name) {
     effects.contraction = false;
   } else if (name == "self_collision") {
     effects.self_collision = false;
+    // What is stuffed touches obstacles in no other way.
+    if (effects.stuffing) effects.contacts = false;
+  } else if (name == "stuffing") {
+    effects.stuffing.reset();
   } else if (name == "air") {
     effects.air.reset();
   } else if (name == "wind") {

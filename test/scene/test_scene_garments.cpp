@@ -4,15 +4,23 @@
 namespace haptex::scene::test_scene_garments {
 namespace {
 
-TEST(ShippedTshirt, IsSewnOfPanelsAndStartsAtRestOnTheFigureWithoutIntersections) {
-  const Scene scene = loadScene((kConfig / "scenes" / "tshirt.yaml").string());
-  EXPECT_EQ(scene.mesh.panelCount(), 8);
-  EXPECT_EQ(scene.mesh.triangles.size(), 1714u);
-  EXPECT_GT(scene.mesh.seam_hinges.size(), 100u);
-  EXPECT_TRUE(scene.attached_particles.empty());
-  EXPECT_TRUE(scene.start_velocities.empty());
-  EXPECT_EQ(scene.start_move.particles, 0) << "the start was moved";
-  ASSERT_EQ(scene.obstacles.size(), 1u);
+TEST(ShippedGarments, AreSewnOfPanelsAndStartAtRestOnTheFigureWithoutIntersections) {
+  struct Garment {
+    const char* name;
+    int panels;
+    std::size_t triangles, seam_hinges;  // at least so many hinges
+  };
+  for (const Garment& garment : {Garment{"tshirt", 8, 1714, 100}, Garment{"skirt", 2, 1442, 30}}) {
+    const Scene scene =
+        loadScene((kConfig / "scenes" / (garment.name + std::string(".yaml"))).string());
+    EXPECT_EQ(scene.mesh.panelCount(), garment.panels) << garment.name;
+    EXPECT_EQ(scene.mesh.triangles.size(), garment.triangles) << garment.name;
+    EXPECT_GT(scene.mesh.seam_hinges.size(), garment.seam_hinges) << garment.name;
+    EXPECT_TRUE(scene.attached_particles.empty());
+    EXPECT_TRUE(scene.start_velocities.empty());
+    EXPECT_EQ(scene.start_move.particles, 0) << garment.name << ": the start was moved";
+    ASSERT_EQ(scene.obstacles.size(), 1u);
+  }
 }
 
 TEST_F(SceneFile, OfSewnPanelsRefusesSidesSpringsAndFacesOfNoPanel) {

@@ -92,8 +92,6 @@ TEST_F(SceneRegions, AreRefusedByWhatKnowsOneFabric) {
   EXPECT_EQ(regionRefusal(
                 region, replaced(kValid, "[gravity, viscosity]", "[bending, bending_hysteresis]")),
             ": is not allowed if model lists bending_hysteresis" + knows);
-  EXPECT_EQ(regionRefusal(region, replaced(kValid, "[gravity, viscosity]", "[self_collision]")),
-            ": is not allowed if model lists self_collision" + knows);
   EXPECT_EQ(regionRefusal(region, kValid + "elasticity: mass_spring\n"),
             ": is not allowed with the elasticity mass_spring" + knows);
 }

@@ -33,7 +33,7 @@ class LayersBetween {
   static constexpr double kFade = 0.02;  ///< s, to 1/e
 
   /// @param coarse    the mesh that was cut
-  /// @param thickness m, of the fabric without pressure, > 0
+  /// @param thickness m, of the thickest fabric without pressure, > 0
   /// @param areas     m^2, at rest, per particle
   LayersBetween(const mesh::ClothMesh& coarse, const RefinedCut& cut, double thickness,
                 std::vector<double> areas);

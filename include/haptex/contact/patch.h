@@ -30,8 +30,8 @@ class Patch {
  public:
   /// @param coarse  the mesh that was cut
   /// @param fabrics of the cloth, with bending
-  /// @param laws    of each; the first for LayersBetween::kMost layers if effects are with
-  ///   self_collision, which knows one fabric; kept
+  /// @param laws    of each, for LayersBetween::kMost layers if effects are with self_collision,
+  ///   between which the layers of a pinch count as of the fabric that is pushed; kept
   /// @param obstacles where they are at the end of each step; null: none
   Patch(const mesh::ClothMesh& coarse, RefinedCut cut, const std::vector<material::Fabric>& fabrics,
         const cloth::ModelledEffects& effects, const std::vector<ContactLaw>& laws,

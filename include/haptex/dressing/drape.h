@@ -80,7 +80,7 @@ struct DrapeOutcome {
 /// say
 ///    how often. So panels are sewn with few triangles, whatever is asked for in the end, and what
 ///    is finer starts near its equilibrium, and free of intersections.
-/// @param fabrics those that the garment names, in its order; contact knows one
+/// @param fabrics those that the garment names, in its order
 /// @param body closed surface, m, world frame
 /// @throws std::invalid_argument if a number of the settings is not finite and > 0, the garment
 ///   names another number of fabrics, one lacks bending, compression or friction, a panel touches

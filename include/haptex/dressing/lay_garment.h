@@ -16,10 +16,10 @@ struct LaidGarment {
 
 /// Lays the panels of a garment where its file places them, or around the body where it lays them
 /// on carriers.
-/// @param garment     a garment file
+/// @param garment     a garment file, or one that lists several
 /// @param body        a body file (`.yaml`), or an OBJ file, which knows no carriers
 /// @param edge_length m, > 0, of the triangles
-/// @throws std::invalid_argument what garment::loadPattern(), garment::loadBody(),
+/// @throws std::invalid_argument what garment::loadOutfit(), garment::loadBody(),
 ///   mesh::loadObjSurface() and garment::makeGarmentMesh() say
 LaidGarment layGarment(const std::string& garment, const std::string& body, double edge_length);
 

@@ -23,6 +23,9 @@ using BlockVector = Eigen::Matrix3Xd;
 /// fixed pattern alone. Every sum takes the fixed pattern first and then the couplings by row and
 /// column, so that it does not depend on the order in which pairs were added; without couplings it
 /// is what it is without this feature, to the last bit.
+///
+/// One outer product, scale v v^T, may be added to all of that, as the pressure in a closed volume
+/// makes it: a coupling of each particle with each, at the cost of one vector.
 class SymmetricBlockMatrix {
  public:
   /// @param size      number of block rows
@@ -58,14 +61,21 @@ class SymmetricBlockMatrix {
   /// so a sum of terms keeps the fixed part positive semidefinite that has others beyond it.
   void addBeyondPattern(int row, int column, const Eigen::Matrix3d& block);
 
+  /// In the place of the one before. clearCouplings() takes it out. Allocates the first time.
+  /// @param scale >= 0 @param vector 3 x size
+  void setOuterProduct(double scale, const BlockVector& vector);
+
   /// Whether the block of two particles belongs to the fixed pattern.
   bool hasInPattern(int row, int column) const;
 
   /// The fixed pattern keeps its values.
   void clearCouplings();
 
-  /// Pairs beyond the fixed pattern, those of addBeyondPattern() among them.
-  int couplingCount() const { return static_cast<int>(couplings_.size()); }
+  /// Pairs beyond the fixed pattern, those of addBeyondPattern() among them; an outer product
+  /// counts as one.
+  int couplingCount() const {
+    return static_cast<int>(couplings_.size()) + (outer_scale_ > 0.0 ? 1 : 0);
+  }
 
   /// Makes room for that many pairs beyond the fixed pattern. A copy holds the couplings without
   /// the room; assigning leaves the room of what is assigned to, and allocates only if it is too
@@ -111,6 +121,8 @@ class SymmetricBlockMatrix {
   std::vector<Coupling> couplings_;  // in the order of adding
   // By row: in couplings_, the one of the lowest column; -1: none. Empty without couplings.
   std::vector<int> first_coupling_;
+  double outer_scale_ = 0.0;  // 0: no outer product
+  BlockVector outer_;         // if there is one
 };
 
 }  // namespace haptex::linear

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "haptex/proximity/continuous.h"
 
@@ -20,8 +21,9 @@ constexpr double kLeast = 1e-12, kKeptBelow = 1.0 - 1e-9;
 
 }  // namespace
 
-SafeMotion::SafeMotion(std::size_t particles, double margin)
+SafeMotion::SafeMotion(std::size_t particles, double margin, std::vector<double> of_sides)
     : margin_(margin),
+      of_sides_(std::move(of_sides)),
       place_(particles),
       left_(particles),
       way_(particles),
@@ -184,6 +186,21 @@ bool SafeMotion::mayHaveChanged(const Pair& pair) const {
   return changed >= round_ - 1;
 }
 
+/// m, of an obstacle and the cloth that of the cloth alone.
+double SafeMotion::marginOf(const Pair& pair) const {
+  if (of_sides_.empty()) return pair.obstacle < 0 ? margin_ : 0.5 * margin_;
+  const std::size_t first_end = pair.kind == proximity::ElementPairKind::kVertexTriangle ? 1 : 2;
+  std::array<double, 2> least = {margin_, margin_};
+  std::array<bool, 2> is_cloth = {false, false};
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!isParticle(pair.vertices[i])) continue;
+    const std::size_t side = i < first_end ? 0 : 1;
+    is_cloth[side] = true;
+    least[side] = std::min(least[side], of_sides_[pair.vertices[i]]);
+  }
+  return (is_cloth[0] ? least[0] : 0.0) + (is_cloth[1] ? least[1] : 0.0);
+}
+
 std::optional<SafeMotion::Touch> SafeMotion::touch(const Pair& pair) const {
   const auto& v = pair.vertices;
   std::array<Vector3d, 4> begin, end;
@@ -198,7 +215,7 @@ std::optional<SafeMotion::Touch> SafeMotion::touch(const Pair& pair) const {
   }
   const double relative = std::sqrt(longest[0]) + std::sqrt(longest[1]);
   if (relative == 0.0) return {};
-  const double margin = pair.obstacle < 0 ? margin_ : 0.5 * margin_;
+  const double margin = marginOf(pair);
   const double least =
       pair.obstacle < 0 ? near_->leastDistance(pair) : obstacles_->leastDistance(pair);
   if (relative < least - std::min(margin, kKept * least)) return {};

@@ -62,23 +62,15 @@ void requireModelled(const material::Fabric& fabric, const ModelledEffects& effe
   }
 }
 
-/// What knows no regions of other fabrics.
-void requireFewFabrics(const std::vector<material::Fabric>& fabrics,
-                       const ModelledEffects& effects) {
-  const auto refuse_several = [&](const char* what) {
-    if (fabrics.size() == 1) return;
-    throw std::invalid_argument(std::string(what) + " one fabric, and the cloth has " +
-                                std::to_string(fabrics.size()));
-  };
-  if (effects.elasticity == Elasticity::kMassSpring) refuse_several("springs know");
-  if (effects.self_collision) refuse_several("self_collision knows");
-}
-
 void requirePanels(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                    const ModelledEffects& effects) {
   mesh::requireFabrics(mesh, fabrics.size());
-  requireFewFabrics(fabrics, effects);
-  if (mesh.panelCount() > 1 && effects.elasticity == Elasticity::kMassSpring) {
+  if (effects.elasticity != Elasticity::kMassSpring) return;
+  if (fabrics.size() > 1) {
+    throw std::invalid_argument("springs know one fabric, and the cloth has " +
+                                std::to_string(fabrics.size()));
+  }
+  if (mesh.panelCount() > 1) {
     throw std::invalid_argument("springs know one panel, and the mesh has " +
                                 std::to_string(mesh.panelCount()));
   }
@@ -188,6 +180,18 @@ void addBending(const mesh::CutPanel& cut, const std::vector<material::Fabric>& 
   forces.add(std::move(bending));
 }
 
+void addStuffing(const mesh::ClothMesh& mesh, const ModelledEffects& effects, ForceSum& forces) {
+  if (!mesh.ties.empty()) {
+    throw std::invalid_argument(
+        "stuffing is modelled, and particles are tied: allowed are edges that are merged");
+  }
+  if (effects.contacts && !effects.self_collision) {
+    throw std::invalid_argument(
+        "stuffing is modelled among obstacles, which needs self_collision modelled, too");
+  }
+  forces.add(std::make_unique<Stuffing>(mesh, *effects.stuffing));
+}
+
 }  // namespace
 
 void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
@@ -196,8 +200,9 @@ void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fa
   for (const material::Fabric& fabric : fabrics) requireModelled(fabric, effects);
   addElasticity(mesh, fabrics, effects, forces);
   if (effects.self_collision) {
-    forces.add(std::make_unique<SelfContact>(RestSurface(mesh), fabrics.front()));
+    forces.add(std::make_unique<SelfContact>(RestSurface(mesh), fabrics));
   }
+  if (effects.stuffing) addStuffing(mesh, effects, forces);
   if (effects.air) forces.add(std::make_unique<Aerodynamics>(restElements(mesh), *effects.air));
   if (!effects.bending || effects.elasticity == Elasticity::kMassSpring) return;
   for (int p = 0; p < mesh.panelCount(); ++p) {

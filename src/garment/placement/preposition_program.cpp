@@ -9,7 +9,7 @@
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/garment/body/body_file.h"
-#include "haptex/garment/pattern/pattern_file.h"
+#include "haptex/garment/pattern/outfit.h"
 #include "haptex/garment/placement/preposition.h"
 #include "haptex/mesh/obj_writer.h"
 
@@ -99,7 +99,7 @@ int prepositionProgram(const std::vector<std::string>& arguments, std::ostream& 
   Request request;
   const auto read = [&] { request = parse(arguments); };
   return base::runProgram(kUsage, err, read, [&] {
-    const Pattern pattern = loadPattern(request.files[0]);
+    const Pattern pattern = loadOutfit(request.files[0]);
     const Body body = loadBody(request.files[1]);
     std::vector<PanelMesh> meshes;
     for (const Panel& panel : pattern.panels) meshes.push_back(triangulate(panel, request.edge));

@@ -15,12 +15,13 @@ using Eigen::Vector3d;
 using mesh::Obstacle;
 using Set = SelfCollidingCloth::Set;
 
-cloth::ModelledEffects effectsOf(const Set& set, const material::Fabric& fabric) {
+cloth::ModelledEffects effectsOf(const Set& set, const std::vector<material::Fabric>& fabrics) {
   cloth::ModelledEffects effects;
   effects.self_collision = true;
   effects.gravity = {0.0, 0.0, -set.gravity};
   effects.viscosity = true;
-  effects.bending = fabric.bending.has_value();
+  effects.bending = std::all_of(fabrics.begin(), fabrics.end(),
+                                [](const auto& fabric) { return fabric.bending.has_value(); });
   effects.contacts = !set.obstacles.empty();
   return effects;
 }
@@ -54,9 +55,9 @@ std::size_t countIntersections(const std::vector<Vector3d>& positions,
   return count;
 }
 
-SelfCollidingCloth::SelfCollidingCloth(const Set& set, const material::Fabric& fabric,
+SelfCollidingCloth::SelfCollidingCloth(const Set& set, const std::vector<material::Fabric>& fabrics,
                                        const cloth::StepSettings& settings)
-    : cloth(set.mesh, fabric, effectsOf(set, fabric)),
+    : cloth(set.mesh, fabrics, effectsOf(set, fabrics)),
       state(cloth.initialState()),
       move_(set.move),
       obstacles_(set.obstacles),

@@ -155,8 +155,9 @@ Set twisted(int cells) {
 
 }  // namespace
 
-ClothMesh asOneMesh(const std::vector<ClothMesh>& sheets) {
+ClothMesh asOneMesh(const std::vector<ClothMesh>& sheets, int fabrics) {
   ClothMesh all;
+  int fabric = 0;
   double width = 0.0;
   for (const ClothMesh& sheet : sheets) {
     double most = 0.0;
@@ -169,7 +170,9 @@ ClothMesh asOneMesh(const std::vector<ClothMesh>& sheets) {
                                  sheet.initial_positions.end());
     for (const auto& [a, b, c] : sheet.triangles) {
       all.triangles.push_back({a + first, b + first, c + first});
+      if (fabrics > 1) all.triangle_fabrics.push_back(fabric);
     }
+    fabric = (fabric + 1) % fabrics;
     width += 2.0 * most;
   }
   return all;
@@ -191,18 +194,26 @@ double thicknessAt(const material::Compression& compression, double pressure) {
   return compression.thickness * (1.0 - high);
 }
 
-LayerStack restingStack(const material::Fabric& fabric, int layers, int steps) {
+LayerStack restingStack(const std::vector<material::Fabric>& fabrics, int layers, int steps) {
   constexpr double kSide = 0.03, kStep = 0.0125;  // m, s
   LayerStack result{0.0, 0.0};
   std::vector<ClothMesh> sheets;
+  const auto fabric_of = [&](int layer) { return fabrics[layer % fabrics.size()]; };
   for (int layer = 0; layer < layers; ++layer) {
     sheets.push_back(flatSheet({kSide, kSide}, 3, 3, placedAt({0.0, 0.0, 1.005 * result.exact})));
-    const double above = (layers - 1 - layer) * fabric.areal_density * base::kStandardGravity;
-    if (layer + 1 < layers) result.exact += thicknessAt(*fabric.compression, above);
+    double above = 0.0;  // Pa
+    for (int i = layer + 1; i < layers; ++i) {
+      above += fabric_of(i).areal_density * base::kStandardGravity;
+    }
+    for (int i = layer; i <= layer + 1 && layer + 1 < layers; ++i) {
+      result.exact += 0.5 * thicknessAt(*fabric_of(i).compression, above);
+    }
   }
   cloth::StepSettings settings;
   settings.newton_iterations = 20;
-  SelfCollidingCloth stack({asOneMesh(sheets), base::kStandardGravity}, fabric, settings);
+  SelfCollidingCloth stack(
+      {asOneMesh(sheets, static_cast<int>(fabrics.size())), base::kStandardGravity}, fabrics,
+      settings);
   const std::size_t of_layer = sheets[0].initial_positions.size();
   for (std::size_t i = 0; i < of_layer; ++i) {
     put(stack.cloth, static_cast<int>(i), stack.state.positions[i]);

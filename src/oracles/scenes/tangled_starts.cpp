@@ -154,7 +154,7 @@ TangledStart tangledStart(int index) {
 Untangled untangle(const TangledStart& start, const material::Fabric& fabric, int steps) {
   cloth::StepSettings settings;
   settings.newton_iterations = 5;
-  SelfCollidingCloth scene(start.set, fabric, settings);
+  SelfCollidingCloth scene(start.set, {fabric}, settings);
   Untangled result{0, 0, 0.0, 0.0};
   // Energies of the start are with contact in the tangle; a step of no length leaves that out.
   scene.step(1e-9);

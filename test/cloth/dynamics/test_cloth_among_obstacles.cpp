@@ -85,7 +85,7 @@ StepReport step(Cloth& cloth, Integrator& integrator, ClothState& state, double 
 TEST(AmongObstacles, TheFloorHasThePressureOfALayerThatMirrorsTheCloth) {
   Cloth cloth(sheet(4), fabricNamed("wool"), effects());
   cloth.setObstacles({shapes()[0]});
-  const LayerLaw& law = cloth.selfContact()->law();
+  const LayerLaw& law = cloth.selfContact()->layers().law(0);
   ClothState state = cloth.initialState();
   for (const double share : {0.4, 0.7, 0.9}) {
     const double gap = 0.5 * share * law.thickness();
@@ -109,7 +109,7 @@ TEST(AmongObstacles, ForcesAreTheGradientOfTheEnergyOnEveryShape) {
     Cloth cloth(sheet(5), fabricNamed("wool"), effects());
     cloth.setObstacles({obstacle});
     ClothState state = cloth.initialState();
-    const double thickness = cloth.selfContact()->law().thickness();
+    const double thickness = cloth.selfContact()->layers().law(0).thickness();
     for (Vector3d& place : state.positions) {
       place +=
           Vector3d(1e-3 * any(random), 1e-3 * any(random), thickness * (0.17 + 0.05 * any(random)));
@@ -127,7 +127,7 @@ TEST(AmongObstacles, FrictionIsThatOfTheSurfacesVelocityAndOfItsOwnCoefficient) 
   cloth.setObstacles({ball});
   ClothState state = cloth.initialState();
   for (Vector3d& place : state.positions) place += Vector3d(0.02, 0.02, 5.0);
-  state.positions[0] = Vector3d(0.0, 0.0, 0.35 * cloth.selfContact()->law().thickness());
+  state.positions[0] = Vector3d(0.0, 0.0, 0.35 * cloth.selfContact()->layers().law(0).thickness());
   cloth.moveObstacles(0.0, 1e-3);
   state.time = 1e-3;
   const Vector3d force = -cloth.selfContact()->forceOn(0, state.ofForces());

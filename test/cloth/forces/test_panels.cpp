@@ -169,7 +169,7 @@ TEST(Panels, ThatCannotBeModelledAreRefused) {
 /// Rolled up about an axis along warp, layers half a thickness apart.
 ClothState rolledUp(const Cloth& cloth) {
   ClothState state = cloth.initialState();
-  const double pitch = 0.5 * cloth.selfContact()->law().thickness() / (2.0 * M_PI);
+  const double pitch = 0.5 * cloth.selfContact()->layers().law(0).thickness() / (2.0 * M_PI);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     const Vector2d& rest = cloth.mesh().rest_coordinates[i];
     const double radius = 0.002, angle = rest.x() / radius;

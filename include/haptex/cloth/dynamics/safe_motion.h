@@ -32,8 +32,10 @@ struct MotionCut {
 /// Allocates nothing once its buffers have had the size that they need.
 class SafeMotion {
  public:
-  /// @param margin m, > 0
-  SafeMotion(std::size_t particles, double margin);
+  /// @param margin    m, > 0, of all pairs at most
+  /// @param of_sides m, of each particle; the margin of a pair is the sum of the least ones of its
+  ///   two elements. Empty: each has half of the margin
+  SafeMotion(std::size_t particles, double margin, std::vector<double> of_sides = {});
 
   /// @param near of the cloth
   /// @param obstacles null if there are none. Stay where they are at the end of the step
@@ -84,6 +86,7 @@ class SafeMotion {
   void carry(const NearPairs& near, const NearObstacles& obstacles);
   bool carry(const Pair& pair, char& times);
 
+  double marginOf(const Pair& pair) const;
   bool isParticle(int vertex) const { return vertex < static_cast<int>(place_.size()); }
   const Eigen::Vector3d& placeOf(int vertex) const {
     return isParticle(vertex) ? place_[vertex] : obstacle_place_[vertex - place_.size()];
@@ -92,7 +95,8 @@ class SafeMotion {
     return isParticle(vertex) ? way_[vertex] : obstacle_way_[vertex - place_.size()];
   }
 
-  double margin_;  // m
+  double margin_;                 // m
+  std::vector<double> of_sides_;  // m
   // Of the motion at hand.
   const NearPairs* near_ = nullptr;
   const NearObstacles* obstacles_ = nullptr;  // null if there are none

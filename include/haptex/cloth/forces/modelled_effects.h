@@ -9,6 +9,7 @@
 #include "haptex/cloth/forces/bending/bending.h"
 #include "haptex/cloth/forces/fasteners/fasteners.h"
 #include "haptex/cloth/forces/force_sum.h"
+#include "haptex/cloth/forces/stuffing/stuffing.h"
 #include "haptex/material/fabric.h"
 #include "haptex/mesh/mesh.h"
 
@@ -37,6 +38,7 @@ struct ModelledEffects {
   bool self_collision = false;                           ///< of the cloth with itself
   bool point_loads = false;                              ///< forces on points of triangles
   std::vector<Fastener> fasteners = {};                  ///< buttons, hooks and elastic bands
+  std::optional<StuffingMass> stuffing = std::nullopt;   ///< of a closed cloth
 };
 
 /// Adds the forces that fabrics and the air have on a cloth; a new kind of force is added here.
@@ -47,8 +49,9 @@ struct ModelledEffects {
 ///   elasticity needs (findLatticeSprings(), or several panels of springs), bending, a hysteresis
 ///   or contraction is modelled and the fabric has none, contraction or hysteresis of stretch and
 ///   shear is modelled with another elasticity than Green-Lagrange, that of bending without bending
-///   or with bend springs, collision of the cloth with itself is modelled and the cloth has
-///   several fabrics or what SelfContact says, or as Bending, BendingFriction,
+///   or with bend springs, what SelfContact says if collision of the cloth with itself is modelled,
+///   particles are tied and the cloth is stuffed, or it is among obstacles without colliding with
+///   itself, or as Stuffing, Bending, BendingFriction,
 ///   MembraneFriction and Aerodynamics
 void addFabricForces(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                      const ModelledEffects& effects, ForceSum& forces);

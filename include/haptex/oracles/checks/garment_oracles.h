@@ -33,4 +33,8 @@ void validateLinkage(const std::string& config_directory, const Sink& sink);
 /// elastic bands the tension by length, and energy and momentum of what is torn apart.
 void validateFasteners(const std::string& config_directory, const Sink& sink);
 
+/// An inflated ball, whose radius and tension are those of Laplace's law; a stuffed cushion at
+/// rest, whose pressure and tension do as much virtual work when it grows.
+void validateStuffing(const Sink& sink);
+
 }  // namespace haptex::oracles

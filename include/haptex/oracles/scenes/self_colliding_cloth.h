@@ -37,8 +37,9 @@ class SelfCollidingCloth {
     std::string name = {};
   };
 
+  /// @param fabrics  that the mesh names
   /// @param settings of backward Euler
-  SelfCollidingCloth(const Set& set, const material::Fabric& fabric,
+  SelfCollidingCloth(const Set& set, const std::vector<material::Fabric>& fabrics,
                      const cloth::StepSettings& settings);
 
   /// @throws std::runtime_error if the step is not accepted

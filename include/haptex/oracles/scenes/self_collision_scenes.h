@@ -10,7 +10,8 @@
 namespace haptex::oracles {
 
 /// Sheets of their own as one mesh. Their rest coordinates lie beside each other.
-mesh::ClothMesh asOneMesh(const std::vector<mesh::ClothMesh>& sheets);
+/// @param fabrics of how many there are: sheet i is of fabric i modulo that
+mesh::ClothMesh asOneMesh(const std::vector<mesh::ClothMesh>& sheets, int fabrics = 1);
 
 /// - folded: a sheet that lies on a floor is folded twice,
 /// - heaped: a sheet falls on its edge and heaps up,
@@ -27,10 +28,12 @@ double thicknessAt(const material::Compression& compression, double pressure);
 
 /// Layers on a lowest one that is attached, after some steps of 12.5 ms.
 struct LayerStack {
-  double exact;   ///< m, sum of the thicknesses that the compression curve gives for their weights
+  double exact;   ///< m, sum of the half thicknesses that the compression curves give for what is
+                  ///< above
   double height;  ///< m, mean height of the highest middle surface over the lowest
 };
+/// @param fabrics of the layers, in turn
 /// @param layers > 1
-LayerStack restingStack(const material::Fabric& fabric, int layers, int steps);
+LayerStack restingStack(const std::vector<material::Fabric>& fabrics, int layers, int steps);
 
 }  // namespace haptex::oracles

@@ -41,7 +41,8 @@ Untangling::Untangling(const Cloth& cloth)
       intersections_(cloth.mesh().triangles, RestSurface(cloth.mesh()).places()),
       contours_(topology_),
       regions_(topology_, cloth.particleCount()),
-      motion_(cloth.particleCount(), cloth.selfContact()->law().margin()),
+      motion_(cloth.particleCount(), cloth.selfContact()->margin(),
+              cloth.selfContact()->particleMargins()),
       edge_length_(meanLength(topology_.elements, RestSurface(cloth.mesh()))),
       ways_(cloth.particleCount()),
       weights_(cloth.particleCount()) {

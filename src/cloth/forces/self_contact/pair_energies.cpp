@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace haptex::cloth {
 namespace {
@@ -57,30 +58,49 @@ void fadeWhereParallel(const Vector3d& a, const Vector3d& b, double whole, doubl
 
 }  // namespace
 
-PairEnergies::PairEnergies(const RestSurface& rest, const LayerLaw& law)
-    : law_(law),
+PairEnergies::PairEnergies(const RestSurface& rest, FabricLayers layers)
+    : layers_(std::move(layers)),
       particles_(static_cast<int>(rest.places().size())),
       triangles_(rest.triangles),
-      cloth_(rest.triangles, rest.places().size()),
-      vertex_areas_(rest.places().size(), 0.0) {
+      cloth_(rest.triangles, rest.places().size(), rest.fabrics),
+      fabrics_(rest.fabrics) {
   const proximity::MeshElements elements(triangles_);
   edge_areas_.assign(elements.edges.size(), 0.0);
   edge_squares_.assign(elements.edges.size(), 0.0);
+  if (!fabrics_.empty()) edge_fabrics_.resize(elements.edges.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const double area = rest.area(t);
-    const double part = area / 6.0;
-    triangle_areas_.push_back(area);
+    triangle_areas_.push_back(rest.area(t));
     for (int i = 0; i < 3; ++i) {
       const int next = (i + 1) % 3;
-      const int from = triangles_[t][i], to = triangles_[t][next];
-      const int edge = elements.indexOf(proximity::edgeBetween(from, to));
-      vertex_areas_[from] += part;
-      edge_areas_[edge] += part;
+      const int edge =
+          elements.indexOf(proximity::edgeBetween(triangles_[t][i], triangles_[t][next]));
+      edge_areas_[edge] += triangle_areas_[t] / 6.0;
+      if (!fabrics_.empty()) edge_fabrics_[edge] = fabrics_[t];
       // Of a seam, the longer of its two edges.
       edge_squares_[edge] =
           std::max(edge_squares_[edge], (rest.corners[t][next] - rest.corners[t][i]).squaredNorm());
     }
   }
+  addAreas();
+}
+
+void PairEnergies::addAreas() {
+  std::vector<std::vector<Area>> of_vertices(particles_);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const int fabric = fabricOf(static_cast<int>(t));
+    for (const int vertex : triangles_[t]) {
+      std::vector<Area>& areas = of_vertices[vertex];
+      auto area = std::find_if(areas.begin(), areas.end(),
+                               [&](const Area& other) { return other.fabric == fabric; });
+      if (area == areas.end()) area = areas.insert(area, {fabric, 0.0});
+      area->area += triangle_areas_[t] / 6.0;
+    }
+  }
+  for (const std::vector<Area>& areas : of_vertices) {
+    first_area_.push_back(static_cast<int>(areas_.size()));
+    areas_.insert(areas_.end(), areas.begin(), areas.end());
+  }
+  first_area_.push_back(static_cast<int>(areas_.size()));
 }
 
 void PairEnergies::setObstacles(const ObstacleSurfaces& surfaces) {
@@ -99,12 +119,12 @@ void PairEnergies::find(const Positions& positions, const NearPairs& near,
     for (; pair != end && pair->kind == proximity::ElementPairKind::kVertexTriangle &&
            pair->first == vertex;
          ++pair) {
-      if (!near.isBeyond(*pair, law_.thickness())) near_.push_back(pair->second);
+      if (!near.isBeyond(*pair, layers_.thickness())) near_.push_back(pair->second);
     }
     if (!near_.empty()) addVertex(positions, vertex, found);
   }
   for (; pair != end; ++pair) {
-    if (!near.isBeyond(*pair, law_.leastDistance())) addEdges(positions, *pair, found);
+    if (!near.isBeyond(*pair, layers_.leastDistance())) addEdges(positions, *pair, found);
   }
 }
 
@@ -112,8 +132,7 @@ void PairEnergies::find(const Positions& positions, const NearPairs& near,
 void PairEnergies::addVertex(const Positions& positions, int vertex,
                              std::vector<PairEnergy>& found) {
   const Vector3d& place = positions[vertex];
-  for (const auto& feature : cloth_.nearest(positions, place, near_, law_.thickness())) {
-    if (feature.times == 0) continue;
+  for (const auto& feature : cloth_.nearest(positions, place, near_, layers_.thickness())) {
     PairEnergy energy{};
     energy.count = 1 + feature.size;
     energy.vertices[0] = vertex;
@@ -125,10 +144,14 @@ void PairEnergies::addVertex(const Positions& positions, int vertex,
       away -= feature.weights[i] * positions[feature.ids[i]];
     }
     energy.distance = away.norm();
-    if (energy.distance >= law_.thickness()) continue;
     energy.normal = directionOf(away, energy.distance);
-    spread(law_.at(energy.distance), feature.times * vertex_areas_[vertex], energy);
-    found.push_back(energy);
+    for (int a = first_area_[vertex]; a < first_area_[vertex + 1]; ++a) {
+      const LayerPair law = layers_.pair(areas_[a].fabric, feature.fabric);
+      if (energy.distance >= law.thickness()) continue;
+      energy.fabrics = {areas_[a].fabric, feature.fabric};
+      spread(law.at(energy.distance), feature.times * areas_[a].area, energy);
+      found.push_back(energy);
+    }
   }
 }
 
@@ -137,10 +160,13 @@ void PairEnergies::addEdges(const Positions& positions, const Pair& pair,
   const auto& v = pair.vertices;
   const std::array<Vector3d, 4> places = {positions[v[0]], positions[v[1]], positions[v[2]],
                                           positions[v[3]]};
-  if (proximity::isSurelyApart(pair.kind, places, law_.leastDistance())) return;
+  const std::array<int, 2> fabrics = {fabricOfEdge(pair.first), fabricOfEdge(pair.second)};
+  const LayerPair law = layers_.pair(fabrics[0], fabrics[1]);
+  if (proximity::isSurelyApart(pair.kind, places, law.leastDistance())) return;
   const proximity::PairDistance nearest = proximity::edgeEdgeDistance(places);
-  if (nearest.distance >= law_.leastDistance()) return;
+  if (nearest.distance >= law.leastDistance()) return;
   PairEnergy energy{};
+  energy.fabrics = fabrics;
   energy.count = 4;
   energy.vertices = v;
   Vector3d away = Vector3d::Zero();
@@ -153,7 +179,7 @@ void PairEnergies::addEdges(const Positions& positions, const Pair& pair,
   fadeWhereParallel(places[1] - places[0], places[3] - places[2],
                     kParallel * edge_squares_[pair.first] * edge_squares_[pair.second],
                     0.5 * (edge_areas_[pair.first] + edge_areas_[pair.second]),
-                    law_.guardAt(nearest.distance), energy);
+                    law.guardAt(nearest.distance), energy);
   found.push_back(energy);
 }
 
@@ -172,12 +198,12 @@ void PairEnergies::findOfObstacles(const Positions& positions, const NearObstacl
     for (; pair != end && is_vertex(*pair) && pair->first == first.first &&
            pair->obstacle == first.obstacle;
          ++pair) {
-      if (!near.isBeyond(*pair, 0.5 * law_.thickness())) near_.push_back(pair->second);
+      if (!near.isBeyond(*pair, 0.5 * layers_.thickness())) near_.push_back(pair->second);
     }
     if (!near_.empty()) addVertexAtObstacle(positions, obstacles, first, found);
   }
   for (; pair != end; ++pair) {
-    if (near.isBeyond(*pair, 0.5 * law_.leastDistance())) continue;
+    if (near.isBeyond(*pair, 0.5 * layers_.leastDistance())) continue;
     if (pair->kind == proximity::ElementPairKind::kVertexTriangle) {
       addObstacleVertex(positions, obstacles, *pair, found);
     } else {
@@ -190,10 +216,9 @@ void PairEnergies::findOfObstacles(const Positions& positions, const NearObstacl
 void PairEnergies::addVertexAtObstacle(const Positions& positions, const Obstacles& obstacles,
                                        const Pair& pair, std::vector<PairEnergy>& found) {
   const int vertex = pair.first;
-  const double reach = pair.radius + 0.5 * law_.thickness();
+  const double reach = pair.radius + 0.5 * layers_.thickness();
   for (const auto& feature :
        obstacles_->nearest(obstacles.places, positions[vertex], near_, reach)) {
-    if (feature.times == 0) continue;
     Vector3d away = positions[vertex];
     for (int i = 0; i < feature.size; ++i) {
       away -= feature.weights[i] * obstacles.places[feature.ids[i]];
@@ -207,12 +232,16 @@ void PairEnergies::addVertexAtObstacle(const Positions& positions, const Obstacl
     energy.weights[0] = 1.0;
     energy.distance = gapOf(distance, pair.radius);
     energy.normal = directionOf(away, distance);
-    spread(mirrored(law_.at(2.0 * energy.distance)), 2.0 * feature.times * vertex_areas_[vertex],
-           energy);
     energy.way = obstacles.surfaces.wayOf(energy.obstacle, feature.size, feature.ids.data(),
                                           feature.weights.data(), pair.radius * energy.normal,
                                           obstacles.at_end);
-    found.push_back(energy);
+    for (int a = first_area_[vertex]; a < first_area_[vertex + 1]; ++a) {
+      const LayerLaw& law = layers_.law(areas_[a].fabric);
+      if (2.0 * energy.distance >= law.thickness()) continue;
+      energy.fabrics = {areas_[a].fabric, areas_[a].fabric};
+      spread(mirrored(law.at(2.0 * energy.distance)), 2.0 * feature.times * areas_[a].area, energy);
+      found.push_back(energy);
+    }
   }
 }
 
@@ -222,11 +251,14 @@ void PairEnergies::addObstacleVertex(const Positions& positions, const Obstacles
   const int vertex = v[0] - particles_;
   const std::array<Vector3d, 4> places = {obstacles.places[vertex], positions[v[1]],
                                           positions[v[2]], positions[v[3]]};
-  const double reach = pair.radius + 0.5 * law_.leastDistance();
+  const int fabric = fabricOf(pair.second);
+  const LayerLaw& law = layers_.law(fabric);
+  const double reach = pair.radius + 0.5 * law.leastDistance();
   if (proximity::isSurelyApart(pair.kind, places, reach)) return;
   const proximity::PairDistance nearest = proximity::vertexTriangleDistance(places);
   if (nearest.distance >= reach) return;
   PairEnergy energy{};
+  energy.fabrics = {fabric, fabric};
   energy.obstacle = pair.obstacle;
   energy.count = 3;
   Vector3d away = -places[0];
@@ -237,7 +269,7 @@ void PairEnergies::addObstacleVertex(const Positions& positions, const Obstacles
   }
   energy.distance = gapOf(nearest.distance, pair.radius);
   energy.normal = away / away.norm();
-  spread(mirrored(law_.guardAt(2.0 * energy.distance)), triangle_areas_[pair.second] / 3.0, energy);
+  spread(mirrored(law.guardAt(2.0 * energy.distance)), triangle_areas_[pair.second] / 3.0, energy);
   constexpr double kWhole = 1.0;
   energy.way = obstacles.surfaces.wayOf(pair.obstacle, 1, &vertex, &kWhole,
                                         pair.radius * energy.normal, obstacles.at_end);
@@ -250,12 +282,15 @@ void PairEnergies::addEdgesAtObstacle(const Positions& positions, const Obstacle
   const std::array<int, 2> ends = {v[2] - particles_, v[3] - particles_};
   const std::array<Vector3d, 4> places = {positions[v[0]], positions[v[1]],
                                           obstacles.places[ends[0]], obstacles.places[ends[1]]};
-  const double reach = pair.radius + 0.5 * law_.leastDistance();
+  const int fabric = fabricOfEdge(pair.first);
+  const LayerLaw& law = layers_.law(fabric);
+  const double reach = pair.radius + 0.5 * law.leastDistance();
   if (proximity::isSurelyApart(pair.kind, places, reach)) return;
   const proximity::PairDistance nearest = proximity::edgeEdgeDistance(places);
   if (nearest.distance >= reach) return;
   const auto& w = nearest.weights;
   PairEnergy energy{};
+  energy.fabrics = {fabric, fabric};
   energy.obstacle = pair.obstacle;
   energy.count = 2;
   energy.vertices = {v[0], v[1], -1, -1};
@@ -265,7 +300,7 @@ void PairEnergies::addEdgesAtObstacle(const Positions& positions, const Obstacle
                   nearest.distance;
   fadeWhereParallel(places[1] - places[0], places[3] - places[2],
                     kParallel * edge_squares_[pair.first] * obstacle_edge_squares_[pair.second],
-                    edge_areas_[pair.first], mirrored(law_.guardAt(2.0 * energy.distance)), energy);
+                    edge_areas_[pair.first], mirrored(law.guardAt(2.0 * energy.distance)), energy);
   const std::array<double, 2> of_obstacle = {w[2], w[3]};
   energy.way = obstacles.surfaces.wayOf(pair.obstacle, 2, ends.data(), of_obstacle.data(),
                                         pair.radius * energy.normal, obstacles.at_end);

@@ -19,7 +19,10 @@ RestSurface::RestSurface(const mesh::ClothMesh& mesh)
                                           : mesh.corner_coordinates[t][i];
       places[i] = {corner.x(), corner.y(), 0.0};
     }
+    fabrics.push_back(mesh.fabricOf(t));
   }
+  const auto is_first = [](int fabric) { return fabric == 0; };
+  if (std::all_of(fabrics.begin(), fabrics.end(), is_first)) fabrics.clear();
 }
 
 double RestSurface::shortestAltitude() const {

@@ -14,12 +14,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-double requireFriction(const material::Fabric& fabric) {
-  if (fabric.friction) return *fabric.friction;
-  throw std::invalid_argument("self_collision is modelled and fabric " + base::quoted(fabric.name) +
-                              " has no friction: add the key friction");
-}
-
 /// Friction by slip, as a share of that of what slips, and by what it is the integral of.
 struct Smoothed {
   double potential;  // m
@@ -79,10 +73,27 @@ void addBlocks(const Pair& pair, const Matrix3d& block, linear::SymmetricBlockMa
 
 }  // namespace
 
-SelfContact::SelfContact(const RestSurface& rest, const material::Fabric& fabric)
-    : friction_(requireFriction(fabric)),
-      near_(rest, LayerLaw(fabric).thickness()),
-      energies_(rest, LayerLaw(fabric)) {}
+SelfContact::SelfContact(const RestSurface& rest, const std::vector<material::Fabric>& fabrics)
+    : fabrics_(rest.fabrics),
+      near_(rest, FabricLayers(fabrics).thickness()),
+      energies_(rest, FabricLayers(fabrics)) {}
+
+double SelfContact::margin() const {
+  double most = 0.0;
+  for (int f = 0; f < layers().count(); ++f) most = std::max(most, layers().law(f).margin());
+  return most;
+}
+
+std::vector<double> SelfContact::particleMargins() const {
+  if (fabrics_.empty()) return {};
+  std::vector<double> margins(near_.particleCount(), margin());
+  for (std::size_t t = 0; t < fabrics_.size(); ++t) {
+    for (const int particle : near_.triangles()[t]) {
+      margins[particle] = std::min(margins[particle], 0.5 * layers().law(fabrics_[t]).margin());
+    }
+  }
+  return margins;
+}
 
 void SelfContact::setObstacles(std::shared_ptr<ObstacleSurfaces> surfaces) {
   obstacle_friction_.clear();
@@ -90,7 +101,7 @@ void SelfContact::setObstacles(std::shared_ptr<ObstacleSurfaces> surfaces) {
   obstacles_.reset();
   if (!surfaces) return;
   for (int i = 0; i < surfaces->count(); ++i) {
-    obstacle_friction_.push_back(surfaces->obstacle(i).friction.value_or(friction_));
+    obstacle_friction_.push_back(surfaces->obstacle(i).friction);
   }
   energies_.setObstacles(*surfaces);
   obstacles_.emplace(near_.triangles(), near_.particleCount(), std::move(surfaces),
@@ -113,7 +124,7 @@ const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions,
   }
   touching_at_end_ = at_end;
   touching_revision_ = revision;
-  if (!near_.find(positions, law().thickness())) {
+  if (!near_.find(positions, layers().thickness())) {
     touching_.clear();
     touching_at_.clear();
     return touching_;
@@ -122,7 +133,7 @@ const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions,
   if (obstacles_) {
     const ObstacleSurfaces& surfaces = obstacles_->surfaces();
     obstacles_->find(positions, at_end ? surfaces.atEnd() : surfaces.atBegin(),
-                     0.5 * law().thickness());
+                     0.5 * layers().thickness());
     energies_.findOfObstacles(positions, *obstacles_, at_end, touching_);
   }
   touching_at_ = positions;
@@ -130,7 +141,8 @@ const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions,
 }
 
 double SelfContact::frictionOf(const PairEnergy& pair) const {
-  return pair.obstacle < 0 ? friction_ : obstacle_friction_[pair.obstacle];
+  const double friction = layers().friction(pair.fabrics[0], pair.fabrics[1]);
+  return pair.obstacle < 0 ? friction : obstacle_friction_[pair.obstacle].value_or(friction);
 }
 
 /// m/s, of both sides of a pair against each other.

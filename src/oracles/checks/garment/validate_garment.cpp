@@ -10,6 +10,7 @@ void validateGarment(const std::string& config_directory, const Sink& sink) {
   validatePreposition(config_directory, sink);
   validateLinkage(config_directory, sink);
   validateFasteners(config_directory, sink);
+  validateStuffing(sink);
 }
 
 }  // namespace haptex::oracles

@@ -18,7 +18,7 @@ void randomStack(const std::string&, Random& random, const Sink& sink) {
        {material::kKesLowPressure, thickness * random.uniform(0.8, 0.95)},
        {material::kKesHighPressure, thickness * random.uniform(0.55, 0.7)}});
   const int layers = 2 + random.below(7);
-  const LayerStack stack = restingStack(fabric, layers, base::unlessSanitized(80, 10));
+  const LayerStack stack = restingStack({fabric}, layers, base::unlessSanitized(80, 10));
   CaseName text("self_collision", "stack");
   text.with("layers", layers).with("density", fabric.areal_density).with("thickness", thickness);
   sink(base::relativeTo(stack.exact, text.text(), stack.exact, stack.height,

@@ -34,21 +34,29 @@ void attach(cloth::Cloth& cloth, int particle, const Vector3d& place) {
   cloth.attach(particle, path);
 }
 
-void validateStack(const material::Fabric& fabric, int layers, const Sink& sink) {
-  const LayerStack stack = restingStack(fabric, layers, base::unlessSanitized(80, 10));
-  sink(base::relativeTo(stack.exact, "self_collision/stack_of_" + numbered(layers) + "/height",
+void validateStack(const std::vector<material::Fabric>& fabrics, int layers, const Sink& sink) {
+  const LayerStack stack = restingStack(fabrics, layers, base::unlessSanitized(80, 10));
+  const std::string in_turn = fabrics.size() > 1 ? "_in_turn" : "";
+  sink(base::relativeTo(stack.exact,
+                        "self_collision/stack_of_" + numbered(layers) + in_turn + "/height",
                         stack.exact, stack.height, 0.01));
 }
 
 /// A layer between two others, of which the upper one is loaded, is pulled out: force at its edge.
-void validatePull(const material::Fabric& fabric, const Sink& sink) {
+/// @param fabrics of the outer ones and of the layer; or one of all
+void validatePull(const std::vector<material::Fabric>& fabrics, const std::string& name,
+                  const Sink& sink) {
   constexpr double kSpeed = 0.01, kPressure = 100.0;  // m/s, Pa
-  const double distance = thicknessAt(*fabric.compression, kPressure);
+  const material::Fabric &outer = fabrics.front(), &inner = fabrics.back();
+  const double distance = 0.5 * (thicknessAt(*outer.compression, kPressure) +
+                                 thicknessAt(*inner.compression, kPressure));
+  const double friction = std::sqrt(*outer.friction * *inner.friction);
   // The ends by which layers are held lie beyond the others.
   const ClothMesh lower = flatSheet({0.06, 0.04}, 6, 4, placedAt({0.0, 0.0, 0.0}));
   const ClothMesh middle = flatSheet({0.083, 0.029}, 8, 3, placedAt({0.0215, 0.0, distance}));
   const ClothMesh upper = flatSheet({0.05, 0.03}, 5, 3, placedAt({-0.012, 0.0, 2.0 * distance}));
-  SelfCollidingCloth stack({asOneMesh({lower, middle, upper}), 0.0}, fabric, newtonSteps(20));
+  const ClothMesh mesh = asOneMesh({lower, middle, upper}, static_cast<int>(fabrics.size()));
+  SelfCollidingCloth stack({mesh, 0.0}, fabrics, newtonSteps(20));
   const int of_lower = static_cast<int>(lower.initial_positions.size());
   const int to_upper = of_lower + static_cast<int>(middle.initial_positions.size());
   double load = 0.0;
@@ -79,8 +87,8 @@ void validatePull(const material::Fabric& fabric, const Sink& sink) {
     for (const int particle : pulled) pull -= forces[particle].x() / measured_steps;
   }
   const double measured = pull / (2.0 * load);
-  sink(base::relativeTo(*fabric.friction, "self_collision/pulled_out/MIU", *fabric.friction,
-                        measured, base::unlessSanitized(0.02, 2.0)));
+  sink(base::relativeTo(friction, "self_collision/" + name + "/MIU", friction, measured,
+                        base::unlessSanitized(0.02, 2.0)));
 }
 
 /// Two sheets fly into each other, without anything else.
@@ -93,7 +101,7 @@ void validateMomentum(const material::Fabric& fabric, const Sink& sink) {
   SelfCollidingCloth sheets({asOneMesh({flatSheet({0.06, 0.06}, 6, 6, placedAt({0.0, 0.0, 0.0})),
                                         flatSheet({0.04, 0.04}, 4, 4, oblique)}),
                              0.0},
-                            fabric, settings);
+                            {fabric}, settings);
   const auto momentum = [&] {
     Vector3d sum = Vector3d::Zero();
     for (std::size_t i = 0; i < sheets.cloth.particleCount(); ++i) {
@@ -132,7 +140,7 @@ void validateMomentum(const material::Fabric& fabric, const Sink& sink) {
 void validateScenes(const material::Fabric& fabric, const Sink& sink) {
   constexpr int kCells = base::unlessSanitized(8, 3);
   for (const SelfCollidingCloth::Set& set : selfCollisionScenes(kCells)) {
-    SelfCollidingCloth scene(set, fabric, newtonSteps(10));
+    SelfCollidingCloth scene(set, {fabric}, newtonSteps(10));
     const double start = scene.energy();
     std::size_t most = 0;
     double highest = start, lowest = start;
@@ -166,9 +174,12 @@ void validateTangledStarts(const std::string& config_directory, const Sink& sink
 
 void validateSelfCollision(const std::string& config_directory, const Sink& sink) {
   const material::Fabric wool = material::loadFabric(config_directory + "/fabrics/wool.yaml");
-  validateStack(wool, 5, sink);
-  if (!base::kSanitized) validateStack(wool, 20, sink);
-  validatePull(wool, sink);
+  const material::Fabric denim = material::loadFabric(config_directory + "/fabrics/denim.yaml");
+  validateStack({wool}, 5, sink);
+  if (!base::kSanitized) validateStack({wool}, 20, sink);
+  validateStack({denim, wool}, 5, sink);
+  validatePull({wool}, "pulled_out", sink);
+  validatePull({denim, wool}, "pulled_out_of_denim", sink);
   validateMomentum(wool, sink);
   validateScenes(wool, sink);
   validateTangledStarts(config_directory, sink);

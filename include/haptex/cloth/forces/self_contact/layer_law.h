@@ -1,5 +1,7 @@
-// What two layers of a fabric do to each other through their thickness.
+// What two layers of fabric do to each other through their thickness.
 #pragma once
+
+#include <vector>
 
 #include "haptex/material/fabric.h"
 
@@ -42,10 +44,57 @@ class LayerLaw {
   double margin() const { return 0.5 * (thickness() + least_); }
 
  private:
-  LayerPressure barrier(double distance, double factor) const;
+  friend class LayerPair;
+  LayerPressure pressed(double distance) const;
 
   material::Compression compression_;
   double least_;
+};
+
+/// A layer of one fabric on a layer of another, as two springs in series: both have the same
+/// pressure p, and the middle surfaces are half of the thickness that either fabric has under it
+/// apart,
+///   d(p) = (d_first(p) + d_second(p)) / 2.
+/// So all thicknesses are sums of halves. Of twice the same fabric it is the fabric's LayerLaw.
+class LayerPair {
+ public:
+  /// Both have to outlive this.
+  LayerPair(const LayerLaw& first, const LayerLaw& second) : first_(first), second_(second) {}
+
+  /// As LayerLaw has them.
+  LayerPressure at(double distance) const;
+  LayerPressure guardAt(double distance) const;
+  double thickness() const { return 0.5 * (first_.thickness() + second_.thickness()); }
+  double leastDistance() const { return 0.5 * (first_.leastDistance() + second_.leastDistance()); }
+
+ private:
+  LayerPressure inSeries(double distance) const;
+
+  const LayerLaw& first_;
+  const LayerLaw& second_;
+};
+
+/// The layers of all fabrics of a cloth, and Coulomb friction between them.
+class FabricLayers {
+ public:
+  /// @throws std::invalid_argument if a fabric has no compression or no friction
+  explicit FabricLayers(const std::vector<material::Fabric>& fabrics);
+
+  const LayerLaw& law(int fabric) const { return laws_[fabric]; }
+  LayerPair pair(int first, int second) const { return {laws_[first], laws_[second]}; }
+  /// m, that the thickest layers are apart without pressure.
+  double thickness() const { return thickness_; }
+  /// m, likewise the largest LayerLaw::leastDistance().
+  double leastDistance() const { return least_; }
+  /// The fabric's MIU, of two fabrics their geometric mean: no friction on what has none, and that
+  /// of both where they are alike.
+  double friction(int first, int second) const;
+  int count() const { return static_cast<int>(laws_.size()); }
+
+ private:
+  std::vector<LayerLaw> laws_;
+  std::vector<double> friction_;
+  double thickness_ = 0.0, least_ = 0.0;
 };
 
 }  // namespace haptex::cloth

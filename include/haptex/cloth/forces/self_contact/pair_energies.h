@@ -31,6 +31,7 @@ struct PairEnergy {
                                                         ///< edge vector besides by the distance
   Eigen::Vector3d by_second = Eigen::Vector3d::Zero();  ///< N, likewise the second
   int obstacle = -1;                                    ///< -1: the cloth and itself
+  std::array<int, 2> fabrics = {0, 0};                  ///< of both sides; alike at an obstacle
   Eigen::Vector3d way = Eigen::Vector3d::Zero();  ///< m, that the obstacle's surface goes there in
                                                   ///< the step
 
@@ -49,12 +50,17 @@ struct PairEnergy {
 ///   lengths squared A, B,
 /// because the distance of edges that become parallel has a kink (Li et al. 2020).
 ///
+/// In cloth of several fabrics the law is that of each two which meet (LayerPair). A vertex between
+/// regions has of each fabric the area that belongs to it, and an edge the fabric of one of its
+/// triangles.
+///
 /// An obstacle's surface mirrors the cloth: at the distance g of its middle surface from there, the
 /// fabric has the pressure of two layers 2 g apart, on the whole area of its vertices. What the
 /// obstacle's vertices and edges do between them is the guard's affair.
 class PairEnergies {
  public:
-  PairEnergies(const RestSurface& rest, const LayerLaw& law);
+  /// @param layers of the fabrics that the surface names
+  PairEnergies(const RestSurface& rest, FabricLayers layers);
 
   /// Makes room for the obstacles.
   void setObstacles(const ObstacleSurfaces& surfaces);
@@ -69,7 +75,7 @@ class PairEnergies {
   void findOfObstacles(const std::vector<Eigen::Vector3d>& positions, const NearObstacles& near,
                        bool at_end, std::vector<PairEnergy>& found);
 
-  const LayerLaw& law() const { return law_; }
+  const FabricLayers& layers() const { return layers_; }
 
  private:
   using Positions = std::vector<Eigen::Vector3d>;
@@ -81,6 +87,15 @@ class PairEnergies {
     const Positions& places;
   };
 
+  /// Of a vertex: what belongs to it of a fabric, m^2.
+  struct Area {
+    int fabric;
+    double area;
+  };
+  void addAreas();
+  int fabricOf(int triangle) const { return fabrics_.empty() ? 0 : fabrics_[triangle]; }
+  int fabricOfEdge(int edge) const { return edge_fabrics_.empty() ? 0 : edge_fabrics_[edge]; }
+
   void addVertex(const Positions& positions, int vertex, std::vector<PairEnergy>& found);
   void addVertexAtObstacle(const Positions& positions, const Obstacles& obstacles, const Pair& pair,
                            std::vector<PairEnergy>& found);
@@ -90,12 +105,14 @@ class PairEnergies {
   void addEdgesAtObstacle(const Positions& positions, const Obstacles& obstacles, const Pair& pair,
                           std::vector<PairEnergy>& found) const;
 
-  LayerLaw law_;
+  FabricLayers layers_;
   int particles_;
   std::vector<std::array<int, 3>> triangles_;
   SurfaceFeatures cloth_;
   std::optional<SurfaceFeatures> obstacles_;
-  std::vector<double> vertex_areas_;           // m^2, half of what belongs to a vertex
+  std::vector<int> fabrics_, edge_fabrics_;    // of triangles and edges; empty: all of fabric 0
+  std::vector<Area> areas_;                    // half of what belongs to the vertices, and
+  std::vector<int> first_area_;                // where each one's begin; one more
   std::vector<double> edge_areas_;             // m^2, half of what belongs to an edge
   std::vector<double> edge_squares_;           // m^2, rest length squared
   std::vector<double> obstacle_edge_squares_;  // m^2, likewise

@@ -27,6 +27,7 @@ struct RestSurface {
 
   std::vector<std::array<int, 3>> triangles;
   std::vector<std::array<Eigen::Vector3d, 3>> corners;  ///< m, of each triangle, in a plane
+  std::vector<int> fabrics;  ///< of the triangles; empty: all of fabric 0
 
  private:
   std::vector<Eigen::Vector3d> places_;

@@ -22,8 +22,8 @@ struct TangleLink {
   int count = 5;                  ///< of vertices
 };
 
-/// The sum of PairEnergies, a function of the positions alone, and Coulomb friction with the
-/// fabric's MIU between the points of each pair that are nearest to each other. Friction is smooth:
+/// The sum of PairEnergies, a function of the positions alone, and Coulomb friction as FabricLayers
+/// says between the points of each pair that are nearest to each other. Friction is smooth:
 /// at a slip speed v below kSlipSpeed the coefficient is MIU times (2 - v/kSlipSpeed) v/kSlipSpeed,
 /// so that what sticks creeps. Newton iterations hold the normal forces, the normals and the
 /// weights, and friction is the gradient of a convex potential of the slip since the stage's base
@@ -43,9 +43,10 @@ class SelfContact final : public Force {
  public:
   static constexpr double kSlipSpeed = 1e-3;  ///< m/s
 
-  /// @throws std::invalid_argument if the fabric has no compression or no friction, or what
-  ///   NearPairs says
-  SelfContact(const RestSurface& rest, const material::Fabric& fabric);
+  /// @param fabrics that the surface names
+  /// @throws std::invalid_argument if a fabric has no compression or no friction, or what NearPairs
+  ///   says about the thickest one
+  SelfContact(const RestSurface& rest, const std::vector<material::Fabric>& fabrics);
 
   void addForces(const ForceState& state, std::vector<Eigen::Vector3d>& forces) const override;
   double energy(const ForceState& state) const override;
@@ -70,7 +71,13 @@ class SelfContact final : public Force {
   /// what tangles do against themselves, so that nothing goes on through what has no contact; the
   /// forces are without that.
   bool leaveOut(const TangleSides& sides, const std::vector<TangleLink>& links) const;
-  const LayerLaw& law() const { return energies_.law(); }
+  const FabricLayers& layers() const { return energies_.layers(); }
+  /// m, LayerLaw::margin() of the fabric that has the most.
+  double margin() const;
+  /// m, of two elements of cloth the sum of what either has is where motions stop before they
+  /// touch: of each particle half of LayerLaw::margin(), between regions the least one. Empty where
+  /// all are of one fabric.
+  std::vector<double> particleMargins() const;
 
   /// From now on the cloth is among these; null: among none. Allocates.
   void setObstacles(std::shared_ptr<ObstacleSurfaces> surfaces);
@@ -100,11 +107,11 @@ class SelfContact final : public Force {
   void addEnergies(const std::vector<PairEnergy>& pairs, double a,
                    linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
 
-  double friction_;
+  std::vector<int> fabrics_;  // RestSurface::fabrics
   mutable NearPairs near_;
   mutable PairEnergies energies_;
   mutable std::optional<NearObstacles> obstacles_;
-  std::vector<double> obstacle_friction_;
+  std::vector<std::optional<double>> obstacle_friction_;
   mutable Positions touching_at_;
   mutable bool touching_at_end_ = true;
   mutable int touching_revision_ = 0;  // of the obstacles' places

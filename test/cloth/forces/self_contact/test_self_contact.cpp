@@ -96,7 +96,7 @@ ClothState crumpled(const Cloth& cloth, double depth, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   const std::size_t half = cloth.particleCount() / 2;
-  const double thickness = cloth.selfContact()->law().thickness();
+  const double thickness = cloth.selfContact()->layers().law(0).thickness();
   for (std::size_t i = 0; i < half; ++i) {
     state.positions[i] += 1e-3 * Vector3d(any(random), any(random), any(random));
     state.positions[half + i] =
@@ -120,7 +120,7 @@ TEST(SelfContact, ForcesAreTheGradientOfTheEnergyWhereverItTouches) {
 TEST(SelfContact, ForcesSumUpToNothingAndTurnNothing) {
   const material::Fabric fabric = fabricNamed("wool");
   const Cloth cloth(layers(2, 0.03, 4), fabric, selfCollision());
-  const double thickness = cloth.selfContact()->law().thickness();
+  const double thickness = cloth.selfContact()->layers().law(0).thickness();
   ClothState state = crumpled(cloth, 0.1, 7);
   for (const bool rubbing : {true, false}) {
     if (!rubbing) std::fill(state.velocities.begin(), state.velocities.end(), Vector3d::Zero());

@@ -1,0 +1,91 @@
+// Garments that are worn over each other, as one pattern.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "garment_fixtures.h"
+#include "haptex/garment/pattern/outfit.h"
+
+namespace haptex::garment::test_outfit {
+namespace {
+
+class Outfit : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(directory_);
+    write("shirt", kSmallGarment);
+    write("trousers", kSmallGarment);
+  }
+  void TearDown() override { std::filesystem::remove_all(directory_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(directory_ + "/" + name + ".yaml") << text;
+  }
+  Pattern load(const std::string& garments) const {
+    write("outfit", "source: made up\ngarments: " + garments + "\n");
+    return loadOutfit(directory_ + "/outfit.yaml");
+  }
+  std::string refusal(const std::string& garments) const {
+    try {
+      load(garments);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const std::string directory_ = testing::TempDir() + "outfit_" + std::to_string(getpid());
+};
+
+TEST_F(Outfit, HasAllPanelsCarriersAndSeamsEachUnderTheNameOfItsGarment) {
+  const Pattern one = parsePattern(kSmallGarment, "small.yaml");
+  const Pattern both = load("[trousers, shirt]");
+  const std::size_t panels = one.panels.size(), seams = one.seams.size();
+  ASSERT_EQ(both.panels.size(), 2 * panels);
+  ASSERT_EQ(both.seams.size(), 2 * seams);
+  EXPECT_EQ(both.panels[0].name, "trousers/" + one.panels[0].name);
+  EXPECT_EQ(both.panels[panels].name, "shirt/" + one.panels[0].name);
+  EXPECT_EQ(both.carriers[0].name, "trousers/torso");
+  EXPECT_EQ(std::get<OnCarrier>(both.panels[panels + 1].placement).carrier, "shirt/torso");
+  for (std::size_t s = 0; s < seams; ++s) {
+    EXPECT_EQ(both.seams[seams + s].sides[0].panel,
+              one.seams[s].sides[0].panel + static_cast<int>(panels));
+  }
+}
+
+TEST_F(Outfit, LayersFollowTheOrderOfDressingAlone) {
+  const std::size_t panels = parsePattern(kSmallGarment, "small.yaml").panels.size();
+  for (const char* order : {"[trousers, shirt]", "[shirt, trousers]"}) {
+    const Pattern both = load(order);
+    int highest = 0, lowest = kLargestLayer;
+    for (std::size_t p = 0; p < panels; ++p) {
+      highest = std::max(highest, both.panels[p].layer);
+      lowest = std::min(lowest, both.panels[panels + p].layer);
+    }
+    EXPECT_GT(lowest, highest) << order;
+  }
+  EXPECT_EQ(load("[shirt, trousers]").panels[0].name.substr(0, 6), "shirt/");
+}
+
+TEST_F(Outfit, IsRefusedWithWhatIsWrong) {
+  const auto expect = [&](const std::string& garments, const char* part) {
+    const std::string message = refusal(garments);
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  expect("[]", "garments: has 0 garments: allowed are 1 to 8");
+  expect("[shirt, trousers, ./shirt.yaml]", "is there twice");
+  write("list", "source: made up\ngarments: [shirt]\n");
+  expect("[list]", "list.yaml");
+  EXPECT_THROW(load("[hat]"), std::runtime_error);
+  std::string many = "[shirt, trousers";
+  for (int i = 0; i < 7; ++i) {
+    write("g" + std::to_string(i), kSmallGarment);
+    many += ", g" + std::to_string(i);
+  }
+  expect(many + "]", "has 9 garments");
+}
+
+}  // namespace
+}  // namespace haptex::garment::test_outfit
