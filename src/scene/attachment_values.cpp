@@ -1,6 +1,5 @@
 #include "haptex/scene/attachment_values.h"
 
-#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -119,15 +118,6 @@ std::map<int, std::string> readHolders(const YamlValue& attach, const mesh::Clot
 }
 
 }  // namespace
-
-bool isFrameName(const std::string& name) {
-  if (name.empty() || name.size() > kLongestFrameName) return false;
-  // Not by std::isalpha(), which depends on the locale.
-  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
-  return is_letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
-           return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
-         });
-}
 
 Attachments readAttachments(const YamlValue& file, const mesh::ClothMesh& mesh) {
   std::map<std::string, YamlValue> listed;

@@ -8,7 +8,7 @@
 
 #include "haptex/base/quoted.h"
 #include "haptex/mesh/obj_file.h"
-#include "haptex/scene/attachment_values.h"
+#include "haptex/scene/frame_name.h"
 
 namespace haptex::scene {
 namespace {

@@ -7,7 +7,7 @@
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/proximity/cursor.h"
-#include "haptex/scene/attachment_values.h"
+#include "haptex/scene/frame_name.h"
 #include "haptex/simulation/particle_requests.h"
 #include "haptex/simulation/simulated_cloth.h"
 

@@ -1,6 +1,7 @@
 // Frames that carry particles in scene files.
 #include <gtest/gtest.h>
 
+#include "haptex/scene/frame_name.h"
 #include "scene_fixtures.h"
 
 namespace haptex::scene::test_scene_frames {

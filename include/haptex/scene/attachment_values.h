@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,12 +9,6 @@
 #include "haptex/mesh/mesh.h"
 
 namespace haptex::scene {
-
-/// A name of a frame that carries particles: it becomes part of a topic.
-constexpr char kFrameNames[] = "a letter, then letters, digits and _, up to 200 characters";
-constexpr std::size_t kLongestFrameName = 200;  ///< bytes
-/// Whether a name is one of kFrameNames and not longer than kLongestFrameName.
-bool isFrameName(const std::string& name);
 
 /// Particles that go with a frame, as the links of a mechanism and all that tf knows.
 struct CarryingFrame {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "haptex/base/quoted.h"
-#include "haptex/scene/attachment_values.h"
+#include "haptex/scene/frame_name.h"
 
 namespace haptex::nodes {
 namespace {
