@@ -97,7 +97,7 @@ void Cloth::takeFabrics(std::vector<material::Fabric> fabrics) {
   const Fasteners* fasteners = nullptr;
   if (!effects_.fasteners.empty()) {
     const double thickness =
-        effects_.self_collision ? of_fabrics.find<SelfContact>()->law().thickness() : 0.0;
+        effects_.self_collision ? of_fabrics.find<SelfContact>()->layers().thickness() : 0.0;
     fasteners =
         &forces->add(std::make_unique<Fasteners>(effects_.fasteners, masses.size(), thickness));
   }

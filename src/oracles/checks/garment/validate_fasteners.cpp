@@ -23,7 +23,7 @@ using cloth::Fastener;
 using cloth::FastenerKind;
 using Eigen::Vector3d;
 
-constexpr double kReleaseTolerance = 0.02;  // relative, what the issue asks for
+constexpr double kReleaseTolerance = 0.02;  // relative
 
 /// Two pieces of a fabric in one plane, the second one above the first, each clamped along its far
 /// edge, and a fastener between a place in each.

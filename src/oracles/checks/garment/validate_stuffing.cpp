@@ -20,9 +20,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.1;      // m, at rest
-constexpr double kModulus = 400.0;   // N/m
-constexpr double kTolerance = 0.01;  // of Laplace's law
+constexpr double kRadius = 0.1;              // m, at rest
+constexpr double kModulus = 400.0;           // N/m
+constexpr double kStuffingTolerance = 0.01;  // of Laplace's law
 
 /// The triangles of an icosahedron, cut into four several times, on a sphere.
 mesh::ClothMesh ball(int cuts) {
@@ -181,10 +181,10 @@ void validateBall(const Sink& sink) {
     const std::string name =
         std::string("garment/stuffing/ball_of_") + (share < 2.0 ? "1.5" : "3") + "_volumes";
     sink(base::relativeTo(exact - rest, name + "/growth_of_radius", exact - rest, radius - rest,
-                          base::unlessSanitized(kTolerance, 0.05)));
+                          base::unlessSanitized(kStuffingTolerance, 0.05)));
     sink(base::relativeTo(0.5 * ball_now.pressure * radius, name + "/laplace_tension",
                           0.5 * ball_now.pressure * radius, tension,
-                          base::unlessSanitized(kTolerance, 0.05)));
+                          base::unlessSanitized(kStuffingTolerance, 0.05)));
   }
 }
 
@@ -195,7 +195,8 @@ void validateCushion(const Sink& sink) {
   const Inflated now =
       inflate(cushion(kSide, base::unlessSanitized(12, 6)), mass, base::unlessSanitized(200, 100));
   const double work = 3.0 * now.pressure * now.volume;
-  sink(base::relativeTo(work, "garment/stuffing/cushion/virtual_work", work, now.work, kTolerance));
+  sink(base::relativeTo(work, "garment/stuffing/cushion/virtual_work", work, now.work,
+                        kStuffingTolerance));
 }
 
 }  // namespace
