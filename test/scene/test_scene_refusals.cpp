@@ -20,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"UnknownKey", "fabric: silk", "fabric: silk\nwaves: 3",
                 "waves: unknown key, allowed here: fabric, attach, model, time_step, sheet, mesh, "
                 "elasticity, gravity, bending, air, wind, integrator, solver, obstacles, "
-                "penalty, haptics, state, regions, frames, fasteners"},
+                "penalty, haptics, state, regions, frames, fasteners, stuffing"},
         Refusal{"MissingModel", "model: [gravity, viscosity]\n", "",
                 "the key 'model' is missing, required here: fabric, attach, model, time_step"},
         Refusal{"MissingAttach", "attach: [top]\n", "",
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"UnknownEffect", "viscosity]", "steam]",
                 "model[1]: 'steam' must be one of gravity, viscosity, membrane_hysteresis, "
-                "bending, bending_hysteresis, contraction, self_collision, air, wind, obstacles, "
+                "bending, bending_hysteresis, contraction, self_collision, stuffing, air, wind, obstacles, "
                 "fingers, tactile, recording"},
         Refusal{"SelfCollisionOfOtherIntegrators", "[gravity, viscosity]",
                 "[self_collision]\nintegrator: backward_midpoint",

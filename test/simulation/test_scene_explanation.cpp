@@ -27,6 +27,7 @@ scene::Scene sceneWithEverything() {
   scene.effects.viscosity = scene.effects.membrane_hysteresis = true;
   scene.effects.bending = scene.effects.bending_hysteresis = true;
   scene.effects.self_collision = true;
+  scene.effects.stuffing.emplace();
   scene.effects.contraction = scene.effects.contacts = scene.effects.point_loads = true;
   scene.effects.air = cloth::Air();
   scene.effects.air->wind.mean = {1.0, 0.0, 0.0};

@@ -156,11 +156,9 @@ TEST(Regions, ThatWhatIsModelledDoesNotKnowAreRefused) {
   };
   EXPECT_EQ(refusal({}, 2), "(not refused)");
   EXPECT_NE(refusal({}, 1).find("is of fabric 1; there are 1"), std::string::npos);
-  ModelledEffects springs, self, hysteresis;
+  ModelledEffects springs, hysteresis;
   springs.elasticity = Elasticity::kMassSpring;
   EXPECT_EQ(refusal(springs, 2), "springs know one fabric, and the cloth has 2");
-  self.self_collision = true;
-  EXPECT_EQ(refusal(self, 2), "self_collision knows one fabric, and the cloth has 2");
   hysteresis.bending = hysteresis.bending_hysteresis = true;
   EXPECT_NE(refusal(hysteresis, 2).find("hysteresis of bending knows one fabric"),
             std::string::npos);
