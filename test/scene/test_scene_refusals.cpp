@@ -55,8 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"UnknownEffect", "viscosity]", "steam]",
                 "model[1]: 'steam' must be one of gravity, viscosity, membrane_hysteresis, "
-                "bending, bending_hysteresis, contraction, self_collision, stuffing, air, wind, obstacles, "
-                "fingers, tactile, recording"},
+                "bending, bending_hysteresis, contraction, self_collision, stuffing, air, wind, "
+                "obstacles, fingers, tactile, recording"},
         Refusal{"SelfCollisionOfOtherIntegrators", "[gravity, viscosity]",
                 "[self_collision]\nintegrator: backward_midpoint",
                 "integrator: 'backward_midpoint' is not allowed if model lists self_collision: "
