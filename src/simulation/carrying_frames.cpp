@@ -19,6 +19,8 @@ std::vector<Eigen::Isometry3d> startsOf(const std::vector<scene::CarryingFrame>&
 }  // namespace
 
 void requireFramePose(const std::string& frame, const Eigen::Isometry3d& pose) {
+  const bool is_near = pose.translation().cwiseAbs().maxCoeff() <= kMaxCoordinate;
+  if (is_near && pose.matrix().allFinite()) return;  // before every step: without a text
   requireWithin("the origin of frame " + base::quoted(frame), pose.translation(), kMaxCoordinate,
                 "m");
   if (!pose.linear().allFinite()) {
