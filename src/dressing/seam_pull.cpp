@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 
+#include "haptex/base/disjoint_sets.h"
 #include "haptex/mesh/seam_edges.h"
 
 namespace haptex::dressing {
@@ -46,16 +46,11 @@ std::vector<std::array<int, 2>> partners(const mesh::Seam& seam) {
 
 SeamPull::SeamPull(const garment::GarmentMesh& garment, double tension) {
   const mesh::ClothMesh& mesh = garment.mesh;
-  std::vector<int> parents(mesh.rest_coordinates.size());
-  std::iota(parents.begin(), parents.end(), 0);
-  const auto root = [&](int particle) {
-    while (parents[particle] != particle) particle = parents[particle];
-    return particle;
-  };
+  base::DisjointSets together(mesh.rest_coordinates.size());
   std::map<int, Member> members;
   for (std::size_t s = 0; s < garment.seams.size(); ++s) {
     const mesh::Seam& seam = garment.seams[s];
-    for (const auto& [a, b] : partners(seam)) parents[root(b)] = root(a);
+    for (const auto& [a, b] : partners(seam)) together.join(a, b);
     for (const std::vector<int>* side : {&seam.first, &seam.second}) {
       const std::vector<double> lengths = lengthsAt(mesh, *side);
       for (std::size_t i = 0; i < side->size(); ++i) {
@@ -75,7 +70,8 @@ SeamPull::SeamPull(const garment::GarmentMesh& garment, double tension) {
   }
   std::map<int, int> groups;
   for (auto& [particle, member] : members) {
-    member.group = groups.emplace(root(particle), static_cast<int>(groups.size())).first->second;
+    member.group =
+        groups.emplace(together.root(particle), static_cast<int>(groups.size())).first->second;
     member.most = kMost * member.force;
     members_.push_back(member);
   }

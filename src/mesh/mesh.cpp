@@ -169,6 +169,19 @@ std::vector<Eigen::Vector3d> flatPositions(const ClothMesh& mesh) {
   return positions;
 }
 
+void cutAsInSpace(ClothMesh& mesh) {
+  mesh.rest_coordinates.assign(mesh.initial_positions.size(), Eigen::Vector2d::Zero());
+  mesh.corner_coordinates.clear();
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3d ab = mesh.initial_positions[b] - mesh.initial_positions[a];
+    const Eigen::Vector3d ac = mesh.initial_positions[c] - mesh.initial_positions[a];
+    const double along = ac.dot(ab) / ab.norm();
+    const double across = std::sqrt(std::max(0.0, ac.squaredNorm() - along * along));
+    mesh.corner_coordinates.push_back({Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(ab.norm(), 0.0),
+                                       Eigen::Vector2d(along, across)});
+  }
+}
+
 std::vector<int> sideParticles(const ClothMesh& mesh, Side side) {
   std::vector<int> particles;
   if (mesh.rest_coordinates.empty()) return particles;

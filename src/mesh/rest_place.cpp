@@ -1,6 +1,5 @@
 #include "haptex/mesh/rest_place.h"
 
-#include <array>
 #include <numeric>
 
 namespace haptex::mesh {
@@ -11,19 +10,13 @@ using Eigen::Vector3d;
 
 double doubleArea(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-std::array<Vector2d, 3> cornersOf(const ClothMesh& mesh, int triangle) {
-  if (!mesh.corner_coordinates.empty()) return mesh.corner_coordinates[triangle];
-  const auto& [a, b, c] = mesh.triangles[triangle];
-  return {mesh.rest_coordinates[a], mesh.rest_coordinates[b], mesh.rest_coordinates[c]};
-}
-
 }  // namespace
 
 std::optional<RestPlace> findRestPlace(const ClothMesh& mesh, const std::vector<int>& triangles,
                                        const Vector2d& rest) {
   constexpr double kRounding = 1e-9;
   for (const int triangle : triangles) {
-    const auto [a, b, c] = cornersOf(mesh, triangle);
+    const auto [a, b, c] = mesh.restCorners(triangle);
     const double whole = doubleArea(b - a, c - a);
     const double of_b = doubleArea(rest - a, c - a) / whole;
     const double of_c = doubleArea(b - a, rest - a) / whole;

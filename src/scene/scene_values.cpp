@@ -1,6 +1,5 @@
 #include "haptex/scene/scene_values.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>

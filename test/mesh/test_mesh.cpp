@@ -206,5 +206,24 @@ TEST(Circles, RefuseRadiiThatDoNotAscend) {
             "radius 1 of a round mesh is inf m: allowed are finite numbers > 0");
 }
 
+TEST(CutAsInSpace, GivesEveryTriangleTheEdgesThatItHasThere) {
+  ClothMesh mesh;
+  mesh.initial_positions = {{0.0, 0.0, 0.0}, {0.3, 0.1, 0.2}, {-0.1, 0.4, 0.1}, {0.2, 0.1, -0.3}};
+  mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+  cutAsInSpace(mesh);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::array<Eigen::Vector2d, 3> corners = mesh.restCorners(t);
+    for (int i = 0; i < 3; ++i) {
+      const int next = (i + 1) % 3;
+      const double length = (mesh.initial_positions[mesh.triangles[t][next]] -
+                             mesh.initial_positions[mesh.triangles[t][i]])
+                                .norm();
+      EXPECT_NEAR((corners[next] - corners[i]).norm(), length, 1e-15) << t;
+    }
+    EXPECT_EQ(corners[1].y(), 0.0);
+    EXPECT_GT(corners[2].y(), 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace haptex::mesh::test_mesh

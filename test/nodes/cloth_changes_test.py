@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """cloth_simulation exchanges its sheet and single properties while it runs."""
 import math
-import unittest
 
 import numpy as np
 import rospy
@@ -11,7 +10,7 @@ from geometry_msgs.msg import Point, Vector3
 from haptex.msg import ClothMesh, ClothState, ContactForces
 from haptex.srv import (SetFabric, SetProperties, SetPropertiesRequest, SetSheet, SetSheetRequest,
                         StepCloth)
-from ros_fixtures import Diagnostics, eventually
+from ros_fixtures import AnswersTest, Diagnostics, eventually
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import MarkerArray
 
@@ -19,7 +18,7 @@ WAIT = 30.0  # s
 AREA, DENSITY, GRAVITY = 0.2 * 0.2, 0.15, 9.80665  # m^2, kg/m^2, m/s^2
 
 
-class ClothChanges(unittest.TestCase):
+class ClothChanges(AnswersTest):
     @classmethod
     def setUpClass(cls):
         for name, kind in (('pause', SetBool), ('reset', Trigger), ('step', StepCloth),
@@ -35,14 +34,6 @@ class ClothChanges(unittest.TestCase):
         self.properties(**{name: value for name, value in self.start.items() if name != 'groups'
                            and not name.startswith(('wind', 'air'))})
         self.accepted(self.set_sheet(SetSheetRequest()))
-
-    def accepted(self, response):
-        self.assertTrue(response.success, response.message)
-        return response
-
-    def refused(self, response, says):
-        self.assertFalse(response.success, f'accepted instead of refused: {says}')
-        self.assertIn(says, response.message)
 
     def properties(self, **values):
         self.accepted(self.set_properties(SetPropertiesRequest(names=list(values),

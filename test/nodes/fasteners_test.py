@@ -1,7 +1,5 @@
 #!/usr/bin/python3
 """cloth_simulation fastens and unfastens what the scene gathered_wool lists, and tells what opens by itself."""
-import unittest
-
 import rospy
 import rostest
 from geometry_msgs.msg import Point, Vector3
@@ -9,7 +7,7 @@ from haptex.msg import ClothState, FastenerEvent, FastenerStates
 from haptex.srv import (AttachParticles, AttachParticlesRequest, MoveParticles, MoveParticlesRequest,
                         ReleaseParticles, SelectFasteners, SetSheet, SetSheetRequest, SetState,
                         SetStateRequest, StepCloth)
-from ros_fixtures import Diagnostics, eventually
+from ros_fixtures import AnswersTest, Diagnostics, eventually
 from std_srvs.srv import SetBool, Trigger
 
 WAIT = 30.0  # s
@@ -22,7 +20,7 @@ def particle(column, row):
     return row * (CELLS + 1) + column
 
 
-class Fasteners(unittest.TestCase):
+class Fasteners(AnswersTest):
     @classmethod
     def setUpClass(cls):
         for name, kind in (('pause', SetBool), ('reset', Trigger), ('step', StepCloth),
@@ -44,14 +42,6 @@ class Fasteners(unittest.TestCase):
         self.accepted(self.reset())
         self.await_fastened(START)
         self.events.clear()
-
-    def accepted(self, response):
-        self.assertTrue(response.success, response.message)
-        return response
-
-    def refused(self, response, says):
-        self.assertFalse(response.success, f'accepted instead of refused: {says}')
-        self.assertIn(says, response.message)
 
     def fastened(self):
         return {one.name: bool(one.fastened) for one in self.states[-1].fasteners}

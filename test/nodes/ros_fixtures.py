@@ -23,6 +23,18 @@ def eventually(happens, what, wait=WAIT, meanwhile=lambda: None):
         time.sleep(0.01)
 
 
+class AnswersTest(unittest.TestCase):
+    """A test of services whose answers say whether they did it, and why not."""
+
+    def accepted(self, response):
+        self.assertTrue(response.success, response.message)
+        return response
+
+    def refused(self, response, says):
+        self.assertFalse(response.success, f'accepted instead of refused: {says}')
+        self.assertIn(says, response.message)
+
+
 def await_connections(*publishers):
     for publisher in publishers:
         eventually(publisher.get_num_connections, f'a subscriber of {publisher.name}')

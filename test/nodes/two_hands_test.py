@@ -64,7 +64,7 @@ class TwoHands(NodeTest):
             path = pathlib.Path(f'{rospy.get_param("~bag")}_{hand}.bag')
             self.addCleanup(path.unlink)
             os.kill(process_of(self.recorder_of(hand)), signal.SIGINT)
-            self.eventually(path.exists, f'the bag of the {hand} hand')
+            self.eventually(path.exists, f'the bag of the {hand} hand', wait=WAIT)
             with rosbag.Bag(path) as bag:
                 topics = bag.get_type_and_topic_info().topics
             self.assertGreater(topics[f'/{hand}/haptex/cloth/state'].message_count, 10)

@@ -76,18 +76,16 @@ struct DrapeOutcome {
 /// 2. As soon as all are near, and what is sewn together there intersects neither itself nor the
 ///    body, or can be pulled apart, they become one mesh.
 /// 3. That comes to rest with weight, thickness and friction as they are.
-/// 4. Its edges are halved (garment::halved()) where it is, and it comes to rest again; settings
-/// say
-///    how often. So panels are sewn with few triangles, whatever is asked for in the end, and what
-///    is finer starts near its equilibrium, and free of intersections.
+/// 4. Its edges are halved (garment::halved()) where it is, and it comes to rest again, as often as
+///    settings say. So panels are sewn with few triangles, whatever is asked for in the end, and
+///    what is finer starts near its equilibrium, and free of intersections.
 /// @param fabrics those that the garment names, in its order
 /// @param body closed surface, m, world frame
 /// @throws std::invalid_argument if a number of the settings is not finite and > 0, the garment
 ///   names another number of fabrics, one lacks bending, compression or friction, a panel touches
 ///   the body at the start, or what cloth::Cloth and mesh::merge() say
 /// @throws std::runtime_error if a seam does not close within most_closing_time, naming its panels
-/// and what
-///   is in the way, or a step is not finite
+///   and what is in the way, or a step is not finite
 DrapeOutcome drape(const garment::GarmentMesh& garment,
                    const std::vector<material::Fabric>& fabrics, const mesh::ObstacleMesh& body,
                    const DrapeSettings& settings);

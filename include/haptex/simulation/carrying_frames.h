@@ -21,9 +21,8 @@ struct FrameWrench {
 /// beyond any workspace, but near enough to keep the numbers of a step finite.
 constexpr double kMaxCoordinate = 100.0;
 
-/// @throws std::invalid_argument naming the frame and what is allowed, unless its pose is finite
-/// and
-///   its origin within kMaxCoordinate
+/// @throws std::invalid_argument naming the frame and what is allowed, unless its pose is finite,
+///   with its origin within kMaxCoordinate
 void requireFramePose(const std::string& frame, const Eigen::Isometry3d& pose);
 
 /// Frames with their poses in the world and the particles that go with them. A step takes the

@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/base/disjoint_sets.h"
 #include "haptex/nodes/common/cloth_fabric.h"
 #include "haptex/nodes/common/vector_messages.h"
 #include "haptex/nodes/markers/colour_map.h"
@@ -48,23 +48,16 @@ std::vector<cloth::RestTriangle> atRest(const RestMesh& rest) {
 
 /// For each triangle the number of its part: triangles that share particles, from 0.
 std::vector<int> partsOf(const std::vector<std::array<int, 3>>& triangles, std::size_t particles) {
-  std::vector<int> parents(particles);
-  std::iota(parents.begin(), parents.end(), 0);
-  const auto root = [&](int particle) {
-    while (parents[particle] != particle) {
-      particle = parents[particle] = parents[parents[particle]];
-    }
-    return particle;
-  };
+  base::DisjointSets sets(particles);
   for (const auto& triangle : triangles) {
-    parents[root(triangle[1])] = root(triangle[0]);
-    parents[root(triangle[2])] = root(triangle[0]);
+    sets.join(triangle[0], triangle[1]);
+    sets.join(triangle[0], triangle[2]);
   }
   std::map<int, int> numbers;
   std::vector<int> parts;
   for (const auto& triangle : triangles) {
     const int next = static_cast<int>(numbers.size());
-    parts.push_back(numbers.emplace(root(triangle[0]), next).first->second);
+    parts.push_back(numbers.emplace(sets.root(triangle[0]), next).first->second);
   }
   return parts;
 }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "haptex/base/disjoint_sets.h"
 #include "haptex/base/require.h"
 #include "haptex/cloth/forces/cross_matrix.h"
 
@@ -95,18 +95,11 @@ void Stuffing::findEdges() {
 }
 
 void Stuffing::requireOnePiece(std::size_t particles) const {
-  std::vector<int> parents(particles);
-  std::iota(parents.begin(), parents.end(), 0);
-  const auto root = [&](int particle) {
-    while (parents[particle] != particle) {
-      particle = parents[particle] = parents[parents[particle]];
-    }
-    return particle;
-  };
-  for (const InnerEdge& edge : edges_) parents[root(edge.ends[0])] = root(edge.ends[1]);
-  const int first = root(triangles_.front()[0]);
+  base::DisjointSets pieces(particles);
+  for (const InnerEdge& edge : edges_) pieces.join(edge.ends[0], edge.ends[1]);
+  const int first = pieces.root(triangles_.front()[0]);
   for (const auto& triangle : triangles_) {
-    if (root(triangle[0]) == first) continue;
+    if (pieces.root(triangle[0]) == first) continue;
     base::refuse("the stuffing needs one closed cloth, and particle ", triangle[0],
                  " is of another one than particle ", triangles_.front()[0]);
   }

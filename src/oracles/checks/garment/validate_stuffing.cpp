@@ -55,16 +55,7 @@ mesh::ClothMesh ball(int cuts) {
     mesh.triangles = std::move(finer);
   }
   for (Vector3d& place : mesh.initial_positions) place *= kRadius / place.norm();
-  // Each triangle is cut as it is in space.
-  mesh.rest_coordinates.assign(mesh.initial_positions.size(), Vector2d::Zero());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vector3d ab = mesh.initial_positions[b] - mesh.initial_positions[a];
-    const Vector3d ac = mesh.initial_positions[c] - mesh.initial_positions[a];
-    const double along = ac.dot(ab) / ab.norm();
-    mesh.corner_coordinates.push_back(
-        {Vector2d(0.0, 0.0), Vector2d(ab.norm(), 0.0),
-         Vector2d(along, std::sqrt(std::max(0.0, ac.squaredNorm() - along * along)))});
-  }
+  mesh::cutAsInSpace(mesh);
   return mesh;
 }
 

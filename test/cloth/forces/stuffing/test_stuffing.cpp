@@ -13,7 +13,6 @@
 namespace haptex::cloth::test_stuffing {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// A box of 1 x 1 x 1 tenths of a metre whose triangles are as they are in space.
@@ -21,18 +20,10 @@ mesh::ClothMesh box() {
   mesh::ClothMesh mesh;
   for (int i = 0; i < 8; ++i) {
     mesh.initial_positions.emplace_back(0.1 * (i & 1), 0.1 * ((i >> 1) & 1), 0.1 * (i >> 2));
-    mesh.rest_coordinates.emplace_back(0.0, 0.0);
   }
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vector3d ab = mesh.initial_positions[b] - mesh.initial_positions[a];
-    const Vector3d ac = mesh.initial_positions[c] - mesh.initial_positions[a];
-    const double along = ac.dot(ab) / ab.norm();
-    mesh.corner_coordinates.push_back(
-        {Vector2d(0.0, 0.0), Vector2d(ab.norm(), 0.0),
-         Vector2d(along, std::sqrt(ac.squaredNorm() - along * along))});
-  }
+  mesh::cutAsInSpace(mesh);
   return mesh;
 }
 
