@@ -2,6 +2,7 @@
 """Runs the jobs of a study and merges them: scripts/study says what its arguments are, behind the program run_study and
 the directory below which results lie."""
 import argparse
+import os
 import pathlib
 import shlex
 import shutil
@@ -65,7 +66,9 @@ def by_parallel(arguments, directory, command):
         options += ['--sshloginfile', arguments.sshloginfile, '--return', str(result)]
         before = f'mkdir -p {shlex.quote(str(directory))} && '
     indices = '\n'.join(map(str, range(1, arguments.jobs + 1)))
-    subprocess.run(['parallel', *options, before + shlex.join(command) + ' --job {}'], input=indices, text=True)
+    # Without a named shell GNU parallel takes SHELL, and where that is not set its own parent, which is Python.
+    subprocess.run(['parallel', *options, before + shlex.join(command) + ' --job {}'], input=indices, text=True,
+                   env={**os.environ, 'PARALLEL_SHELL': '/bin/sh'})
 
 
 def by_slurm(arguments, directory, command):

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import unittest
+import unittest.mock
 
 import roslib.packages
 import rostest
@@ -113,6 +114,13 @@ def can_have_its_own_files():
 
 @unittest.skipUnless(can_have_its_own_files(), 'mounting directories is not permitted')
 class Remote(Study):
+    def setUp(self):
+        super().setUp()
+        environment = unittest.mock.patch.dict(os.environ)  # a service has no SHELL
+        environment.start()
+        self.addCleanup(environment.stop)
+        os.environ.pop('SHELL', None)
+
     def test_files_of_another_machine_are_fetched(self):
         directory, far = self.folder / 'remote', self.folder / 'far'
         for path in (directory, far):
