@@ -19,7 +19,9 @@ TEST_P(WornGarment, IntersectsNeitherItselfNorTheFigure) {
   EXPECT_TRUE(garment::findOverlaps(cloth, figure.vertices, figure.triangles).empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(, WornGarment, testing::Values("tshirt", "skirt"),
+INSTANTIATE_TEST_SUITE_P(, WornGarment,
+                         testing::Values("tshirt", "skirt", "shirt_over_trousers",
+                                         "shirt_in_trousers"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

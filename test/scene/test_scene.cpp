@@ -344,8 +344,9 @@ TEST(ShippedScenes, LoadWithTheirFabrics) {
   EXPECT_EQ(names, (std::vector<std::string>{
                        "acrylic_knit_sample", "cotton_knit_sample", "cushion", "dropped_sheet",
                        "gathered_wool", "hemmed_wool", "linear_sheet", "net", "orbiting_sphere",
-                       "skirt", "soft_top", "sphere_mass_spring", "table", "tshirt",
-                       "wool_among_obstacles", "wool_in_wind", "wool_sample"}));
+                       "shirt_in_trousers", "skirt", "soft_top", "sphere_mass_spring", "table",
+                       "trousers_and_shirt", "tshirt", "wool_among_obstacles", "wool_in_wind",
+                       "wool_sample"}));
 }
 
 TEST_F(SceneFile, MayHaveAnotherSheet) {

@@ -21,8 +21,8 @@ namespace {
 using base::Finger;
 using base::kFingers;
 
-constexpr int kLabelAway = 6;                      // pixels
-constexpr int kLegendLeft = 12, kLegendTop = 270;  // pixels, below the legend of the cloth
+constexpr int kLabelAway = 6;                        // pixels
+constexpr int kLegendLeft = 12, kLegendBottom = 12;  // pixels: the cloth has the upper corner
 const Eigen::Vector3f kColour(0.75F, 0.10F, 0.15F);
 
 }  // namespace
@@ -75,7 +75,8 @@ void ContactDisplay::receive(Finger finger, const haptex::Contact& contact) {
 void ContactDisplay::showLegend() {
   if (!legend_) return;
   if (legend_wanted_->getBool() && isEnabled()) {
-    legend_->show(paintColourBar(scaleOf(ColourBy::kContactForce)), kLegendLeft, kLegendTop);
+    legend_->showAtBottom(paintColourBar(scaleOf(ColourBy::kContactForce)), kLegendLeft,
+                          kLegendBottom);
   } else {
     legend_->hide();
   }

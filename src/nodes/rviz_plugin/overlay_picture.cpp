@@ -151,7 +151,7 @@ void OverlayPicture::release() {
   if (textures.resourceExists(texture, kGroup)) textures.remove(texture, kGroup);
 }
 
-void OverlayPicture::show(const QImage& picture, int left, int top) {
+void OverlayPicture::paint(const QImage& picture) {
   if (picture != shown_) {
     shown_ = picture;
     Ogre::Pass* pass = Ogre::MaterialManager::getSingleton()
@@ -170,7 +170,19 @@ void OverlayPicture::show(const QImage& picture, int left, int top) {
     pass->createTextureUnitState(texture->getName())->setTextureFiltering(Ogre::TFO_NONE);
     panel_->setDimensions(static_cast<float>(pixels.width()), static_cast<float>(pixels.height()));
   }
+}
+
+void OverlayPicture::show(const QImage& picture, int left, int top) {
+  paint(picture);
+  panel_->setVerticalAlignment(Ogre::GVA_TOP);
   panel_->setPosition(static_cast<float>(left), static_cast<float>(top));
+  overlay_->show();
+}
+
+void OverlayPicture::showAtBottom(const QImage& picture, int left, int bottom) {
+  paint(picture);
+  panel_->setVerticalAlignment(Ogre::GVA_BOTTOM);
+  panel_->setPosition(static_cast<float>(left), static_cast<float>(-bottom - picture.height()));
   overlay_->show();
 }
 

@@ -33,9 +33,13 @@ class OverlayPicture {
 
   /// @param left, top pixels, from the corner of the view
   void show(const QImage& picture, int left, int top);
+  /// Keeps its distance from the lower edge when the view changes its size.
+  /// @param left, bottom pixels, from the lower left corner of the view
+  void showAtBottom(const QImage& picture, int left, int bottom);
   void hide();
 
  private:
+  void paint(const QImage& picture);
   void release();
 
   Ogre::Overlay* overlay_;
