@@ -154,10 +154,14 @@ void printCost(const std::string& path, const scene::Scene& scene,
     } else {
       progress << "explain_scene: measuring " << effect.name << '\n';
       const StepCost against = measurement.against(withoutEffect(scene, effect.name));
-      const double share = 1.0 - 1.0 / against.ratio;
-      cost = std::abs(share) <= against.noise
-                 ? text("within the noise of %.0f %%", 100.0 * against.noise)
-                 : text("%.0f %%, noise %.0f %%", 100.0 * share, 100.0 * against.noise);
+      const double without = 1.0 / against.ratio, share = 1.0 - without;
+      if (std::abs(share) <= against.noise) {
+        cost = text("within the noise of %.0f %%", 100.0 * against.noise);
+      } else if (share > 0.0) {
+        cost = text("%.0f %%, noise %.0f %%", 100.0 * share, 100.0 * against.noise);
+      } else {  // the cloth goes elsewhere then: what is worn falls, or is not pressed together
+        cost = text("none: without it a step takes %.1f times as long", without);
+      }
     }
     printRow(out, effect.name, text("%-52s ", effect.meaning.c_str()) + cost);
   }
