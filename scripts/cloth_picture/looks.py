@@ -17,10 +17,6 @@ class Look:
         self.warp = self.weft = np.array(colour, dtype=float)
         self.gloss, self.width = gloss, width
 
-    @property
-    def colour(self):
-        return 0.5 * (self.warp + self.weft)
-
 
 FLOOR = Look((0.52, 0.51, 0.49))
 FIGURE = Look((0.60, 0.56, 0.52), 0.02, 0.5)  # a shop's dummy, and obstacles
@@ -48,7 +44,8 @@ def look_of(data):
 
 
 class Fabric:
-    """A fabric as it is seen: its name, the text of its file, where that is, if it is known, and its look."""
+    """A fabric as it is seen: its name, the text of its file, where that is, if it is known, its look, and
+    whether it says how its yarns lie."""
 
     def __init__(self, name, text, path=None):
         self.name, self.text, self.path = name, text, path
@@ -61,7 +58,7 @@ class Fabric:
                 data = layers[0]
             elif layers and path is not None:
                 data = yaml.safe_load((path.parent / layers[0]).read_text(encoding='utf-8'))
-            self.look = look_of(data)
+            self.look, self.has_surface = look_of(data), 'surface' in data
         except (ValueError, KeyError, TypeError, AttributeError, OSError, yaml.YAMLError) as error:
             raise Refused(f'fabric {name}: its file cannot be read ({error})') from error
 

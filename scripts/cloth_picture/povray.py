@@ -13,15 +13,14 @@ from bag_report.bags import Refused
 from .environment import write_hdr
 
 SUN_WIDTH = 0.04  # of its distance: softens shadows as a thin haze does
-SUN_SIDE = 5  # lights along a side of the sun, where a shadow's edge asks for all
-MOST_MESSAGE = 800  # characters of what POV-Ray says of an error
+SUN_SIDE = 4  # lights along a side of the sun, where a shadow's edge asks for all
 
 HEADER = '''#version 3.7;
 global_settings {{
   assumed_gamma 1.0
   max_trace_level 6
   radiosity {{
-    pretrace_start 0.08 pretrace_end 0.01 count 100 nearest_count 8 error_bound 0.45 recursion_limit 2
+    pretrace_start 0.08 pretrace_end 0.02 count 100 nearest_count 5 error_bound 0.45 recursion_limit 2
     low_error_factor 0.6 gray_threshold 0 minimum_reuse 0.012 brightness 1 normal off
   }}
 }}
@@ -47,7 +46,7 @@ def finish_of(look):
 
 
 def plain_texture(look):
-    return f'texture {{ pigment {{ rgb {vector(look.colour)} }} {finish_of(look)} }}'
+    return f'texture {{ pigment {{ rgb {vector(look.warp)} }} {finish_of(look)} }}'
 
 
 def normals_of(surface):
@@ -74,14 +73,14 @@ def body(surface, look):
     return mesh(surface, [plain_texture(look)], np.zeros(len(surface.triangles), dtype=int))
 
 
-def placed(pose):
-    """@param pose 4 x 4, from the shape's axes into the world"""
-    return f'matrix <{",".join(f"{value:.8g}" for value in pose[:3].T.ravel())}>'
+def matrix_of(rows):
+    """@param rows 4 x 3: where the axes x, y and z go, and the origin"""
+    return f'matrix <{",".join(f"{value:.8g}" for value in np.ravel(rows))}>'
 
 
 def shape(kind, sizes, pose, look):
     """@param kind sphere (radius), box (whole edge lengths) or capsule and cylinder (radius, length), in its
-    own axes, along z"""
+    own axes, along z @param pose 4 x 4, from these into the world"""
     if kind == 'box':
         half = 0.5 * np.array(sizes)
         text = f'box {{ {vector(-half)},{vector(half)}'
@@ -93,7 +92,7 @@ def shape(kind, sizes, pose, look):
         if kind == 'capsule':
             text = (f'union {{ {text} }} sphere {{ <0,0,{-end:.7g}>,{radius:.7g} }} '
                     f'sphere {{ <0,0,{end:.7g}>,{radius:.7g} }}')
-    return f'{text} {plain_texture(look)} {placed(pose)} }}\n'
+    return f'{text} {plain_texture(look)} {matrix_of(pose[:3].T)} }}\n'
 
 
 def floor(height, look):
@@ -108,7 +107,7 @@ def lights(environment, file_name):
     if environment.sun is not None:
         side = SUN_WIDTH * 1000.0
         text += (f'light_source {{ {vector(1000.0 * environment.sun)}, rgb {vector(environment.sunlight)} '
-                 f'parallel point_at 0 area_light {side}*x,{side}*y,{SUN_SIDE},{SUN_SIDE} adaptive 1 circular '
+                 f'parallel point_at 0 area_light {side}*x,{side}*y,{SUN_SIDE},{SUN_SIDE} adaptive 0 circular '
                  'orient }\n')
     return text
 
@@ -122,6 +121,12 @@ def camera_text(camera, size):
 def require_povray():
     if shutil.which('povray') is None:
         raise Refused('povray is not installed: apt-get install povray')
+
+
+def error_in(said):
+    """Of all that POV-Ray says, on one line."""
+    lines = [line.strip() for line in said.splitlines() if 'error' in line.lower()]
+    return '; '.join(lines) or ' '.join(said.split())[-400:]
 
 
 def without_time(png):
@@ -148,10 +153,10 @@ def draw(camera, size, environment, objects, files, output):
                                           + lights(environment, 'sky.hdr') + ''.join(objects))
         run = subprocess.run(
             ['povray', '+Iscene.pov', '+Opicture.png', f'+W{size[0]}', f'+H{size[1]}', '+FN8', '-D', '-GA',
-             '+WT1', '+A0.15', '+AM2', '+R2', '-J', 'File_Gamma=sRGB', '+GF'],
+             '+WT1', '+A0.3', '+AM2', '+R2', '-J', 'File_Gamma=sRGB', '+GF'],
             cwd=folder, capture_output=True, text=True, errors='replace',
             env={**os.environ, 'HOME': name})
         picture = folder / 'picture.png'
         if run.returncode != 0 or not picture.exists():
-            raise Refused('povray could not draw it: ' + run.stderr.strip()[-MOST_MESSAGE:])
+            raise Refused(f'povray could not draw it: {error_in(run.stderr)}')
         pathlib.Path(output).write_bytes(without_time(picture.read_bytes()))
