@@ -131,7 +131,8 @@ def averaged(radiance, rows):
 
 
 def environment_of(path):
-    """What a picture shows all around, its middle column where +x is; what of it is as bright as the sun becomes one."""
+    """What a picture shows all around, its middle column where +x is. What of it is as bright as the sun becomes
+    one. @throws Refused, see read_hdr(), and if it is black"""
     radiance = averaged(read_hdr(path), 2 * ROWS)
     # A panorama turns to the right, azimuth to the left, and its middle is what one looks at.
     radiance = np.roll(radiance[:, ::-1], radiance.shape[1] // 2, axis=1)

@@ -1,5 +1,10 @@
 """Puts cloth, what is beside it, a floor and an environment before a camera, and has them drawn."""
+import os
+import pathlib
+
 import numpy as np
+
+from bag_report.bags import Refused
 
 from . import povray
 from .camera import framing
@@ -74,3 +79,11 @@ def draw(scene, reliefs, camera, ground, size, environment, output):
 def camera_for(scenes, size):
     """From which all of several moments are seen."""
     return framing(np.concatenate([scene.seen() for scene in scenes]), size)
+
+
+def require_writable(output):
+    path = pathlib.Path(output)
+    if path.suffix != '.png':
+        raise Refused(f'{output}: allowed are paths that end with .png')
+    if not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
+        raise Refused(f'{output}: the folder {path.parent} is not there or cannot be written')

@@ -32,8 +32,8 @@ class Relief:
     def slopes(self):
         """Standard deviation over the directions along weft and warp."""
         steps = self.size / self.heights.shape[::-1]
-        return float(np.sqrt(0.5 * sum(np.mean((np.roll(self.heights, 1, axis) - self.heights) ** 2) / steps[1 - axis] ** 2
-                                       for axis in (0, 1))))
+        along = [(np.roll(self.heights, 1, axis) - self.heights) / steps[1 - axis] for axis in (0, 1)]
+        return float(np.sqrt(np.mean(np.square(along))))
 
 
 def blurred(field, size, pixel):
@@ -99,7 +99,8 @@ class Weave:
             return {}
         heights, warp = self.relief.heights, self.relief.warp[..., None]
         lifted = (heights - heights.min()) / max(np.ptp(heights), 1e-12)
-        return {f'{name}.pgm': netpbm(lifted), f'{name}.ppm': netpbm(warp * self.look.warp + (1.0 - warp) * self.look.weft)}
+        colours = warp * self.look.warp + (1.0 - warp) * self.look.weft
+        return {f'{name}.pgm': netpbm(lifted), f'{name}.ppm': netpbm(colours)}
 
     def declaration(self, name):
         """A texture in whose plane z = 0 the piece is the unit square. A step of the picture is 1 / SIDE there, a
