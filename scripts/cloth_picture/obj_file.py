@@ -39,7 +39,7 @@ def corner_of(word, positions, textures):
 
 
 def read_obj(path):
-    """@throws Refused naming file and line"""
+    """Rest coordinates only if every triangle has some, and an area in them. @throws Refused naming file and line"""
     positions, textures, faces = [], [], []
     try:
         with open(path, encoding='utf-8', errors='replace') as file:
@@ -63,4 +63,6 @@ def read_obj(path):
         raise Refused(f'{path}: there is no triangle in it; allowed are OBJ files of triangles')
     corners = np.array(faces)
     rest = np.array(textures)[corners[:, :, 1]] if (corners[:, :, 1] >= 0).all() else None
+    if rest is not None and not (np.linalg.det(rest[:, 1:] - rest[:, :1]) != 0.0).all():
+        rest = None  # triangles without an area lie nowhere on the fabric
     return Surface(np.array(positions), corners[:, :, 0], rest)

@@ -67,7 +67,7 @@ class Recording:
 
     def mesh_of(self, state, time):
         before = [message for at, message in self.meshes if at <= time + 1e-9] or [self.meshes[0][1]]
-        if before[-1].mesh == state.mesh and 3 * len(before[-1].triangles) > 0:
+        if before[-1].mesh == state.mesh:
             return before[-1]
         others = [message for _, message in self.meshes if message.mesh == state.mesh]
         if not others:
@@ -100,14 +100,21 @@ class Recording:
         positions = as_array(state.positions)
         triangles = np.array(message.triangles, dtype=int).reshape(-1, 3)
         particles = len(message.rest_weft_coordinates)
-        if len(positions) != particles or (len(triangles) and triangles.max() >= particles) \
+        if len(positions) != particles or len(triangles) == 0 or triangles.max() >= particles \
                 or not np.isfinite(positions).all():
             raise Refused(f'{self.path}: the cloth at {taken:.3f} s is not that of its mesh, or not finite')
         rest = np.array([message.rest_weft_coordinates, message.rest_warp_coordinates]).T
-        corners = corner_coordinates(message, rest, triangles)
+        try:
+            corners = corner_coordinates(message, rest, triangles)
+        except ValueError as error:
+            raise Refused(f'{self.path}: {self.mesh_topic}: {error}') from error
         fabrics = [Fabric(name, text) for name, text in zip(message.fabrics, message.fabric_files)]
-        fabric_of = np.frombuffer(bytes(message.triangle_fabrics), np.uint8).astype(int) \
-            if len(message.triangle_fabrics) else np.zeros(len(triangles), dtype=int)
+        fabric_of = np.frombuffer(bytes(getattr(message, 'triangle_fabrics', b'')), np.uint8).astype(int)
+        if len(fabric_of) == 0:  # all of the first, and of bags of version 0.1
+            fabric_of = np.zeros(len(triangles), dtype=int)
+        if len(fabric_of) != len(triangles) or not fabrics or fabric_of.max() >= len(fabrics):
+            raise Refused(f'{self.path}: {self.mesh_topic} does not say of which fabric every triangle is')
         solids = self.hand.at(self.frames_at(taken))
-        obstacles = [] if self.obstacles is None else self.obstacles.at(state.simulated_time, state.bodies)
+        obstacles = [] if self.obstacles is None else \
+            self.obstacles.at(state.simulated_time, getattr(state, 'bodies', ()))
         return Moment(Surface(positions, triangles, corners), fabric_of, fabrics, (obstacles, solids))

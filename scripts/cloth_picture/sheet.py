@@ -27,7 +27,7 @@ ABOVE = 0.004  # m, over the ball, is the cloth at first
 EDGE = 0.006  # m, of the cloth's triangles
 CUTS = 5  # of the ball's triangles into four
 COLUMNS, PANEL, CLOSE, LABEL = 5, (480, 400), (150, 150), 40  # pixels
-VIEW = Camera((0.50, 0.24, 0.33), (0.0, -0.034, 0.066))
+VIEW = Camera((0.57, 0.28, 0.36), (0.0, -0.024, 0.062))
 CLOSE_VIEW = Camera((0.105, 0.048, 0.225), (0.028, 0.012, 0.158), np.radians(6.0))
 
 

@@ -87,35 +87,44 @@ class Obstacles:
         return self.meshes[name]
 
     def at(self, time, bodies):
-        """@param time s, simulated @param bodies haptex/ClothState's"""
-        solids, with_mass = [], iter(bodies)
+        """@param time s, simulated @param bodies haptex/ClothState's @throws Refused naming an obstacle that is
+        none"""
+        with_mass = iter(bodies)
+        solids = []
         for item in self.items:
-            turn, place = rotation(item.get('rpy', (0, 0, 0))), np.array(item['position'], float)
-            if 'orbit' in item:
-                orbit = item['orbit']
-                centre = np.array(orbit['centre'], float)
-                turned = about(orbit['axis'], 2.0 * np.pi * time / orbit['period'])
-                turn, place = turned @ turn, centre + turned @ (place - centre)
-            if 'velocity' in item:
-                place = place + time * np.array(item['velocity'], float)
-            if 'body' in item:
-                pose = next(with_mass, None)
-                if pose is not None:
-                    turn = of_quaternion(pose.orientation)
-                    place = np.array([pose.position.x, pose.position.y, pose.position.z])
-            pose = pose_of(turn, place)
-            if 'sphere' in item:
-                solids.append(Solid('sphere', [item['sphere']], pose, FIGURE))
-            elif 'box' in item:
-                solids.append(Solid('box', item['box'], pose, FIGURE))
-            elif 'capsule' in item:
-                capsule = item['capsule']
-                solids.append(Solid('capsule', [capsule['radius'], capsule['length']], pose, FIGURE))
-            elif 'mesh' in item:
-                mesh = self.mesh(item['mesh'])
-                solids.append(Solid('mesh', [], pose, FIGURE,
-                                    Surface(mesh.positions @ turn.T + place, mesh.triangles)))
+            try:
+                solids.append(self.solid(item, pose_at(item, time, with_mass)))
+            except (AttributeError, KeyError, TypeError, ValueError) as error:
+                raise error if isinstance(error, Refused) else Refused(
+                    f'recording/about of the bag: {item} is no obstacle of a scene file ({error})') from error
         return solids
+
+    def solid(self, item, pose):
+        if 'mesh' in item:
+            mesh = self.mesh(item['mesh'])
+            return Solid('mesh', [], pose, FIGURE,
+                         Surface(mesh.positions @ pose[:3, :3].T + pose[:3, 3], mesh.triangles))
+        if 'capsule' in item:
+            return Solid('capsule', [item['capsule']['radius'], item['capsule']['length']], pose, FIGURE)
+        return Solid('sphere', [item['sphere']], pose, FIGURE) if 'sphere' in item else \
+            Solid('box', item['box'], pose, FIGURE)
+
+
+def pose_at(item, time, with_mass):
+    """Of an obstacle of a scene file. @param with_mass iterator over poses of those with mass"""
+    turn, place = rotation(item.get('rpy', (0, 0, 0))), np.array(item['position'], float)
+    if 'orbit' in item:
+        orbit = item['orbit']
+        centre = np.array(orbit['centre'], float)
+        turned = about(orbit['axis'], 2.0 * np.pi * time / orbit['period'])
+        turn, place = turned @ turn, centre + turned @ (place - centre)
+    if 'velocity' in item:
+        place = place + time * np.array(item['velocity'], float)
+    body = next(with_mass, None) if 'body' in item else None
+    if body is not None:
+        turn = of_quaternion(body.orientation)
+        place = np.array([body.position.x, body.position.y, body.position.z])
+    return pose_of(turn, place)
 
 
 def obstacles_of(about_text):

@@ -112,6 +112,7 @@ class ObjFiles(Folder):
         surface = self.surface('v 0 0 0\nv 0 1 0\nv 0 0 1\nf -3 2//1 -1\n')
         np.testing.assert_array_equal(surface.triangles, [[0, 1, 2]])
         self.assertIsNone(surface.rest)
+        self.assertIsNone(self.surface(CLOTH.replace('vt 0.2 0', 'vt 0 0')).rest)
 
     def test_are_refused_with_the_line(self):
         for text, words in (('v 0 0\n', 'line 1: v has 2 numbers'), ('v 0 0 nan\n', 'line 1: v has a number that'),
@@ -203,6 +204,19 @@ class Solids(Folder):
         np.testing.assert_allclose(heavy.pose[:3, 3], [0.7, 0.0, 0.0])
         low, high = box.corners().min(axis=0), box.corners().max(axis=0)
         np.testing.assert_allclose([low, high], [[-0.1, -0.05, -0.55], [0.1, 0.05, -0.25]], atol=1e-12)
+
+    def test_are_refused_by_name(self):
+        for item, words in (("{name: odd, position: [0, 0, 0]}", "odd.*is no obstacle"),
+                            ("{name: odd, sphere: 1}", "position"), ("{name: odd, mesh: none, position: [0, 0, 0]}",
+                                                                     "none.obj: cannot be read")):
+            about = yaml.safe_dump({'scene_file': f'obstacles: [{item}]'})
+            with self.assertRaisesRegex(Refused, words):
+                solids.obstacles_of(about).at(0.0, [])
+
+    def test_of_a_shipped_scene_are_found_where_the_bag_is_read(self):
+        text = (ROOT / 'config/scenes/tshirt.yaml').read_text()
+        figure, = solids.Obstacles(text, '/nowhere/scenes/tshirt.yaml').at(0.0, [])
+        self.assertGreater(np.ptp(figure.corners()[:, 2]), 1.6)
 
     def test_of_a_bag_that_does_not_say_are_none(self):
         self.assertIsNone(solids.obstacles_of('scene: sheet.yaml\n'))
