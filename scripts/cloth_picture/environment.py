@@ -69,7 +69,9 @@ def computed_sky():
     blueness = np.sqrt(height)[..., None]
     colour = (1.0 - blueness) * HORIZON + blueness * ZENITH
     radiance = (gradation * indicatrix)[..., None] * colour
-    radiance[vectors[..., 2] < 0.0] = 0.3 * radiance[ROWS // 2 - 1].mean(axis=0)  # ground
+    horizon = radiance[ROWS // 2 - 1].copy()
+    radiance[ROWS // 2:] = 0.3 * horizon.mean(axis=0)  # ground
+    radiance[ROWS // 2:ROWS // 2 + 2] = horizon  # which POV-Ray would mix with the sky above
     sky = light_on(radiance, sun).mean()
     return exposed(radiance, sun, SUN_SHARE / (1.0 - SUN_SHARE) * sky * SUN_COLOUR / SUN_COLOUR.mean())
 
