@@ -101,7 +101,7 @@ def floor(height, look):
 
 def lights(environment, file_name):
     """All around by radiosity, and the sun."""
-    # A map of POV-Ray begins at +x and turns over +z about +y; upright about z, over +y, after the turn.
+    # A map of POV-Ray begins at +x and stands about +y; about z after the turn.
     text = (f'sky_sphere {{ pigment {{ image_map {{ hdr "{file_name}" gamma 1.0 map_type 1 interpolate 2 }} }} '
             'rotate 90*x }\n')
     if environment.sun is not None:
@@ -146,7 +146,8 @@ def draw(camera, size, environment, objects, files, output):
     require_povray()
     with tempfile.TemporaryDirectory(prefix='haptex_render_') as name:
         folder = pathlib.Path(name)
-        write_hdr(environment.radiance, folder / 'sky.hdr')
+        # POV-Ray's pictures on a sphere turn to the right, as seen from within; azimuth turns to the left.
+        write_hdr(environment.radiance[:, ::-1], folder / 'sky.hdr')
         for file_name, content in files.items():
             (folder / file_name).write_bytes(content)
         (folder / 'scene.pov').write_text(HEADER.format() + camera_text(camera, size)

@@ -340,6 +340,17 @@ class Pictures(Runs):
         self.assertEqual(sorted(path.name for path in self.folder.glob('*.png')),
                          [f'picture_{number:04}.png' for number in (1, 2, 3)])
 
+    def test_have_every_part_of_the_sky_where_its_map_says(self):
+        colours = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], dtype=float)
+        radiance = np.repeat(np.repeat(colours[None], 32, axis=0), 16, axis=1)  # quarters by azimuth from +x
+        radiance[:8] = [1.0, 1.0, 0.0]
+        sky = environment.Environment(radiance, None, None)
+        ground = povray.floor(-10.0, looks.FLOOR)
+        for target, colour in (*zip(((1, 1, 0.3), (-1, 1, 0.3), (-1, -1, 0.3), (1, -1, 0.3)), colours),
+                               ((0.1, 0.1, 1), (1, 1, 0)), ((0.2, 1, 0.3), (1, 0, 0)), ((-0.2, 1, 0.3), (0, 1, 0))):
+            povray.draw(camera.Camera((0, 0, 0), target, 0.1), (32, 18), sky, [ground], {}, self.picture)
+            np.testing.assert_allclose(imread(self.picture)[9, 16, :3], colour, atol=0.06, err_msg=str(target))
+
     def test_are_lit_by_a_panorama(self):
         red = np.ones((16, 32, 3)) * [1.0, 0.05, 0.05]
         environment.write_hdr(red, self.folder / 'red.hdr')
