@@ -7,7 +7,7 @@ from checkup import finding
 PROGRAMS = ('ask_device', 'cloth_simulation', 'exoskeleton_driver', 'force_renderer', 'proximity')
 # Headings of packages.txt whose packages only some need, and for what.
 FOR_SOME = {'Tests': 'scripts/test', 'Sanitized builds': 'scripts/test', 'scripts/bench': 'scripts/bench', 'scripts/study': 'scripts/study',
-            'View': 'rviz and its pictures', 'HTML pages': 'scripts/doc'}
+            'View': 'rviz and its pictures', 'HTML pages': 'scripts/doc', 'Pictures of cloth': 'scripts/render'}
 
 
 def find_package():

@@ -339,7 +339,7 @@ void readSurfaceInto(const base::YamlValue& file, Fabric& fabric) {
 Fabric readFabricValues(const base::YamlValue& file) {
   file.requireKeys({"name", "areal_density", "weft", "warp", "shear"},
                    {"description", "resilience", "bending", "contraction", "compression",
-                    "friction", "surface"});
+                    "friction", "surface", "look"});
   Fabric fabric;
   fabric.name = file.at("name").text();
   if (file.has("description")) fabric.description = file.at("description").text();
@@ -355,11 +355,15 @@ Fabric readFabricValues(const base::YamlValue& file) {
   }
   if (file.has("compression")) fabric.compression = readCompression(file.at("compression"));
   if (file.has("friction")) fabric.friction = readFriction(file.at("friction"));
+  readSurfaceInto(file, fabric);
+  if (file.has("look")) {
+    const bool knitted = fabric.surface && std::holds_alternative<Knit>(fabric.surface->relief);
+    fabric.look = readLook(file.at("look"), knitted);
+  }
   for (const std::string key :
-       {"resilience", "bending", "contraction", "compression", "friction"}) {
+       {"resilience", "bending", "contraction", "compression", "friction", "look"}) {
     if (file.has(key)) fabric.provenance[key] = readProvenance(file.at(key));
   }
-  readSurfaceInto(file, fabric);
   return fabric;
 }
 

@@ -156,8 +156,10 @@ Fabric glue(const std::vector<Fabric>& layers, const std::string& name) {
   glued.compression = compressionOf(layers);
   glued.friction = layers.front().friction;
   glued.surface = layers.front().surface;
+  glued.look = layers.front().look;
   for (const auto& [key, source] : layers.front().provenance) {
-    if (key == "friction" || key.rfind("surface", 0) == 0) glued.provenance[key] = source;
+    const bool of_face = key == "friction" || key == "look" || key.rfind("surface", 0) == 0;
+    if (of_face) glued.provenance[key] = source;
   }
   return glued;
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace haptex::material {
 namespace {
@@ -11,6 +12,10 @@ std::string written(double number) {
   std::ostringstream text;
   text << number;
   return text.str();
+}
+
+std::string written(const Colour& colour) {
+  return "[" + written(colour[0]) + ", " + written(colour[1]) + ", " + written(colour[2]) + "]";
 }
 
 double readFromTo(const base::YamlValue& value, double least, double most,
@@ -22,10 +27,10 @@ double readFromTo(const base::YamlValue& value, double least, double most,
   return number;
 }
 
-double readPositiveUpTo(const base::YamlValue& value, double most) {
+double readPositiveUpTo(const base::YamlValue& value, double most, const std::string& unit) {
   const double number = value.number();
   if (number <= 0.0 || number > most) {
-    value.refuse("must be > 0 and at most " + written(most) + " m");
+    value.refuse("must be > 0 and at most " + written(most) + unit);
   }
   return number;
 }
@@ -73,9 +78,15 @@ HeightFile readHeightFile(const base::YamlValue& value) {
     value.at("file").refuse("must end in .png or .raw");
   }
   return {(std::filesystem::path(value.file()).parent_path() / file).string(),
-          readPositiveUpTo(value.at("spacing"), kMaxSampleSpacing),
-          readPositiveUpTo(value.at("height"), kMaxFieldHeight),
+          readPositiveUpTo(value.at("spacing"), kMaxSampleSpacing, " m"),
+          readPositiveUpTo(value.at("height"), kMaxFieldHeight, " m"),
           value.at("periodic").oneOf({"true", "false"}) == "true"};
+}
+
+Colour readColour(const base::YamlValue& value) {
+  const std::vector<base::YamlValue> shares = value.items(3);
+  return {readFromTo(shares[0], 0.0, 1.0), readFromTo(shares[1], 0.0, 1.0),
+          readFromTo(shares[2], 0.0, 1.0)};
 }
 
 }  // namespace
@@ -89,7 +100,7 @@ Surface readSurface(const base::YamlValue& value, double friction) {
   kes.requireKeys({"unit", "provenance", "source", "SMD", "MMD"});
   kes.at("unit").oneOf({"m"});
   Surface surface;
-  surface.roughness = readPositiveUpTo(kes.at("SMD"), kMaxRoughness);
+  surface.roughness = readPositiveUpTo(kes.at("SMD"), kMaxRoughness, " m");
   surface.friction_deviation = readFromTo(kes.at("MMD"), 0.0, 1.0);
   if (surface.friction_deviation > friction) {
     kes.at("MMD").refuse("must be at most the coefficient of friction, " + written(friction));
@@ -102,6 +113,18 @@ Surface readSurface(const base::YamlValue& value, double friction) {
     surface.relief = readHeightFile(value.at("heights"));
   }
   return surface;
+}
+
+Look readLook(const base::YamlValue& value, bool knitted) {
+  value.requireKeys({"provenance", "source", "warp", "weft", "gloss", "width"});
+  const Look look{readColour(value.at("warp")), readColour(value.at("weft")),
+                  readFromTo(value.at("gloss"), 0.0, 1.0),
+                  readPositiveUpTo(value.at("width"), 1.0, "")};
+  if (knitted && look.weft != look.warp) {
+    value.at("weft").refuseBecause(written(look.weft) + " must be as warp, " + written(look.warp) +
+                                   ": a knit has one yarn");
+  }
+  return look;
 }
 
 }  // namespace haptex::material

@@ -135,27 +135,65 @@ double yarnHeight(const std::vector<double>& crowns, const Side& across, int sam
   return across.across[sample_across % across.per_yarn] * middle;
 }
 
+/// The piece of weaveRelief(), by the heights of its two systems.
+class WovenPiece {
+ public:
+  explicit WovenPiece(const Weave& weave)
+      // Warp yarns lie side by side along weft, and the other way round.
+      : kind_(weave.kind),
+        along_weft_(sideAcross(weave.warp, repeatOf(weave.kind))),
+        along_warp_(sideAcross(weave.weft, repeatOf(weave.kind))) {
+    NormalNumbers numbers;
+    warp_ = crowns(numbers, along_weft_, along_warp_, weave.warp.height, weave.irregularity,
+                   [&](int yarn, int crossing) { return warpIsOnTop(kind_, yarn, crossing); });
+    weft_ = crowns(numbers, along_warp_, along_weft_, weave.weft.height, weave.irregularity,
+                   [&](int yarn, int crossing) { return !warpIsOnTop(kind_, crossing, yarn); });
+  }
+
+  int columns() const { return along_weft_.samples(); }
+  int rows() const { return along_warp_.samples(); }
+  double weftSpacing() const { return along_weft_.yarn_spacing / along_weft_.per_yarn; }
+  double warpSpacing() const { return along_warp_.yarn_spacing / along_warp_.per_yarn; }
+  double warpHeight(int column, int row) const {
+    return yarnHeight(warp_, along_weft_, column, along_warp_, row);
+  }
+  double weftHeight(int column, int row) const {
+    return yarnHeight(weft_, along_warp_, row, along_weft_, column);
+  }
+  bool warpIsOnTopAtCrossing(int column, int row) const {
+    return warpIsOnTop(kind_, along_weft_.nearest(column), along_warp_.nearest(row));
+  }
+
+ private:
+  WeaveKind kind_;
+  Side along_weft_, along_warp_;
+  std::vector<double> warp_, weft_;
+};
+
 }  // namespace
 
 HeightField weaveRelief(const material::Weave& asked) {
   requireSound(asked);
-  const Weave weave = withJoinedYarns(asked);
-  // Warp yarns lie side by side along weft, and the other way round.
-  const Side along_weft = sideAcross(weave.warp, repeatOf(weave.kind));
-  const Side along_warp = sideAcross(weave.weft, repeatOf(weave.kind));
-  NormalNumbers numbers;
-  const std::vector<double> warp =
-      crowns(numbers, along_weft, along_warp, weave.warp.height, weave.irregularity,
-             [&](int yarn, int crossing) { return warpIsOnTop(weave.kind, yarn, crossing); });
-  const std::vector<double> weft =
-      crowns(numbers, along_warp, along_weft, weave.weft.height, weave.irregularity,
-             [&](int yarn, int crossing) { return !warpIsOnTop(weave.kind, crossing, yarn); });
-  return makeField(along_weft.samples(), along_warp.samples(),
-                   along_weft.yarn_spacing / along_weft.per_yarn,
-                   along_warp.yarn_spacing / along_warp.per_yarn, [&](int column, int row) {
-                     return yarnHeight(warp, along_weft, column, along_warp, row) +
-                            yarnHeight(weft, along_warp, row, along_weft, column);
+  const WovenPiece piece(withJoinedYarns(asked));
+  return makeField(piece.columns(), piece.rows(), piece.weftSpacing(), piece.warpSpacing(),
+                   [&](int column, int row) {
+                     return piece.warpHeight(column, row) + piece.weftHeight(column, row);
                    });
+}
+
+std::vector<bool> warpsOnTop(const material::Weave& asked) {
+  requireSound(asked);
+  const WovenPiece piece(withJoinedYarns(asked));
+  std::vector<bool> on_top;
+  on_top.reserve(static_cast<std::size_t>(piece.columns()) * piece.rows());
+  for (int row = 0; row < piece.rows(); ++row) {
+    for (int column = 0; column < piece.columns(); ++column) {
+      const double warp = piece.warpHeight(column, row), weft = piece.weftHeight(column, row);
+      // Between yarns both may be zero.
+      on_top.push_back(warp == weft ? piece.warpIsOnTopAtCrossing(column, row) : warp > weft);
+    }
+  }
+  return on_top;
 }
 
 AmplitudeMap weaveUnevenness(const material::Weave& asked) {

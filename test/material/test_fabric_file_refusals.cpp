@@ -16,7 +16,8 @@ TEST_P(FabricFileRefuses, NamingFileKeyValueAndWhatIsAllowed) { expectRefusal(kF
 
 const std::string kRequired = "name, areal_density, weft, warp, shear";
 const std::string kAllowed =
-    kRequired + ", description, resilience, bending, contraction, compression, friction, surface";
+    kRequired +
+    ", description, resilience, bending, contraction, compression, friction, surface, look";
 const std::string kCurveKeys = "unit, provenance, source, modulus, points, polynomials, quantity";
 const std::string kPiola = "second_piola_kirchhoff_over_green_lagrange";
 const std::string kDissipate =

@@ -165,6 +165,17 @@ TEST(ShippedFabrics, AreWovenOrKnittedAndCanBeFelt) {
                                         WeaveKind::kSatin5, WeaveKind::kRib2}));
 }
 
+TEST(ShippedFabrics, HaveALookWithDenimDarkInWarpOnlyAndSatinTheGlossiest) {
+  for (const std::string& name : shippedNames()) {
+    const Fabric fabric = shipped(name);
+    ASSERT_TRUE(fabric.look) << name;
+    EXPECT_LE(fabric.look->gloss, shipped("polyester_satin").look->gloss) << name;
+    const bool two_colours = fabric.look->warp != fabric.look->weft;
+    EXPECT_EQ(two_colours, name == "denim") << name;
+  }
+  EXPECT_LT(shipped("denim").look->warp[0], 0.1 * shipped("denim").look->weft[0]);
+}
+
 TEST(ShippedFabrics, WoolPassesThroughEveryMeasuredPoint) {
   for (const auto& [direction, curve, points] : woolCurves()) {
     ASSERT_EQ(points.size(), 29u) << direction;

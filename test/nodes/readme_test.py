@@ -271,7 +271,7 @@ class Readme(unittest.TestCase):
         for command in filter(needs_nothing, COMMANDS):
             output, status = self.shell.run(command.text)
             self.assertEqual(status, 0, f'{command.text}: {output}')
-        for file in ('denim.wav', 'rubbed.wav', 'sample.html'):
+        for file in ('denim.wav', 'rubbed.wav', 'sample.html', 'sample.png'):
             self.assertTrue((self.shell.folder / file).exists(), file)
 
 

@@ -67,7 +67,7 @@ struct Fabric {
   MembraneCurves weft;         ///< along the rest coordinate u
   MembraneCurves warp;         ///< along the rest coordinate v
   MembraneCurves shear;        ///< against U.V, without the factor 1/2
-  // What a scene without hysteresis, bending, contact or tactile rendering does not need.
+  // What a scene without hysteresis, bending, contact, tactile rendering or pictures does not need.
   std::optional<TensileResilience> resilience;
   std::optional<ShearHysteresis> shear_hysteresis;
   std::optional<BendingRigidity> bending;
@@ -77,6 +77,7 @@ struct Fabric {
   std::optional<Compression> compression;
   std::optional<double> friction;  ///< coefficient of kinetic friction against skin, KES MIU, > 0
   std::optional<Surface> surface;
+  std::optional<Look> look;
   std::map<std::string, Provenance> provenance;  ///< by key, for example "warp.elastic"
   /// The text of the fabric file that it was read from, which parseFabric() reads wherever that is;
   /// empty where it was made otherwise.

@@ -1,6 +1,8 @@
-// The surface of a fabric as a fingertip feels it: KES surface values and the relief they scale.
+// The surface of a fabric as a fingertip feels it, KES surface values and the relief they scale,
+// and how it reflects light.
 #pragma once
 
+#include <array>
 #include <string>
 #include <variant>
 
@@ -63,6 +65,16 @@ struct Surface {
   /// KES MMD: mean deviation of the coefficient of friction, 0 to 1 and at most that coefficient
   double friction_deviation;
   std::variant<Weave, Knit, HeightFile> relief;
+};
+
+/// Shares of red, green and blue light (linear, not sRGB), 0 to 1.
+using Colour = std::array<double, 3>;
+
+struct Look {
+  Colour warp;   ///< of a warp yarn: what of white light it reflects diffusely where gloss is 0
+  Colour weft;   ///< likewise; equal to warp in a knit, which has one yarn
+  double gloss;  ///< share of the light that goes into a highlight of the light's colour, 0 to 1
+  double width;  ///< of the highlight: roughness, above 0 (mirror) to 1 (as broad as can be)
 };
 
 }  // namespace haptex::material

@@ -1,6 +1,8 @@
 // Reliefs of woven fabrics from the parameters of their weave.
 #pragma once
 
+#include <vector>
+
 #include "haptex/material/surface.h"
 #include "haptex/tactile/amplitude_map.h"
 #include "haptex/tactile/height_field.h"
@@ -32,6 +34,12 @@ namespace haptex::tactile {
 /// @throws std::invalid_argument naming a parameter out of range: spacings of 0.2 to 3 mm, heights
 ///   >= 0 of which one is > 0, irregularity 0 to 0.5
 HeightField weaveRelief(const material::Weave& weave);
+
+/// Which system is seen from the face at every sample of weaveRelief(), true for the warp: the one
+/// that is higher there, and where both are as high the one on top at the nearest crossing.
+/// @returns index columns row + column of the relief
+/// @throws as weaveRelief()
+std::vector<bool> warpsOnTop(const material::Weave& weave);
 
 /// How the amplitudes of the same fabric vary over 80 x 80 mm because its yarns do along their
 /// length: in every cell of 1 mm the root mean square of the yarns in it, as irregular and as

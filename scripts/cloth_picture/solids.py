@@ -1,0 +1,169 @@
+"""Rigid things beside the cloth: a scene's obstacles, and the hand with its exoskeleton."""
+import pathlib
+import xml.etree.ElementTree
+
+import numpy as np
+import roslib.packages
+import yaml
+
+from bag_report.bags import Refused
+
+from . import povray
+from .looks import FIGURE, Look
+from .obj_file import Surface, read_obj
+
+SKIN_GLOSS = 0.03, 0.45
+
+
+def rotation(rpy):
+    """About the fixed axes x, y and z, in this order."""
+    (sr, sp, sy), (cr, cp, cy) = np.sin(rpy), np.cos(rpy)
+    return np.array([[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+                     [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+                     [-sp, cp * sr, cp * cr]])
+
+
+def about(axis, angle):
+    x, y, z = np.asarray(axis, float) / np.linalg.norm(axis)
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * across + (1.0 - np.cos(angle)) * across @ across
+
+
+def of_quaternion(q):
+    x, y, z, w = np.array([q.x, q.y, q.z, q.w]) / np.linalg.norm([q.x, q.y, q.z, q.w])
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
+def pose_of(turn, place):
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = turn, place
+    return pose
+
+
+def floats(text):
+    return [float(word) for word in text.split()]
+
+
+class Solid:
+    """A shape of POV-Ray, or a surface, and how low and how wide it is."""
+
+    def __init__(self, kind, sizes, pose, look, surface=None):
+        self.kind, self.sizes, self.pose, self.look = kind, sizes, pose, look
+        self.surface = surface  # already in the world
+
+    def corners(self):
+        """m, of what it lies in, in the world."""
+        if self.surface is not None:
+            return self.surface.positions
+        half = {'sphere': lambda: np.full(3, self.sizes[0]), 'box': lambda: 0.5 * np.array(self.sizes)}.get(
+            self.kind, lambda: np.array([self.sizes[0], self.sizes[0], 0.5 * self.sizes[1]
+                                         + (self.sizes[0] if self.kind == 'capsule' else 0.0)]))()
+        signs = np.array(np.meshgrid(*3 * [(-1.0, 1.0)])).reshape(3, -1).T
+        return signs * half @ self.pose[:3, :3].T + self.pose[:3, 3]
+
+    def text(self):
+        if self.surface is not None:
+            return povray.body(self.surface, self.look)
+        return povray.shape(self.kind, self.sizes, self.pose, self.look)
+
+
+class Obstacles:
+    """Of a scene file (docs/scene_files.md)."""
+
+    def __init__(self, text, scene_path):
+        scene = yaml.safe_load(text)
+        self.items = list(scene.get('obstacles') or []) if isinstance(scene, dict) else []
+        self.folder = pathlib.Path(scene_path).parent
+        self.meshes = {}
+
+    def mesh(self, name):
+        """In the obstacle's axes; where the scene was, or else the package's."""
+        if name not in self.meshes:
+            here = self.folder / name if '/' in name else self.folder.parent / 'meshes' / f'{name}.obj'
+            package = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'config', 'meshes')
+            self.meshes[name] = read_obj(here if here.is_file() else package / f'{pathlib.Path(name).stem}.obj')
+        return self.meshes[name]
+
+    def at(self, time, bodies):
+        """@param time s, simulated @param bodies haptex/ClothState's @throws Refused naming an obstacle that is
+        none"""
+        with_mass = iter(bodies)
+        solids = []
+        for item in self.items:
+            try:
+                solids.append(self.solid(item, pose_at(item, time, with_mass)))
+            except (AttributeError, KeyError, TypeError, ValueError) as error:
+                raise error if isinstance(error, Refused) else Refused(
+                    f'recording/about of the bag: {item} is no obstacle of a scene file ({error})') from error
+        return solids
+
+    def solid(self, item, pose):
+        if 'mesh' in item:
+            mesh = self.mesh(item['mesh'])
+            return Solid('mesh', [], pose, FIGURE,
+                         Surface(mesh.positions @ pose[:3, :3].T + pose[:3, 3], mesh.triangles))
+        if 'capsule' in item:
+            return Solid('capsule', [item['capsule']['radius'], item['capsule']['length']], pose, FIGURE)
+        return Solid('sphere', [item['sphere']], pose, FIGURE) if 'sphere' in item else \
+            Solid('box', item['box'], pose, FIGURE)
+
+
+def pose_at(item, time, with_mass):
+    """Of an obstacle of a scene file. @param with_mass iterator over poses of those with mass"""
+    turn, place = rotation(item.get('rpy', (0, 0, 0))), np.array(item['position'], float)
+    if 'orbit' in item:
+        orbit = item['orbit']
+        centre = np.array(orbit['centre'], float)
+        turned = about(orbit['axis'], 2.0 * np.pi * time / orbit['period'])
+        turn, place = turned @ turn, centre + turned @ (place - centre)
+    if 'velocity' in item:
+        place = place + time * np.array(item['velocity'], float)
+    body = next(with_mass, None) if 'body' in item else None
+    if body is not None:
+        turn = of_quaternion(body.orientation)
+        place = np.array([body.position.x, body.position.y, body.position.z])
+    return pose_of(turn, place)
+
+
+def obstacles_of(about_text):
+    """Of a bag's recording/about; none if that does not say the scene. @throws Refused if it cannot be read"""
+    try:
+        what = yaml.safe_load(about_text)
+        if not isinstance(what, dict) or 'scene_file' not in what:
+            return None
+        return Obstacles(what['scene_file'], what.get('scene', ''))
+    except yaml.YAMLError as error:
+        raise Refused(f'recording/about of the bag is no YAML ({error})') from error
+
+
+class Hand:
+    """What urdf/hand_exoskeleton.urdf draws, link by link."""
+
+    def __init__(self):
+        path = pathlib.Path(roslib.packages.get_pkg_dir('haptex'), 'urdf', 'hand_exoskeleton.urdf')
+        root = xml.etree.ElementTree.parse(path).getroot()
+        self.colours = {material.get('name'): floats(material.find('color').get('rgba'))[:3]
+                        for material in root.iter('material') if material.find('color') is not None}
+        self.links = {link.get('name'): [self.visual(visual) for visual in link.findall('visual')]
+                      for link in root.findall('link')}
+
+    def visual(self, visual):
+        origin, geometry = visual.find('origin'), visual.find('geometry')[0]
+        pose = pose_of(rotation(floats(origin.get('rpy', '0 0 0'))), floats(origin.get('xyz', '0 0 0')))
+        name = visual.find('material').get('name')
+        # Colours of a URDF are those of a screen.
+        linear = np.array(self.colours.get(name, (0.6, 0.6, 0.6))) ** 2.2
+        look = Look(linear, *(SKIN_GLOSS if name == 'skin' else (0.1, 0.3)))
+        sizes = {'box': lambda: floats(geometry.get('size')), 'sphere': lambda: [float(geometry.get('radius'))],
+                 'cylinder': lambda: [float(geometry.get('radius')), float(geometry.get('length'))]}
+        return geometry.tag, sizes[geometry.tag](), pose, look
+
+    def at(self, frames):
+        """@param frames poses in the world by name"""
+        solids = []
+        for name, pose in frames.items():
+            for kind, sizes, own, look in self.links.get(name.split('/')[-1], []):
+                solids.append(Solid(kind, sizes, pose @ own, look))
+        return solids
