@@ -6,6 +6,7 @@
 #include "haptex/proximity/kdop_hierarchy.h"
 #include "haptex/proximity/rigid_obstacle.h"
 #include "haptex/proximity/self_proximity.h"
+#include "haptex/proximity/sky_occlusion.h"
 
 namespace haptex::proximity::test_allocation {
 namespace {
@@ -32,6 +33,18 @@ TEST(ProximityAllocation, NeitherRefitNorQueryAllocatesAfterTheFirst) {
       hierarchy.query(cursor, {0.05, 9}, found);
     }
   }
+  EXPECT_EQ(allocations - before, 0);
+}
+
+TEST(ProximityAllocation, SharesOfTheSkyAreComputedWithoutAllocating) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer brings its own malloc";
+#endif
+  const mesh::ClothMesh mesh = sheet(8);
+  const auto states = oracles::deformedSheets(mesh);
+  SkyOcclusion sky(mesh.triangles, restPositions(mesh).size());
+  const long before = allocations;
+  for (const auto& state : states) sky.compute(state.positions);
   EXPECT_EQ(allocations - before, 0);
 }
 

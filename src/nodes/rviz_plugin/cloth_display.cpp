@@ -1,11 +1,16 @@
 #include "haptex/nodes/rviz_plugin/cloth_display.h"
 
+#include <OGRE/OgreCamera.h>
 #include <OGRE/OgreSceneManager.h>
+#include <OGRE/OgreSceneNode.h>
 #include <haptex/ContactForces.h>
+#include <rviz/display_context.h>
 #include <rviz/properties/bool_property.h>
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/string_property.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
 
 #include <cmath>
 #include <exception>
@@ -38,6 +43,8 @@ void ClothDisplay::addProperties() {
   wireframe_ =
       new rviz::BoolProperty("Wireframe", false, "The edges of the triangles alone.", this);
   grain_lines_ = new rviz::BoolProperty("Grain lines", false, "Edges along weft and warp.", this);
+  self_shadow_ = new rviz::BoolProperty(
+      "Self-shadow", false, "Darkened where the cloth hides the sky from itself.", this);
   opacity_ = new rviz::FloatProperty("Alpha", 1.0F, "1: opaque, 0: not to be seen.", this);
   opacity_->setMin(0.0F);
   opacity_->setMax(1.0F);
@@ -46,8 +53,8 @@ void ClothDisplay::addProperties() {
   connect(colour_by_, &rviz::Property::changed, this, [this] { rebuild(); });
   for (rviz::Property* property :
        {static_cast<rviz::Property*>(full_scale_), static_cast<rviz::Property*>(wireframe_),
-        static_cast<rviz::Property*>(grain_lines_), static_cast<rviz::Property*>(opacity_),
-        static_cast<rviz::Property*>(legend_wanted_)}) {
+        static_cast<rviz::Property*>(grain_lines_), static_cast<rviz::Property*>(self_shadow_),
+        static_cast<rviz::Property*>(opacity_), static_cast<rviz::Property*>(legend_wanted_)}) {
     connect(property, &rviz::Property::changed, this, [this] { restyle(); });
   }
 }
@@ -129,15 +136,29 @@ void ClothDisplay::showLegend() {
                 kLegendLeft, kLegendTop);
 }
 
+/// In the frame of the cloth; none without self-shadow.
+std::optional<Eigen::Vector3d> ClothDisplay::eye() const {
+  rviz::ViewController* view = context_->getViewManager()->getCurrent();
+  if (!self_shadow_->getBool() || view == nullptr) return std::nullopt;
+  const Ogre::Vector3 eye =
+      scene_node_->convertWorldToLocalPosition(view->getCamera()->getDerivedPosition());
+  const Eigen::Vector3d place(eye.x, eye.y, eye.z);
+  return place.allFinite() ? std::optional(place) : std::nullopt;
+}
+
 void ClothDisplay::refresh() {
   if (!surface_ || !state_) return;
-  if (state_is_new_ && surface_->knows(*state_)) draw();
+  // The side that is seen may be another one, of the same state.
+  const bool has_turned = self_shadow_->getBool() && eye() != eye_;
+  if ((state_is_new_ || has_turned) && surface_->knows(*state_)) draw();
   state_is_new_ = false;
   place(state_->header);
 }
 
 void ClothDisplay::draw() {
   try {
+    eye_ = eye();
+    surface_->setEye(eye_);
     surface_->take(*state_);
     object_->update(*surface_, surface_->attached(*state_));
     say("State", rviz::StatusProperty::Ok, "drawn");

@@ -184,6 +184,11 @@ void ClothSurface::setFullScale(double full) {
 
 void ClothSurface::setOpacity(double opacity) { opacity_ = opacity; }
 
+void ClothSurface::setEye(const std::optional<Eigen::Vector3d>& eye) {
+  eye_ = eye;
+  if (eye_ && !sky_) sky_.emplace(triangles_, points_.size());
+}
+
 void ClothSurface::take(const haptex::ContactForces& forces) {
   if (forces.mesh != mesh_) return;
   std::fill(contact_forces_.begin(), contact_forces_.end(), 0.0);
@@ -203,6 +208,7 @@ void ClothSurface::take(const haptex::ContactForces& forces) {
 void ClothSurface::take(const haptex::ClothState& state) {
   readPositions(state);
   sumTriangles();
+  sky_shares_ = eye_ ? &sky_->compute(points_) : nullptr;
   colourVertices(state);
 }
 
@@ -262,6 +268,13 @@ double ClothSurface::valueAt(int particle) const {
   return sums_[particle][3] / areas_[particle];
 }
 
+/// Of the side towards the eye.
+double ClothSurface::skyShareAt(int particle) const {
+  const Eigen::Vector3d normal = sums_[particle].head<3>().cast<double>();
+  const proximity::SkyShare& share = (*sky_shares_)[particle];
+  return normal.dot(*eye_ - points_[particle]) >= 0.0 ? share.front : share.back;
+}
+
 void ClothSurface::colourVertices(const haptex::ClothState& state) {
   std::fill(excluded_.begin(), excluded_.end(), 0);
   for (const std::uint32_t particle : state.excluded) {
@@ -274,7 +287,8 @@ void ClothSurface::colourVertices(const haptex::ClothState& state) {
                                    : by_quantity ? viridis(scale_.fraction(valueAt(particle)))
                                                  : distinctColour(vertex_groups_[vertex]);
     const Eigen::Vector3d normal = sums_[particle].head<3>().cast<double>().normalized();
-    colours_[vertex] = colourOf(colour, shade(normal), opacity_);
+    const double sky = sky_shares_ != nullptr ? skyShareAt(particle) : 1.0;
+    colours_[vertex] = colourOf(colour, shade(normal) * static_cast<float>(sky), opacity_);
   }
 }
 

@@ -117,6 +117,39 @@ TEST(ClothSurface, BothSidesAreEquallyBright) {
   EXPECT_EQ(surface.colours(), front);
 }
 
+/// The square along y and z, and another one before it that hides half of the sky from its edge.
+haptex::ClothMesh cornerMesh() {
+  haptex::ClothMesh mesh = squareMesh();
+  mesh.rest_weft_coordinates.insert(mesh.rest_weft_coordinates.end(), {2.0, 2.0});
+  mesh.rest_warp_coordinates.insert(mesh.rest_warp_coordinates.end(), {0.0, 1.0});
+  mesh.triangles.insert(mesh.triangles.end(), {1, 4, 3, 4, 5, 3});
+  return mesh;
+}
+
+TEST(ClothSurface, ShadowsTheSideInACornerAndNotTheOneOutside) {
+  ClothSurface surface(cornerMesh(), ColourBy::kContactForce);
+  haptex::ClothState state = squareState(1.0);
+  for (const double z : {0.0, 1.0}) {
+    geometry_msgs::Point point;
+    point.x = 1.0;
+    point.y = 1.0;
+    point.z = z;
+    state.positions.push_back(point);
+  }
+  surface.take(state);
+  const std::vector<VertexColour> bare = surface.colours();
+  surface.setEye(Eigen::Vector3d(-5.0, 0.5, 0.5));
+  surface.take(state);
+  EXPECT_EQ(surface.colours()[0], bare[0]);
+  surface.setEye(Eigen::Vector3d(5.0, 0.5, 0.5));
+  surface.take(state);
+  EXPECT_LT(surface.colours()[0][2], bare[0][2]);
+  EXPECT_EQ(surface.colours()[0][3], bare[0][3]);
+  surface.setEye(std::nullopt);
+  surface.take(state);
+  EXPECT_EQ(surface.colours(), bare);
+}
+
 TEST(ClothSurface, FabricsMeetInASharpEdge) {
   haptex::ClothMesh mesh = squareMesh();
   mesh.fabrics = {"linear", "linear"};

@@ -96,6 +96,7 @@ TEST_F(ViewTest, EveryColourAndStyleIsDrawn) {
       cloth->subProp("Colour by")->setValue(colours);
       cloth->subProp("Wireframe")->setValue(on);
       cloth->subProp("Grain lines")->setValue(on);
+      cloth->subProp("Self-shadow")->setValue(on);
       cloth->subProp("Legend")->setValue(on);
       cloth->subProp("Alpha")->setValue(on ? 0.5F : 1.0F);
       cloth->subProp("Full scale")->setValue(on ? 0.5F : 0.0F);

@@ -5,6 +5,7 @@
 #include <haptex/ClothState.h>
 
 #include <memory>
+#include <optional>
 
 #include "haptex/nodes/rviz_plugin/cloth_surface.h"
 #include "haptex/nodes/rviz_plugin/live_display.h"
@@ -42,18 +43,21 @@ class ClothDisplay : public LiveDisplay {
   void draw();
   void showLegend();
   ColourBy colourBy() const;
+  std::optional<Eigen::Vector3d> eye() const;
 
   rviz::StringProperty* topics_;
   rviz::EnumProperty* colour_by_;
   rviz::FloatProperty* full_scale_;
   rviz::BoolProperty* wireframe_;
   rviz::BoolProperty* grain_lines_;
+  rviz::BoolProperty* self_shadow_;
   rviz::FloatProperty* opacity_;
   rviz::BoolProperty* legend_wanted_;
 
   haptex::ClothMeshConstPtr mesh_;    // the last that was not refused, or none
   haptex::ClothStateConstPtr state_;  // the newest, or none
   bool state_is_new_ = false;
+  std::optional<Eigen::Vector3d> eye_;     // what was drawn is darkened for
   std::unique_ptr<ClothSurface> surface_;  // of mesh_
   std::unique_ptr<SurfaceObject> object_;
   std::unique_ptr<OverlayPicture> legend_;

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "haptex/material/fabric.h"
 #include "haptex/nodes/common/proximity_messages.h"
 #include "haptex/nodes/rviz_plugin/colour_scale.h"
+#include "haptex/proximity/sky_occlusion.h"
 
 namespace haptex::nodes {
 
@@ -38,6 +40,11 @@ class ClothSurface {
   void setFullScale(double full);
   /// From 0 to 1.
   void setOpacity(double opacity);
+
+  /// With an eye (m, finite, in the frame of states) the next state is darkened by the share of the
+  /// sky that is seen past the cloth from the side that is towards the eye; without, nothing of
+  /// that is computed.
+  void setEye(const std::optional<Eigen::Vector3d>& eye);
 
   /// Forces of another mesh are ignored. They are shown until others come.
   void take(const haptex::ContactForces& forces);
@@ -82,14 +89,18 @@ class ClothSurface {
   void sumTriangles();
   double valueOf(std::size_t triangle, const cloth::MembraneStrain& strain) const;
   double valueAt(int particle) const;
+  double skyShareAt(int particle) const;
   void colourVertices(const haptex::ClothState& state);
 
   std::uint32_t mesh_;
   ColourBy colour_by_;
   ColourScale scale_;
   double opacity_ = 1.0;
-  std::vector<Triangle> triangles_;           // of particles
-  std::vector<int> triangle_fabrics_;         // empty: all are of the first
+  std::optional<Eigen::Vector3d> eye_;
+  std::optional<proximity::SkyOcclusion> sky_;                    // once there was an eye
+  const std::vector<proximity::SkyShare>* sky_shares_ = nullptr;  // of sky_, with an eye
+  std::vector<Triangle> triangles_;                               // of particles
+  std::vector<int> triangle_fabrics_;                             // empty: all are of the first
   std::vector<cloth::RestTriangle> at_rest_;  // of every triangle, only for strain and stress
   std::vector<material::Fabric> fabrics_;     // only for stress
   std::vector<std::string> groups_;
