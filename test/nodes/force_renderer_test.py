@@ -94,14 +94,16 @@ class ForceRenderer(DeviceTest):
         return rospy.wait_for_message(topic, kind, WAIT)
 
     def test_pinched_cloth_is_felt_by_both_fingers_and_feels_them(self):
-        contacts, commands = {}, {}
+        contacts, commands, fed_back = {}, {}, []
 
         def pinched():
             """The hand opens now and then, and forces end where messages are late."""
             contacts.update((finger, self.one(f'{finger}/contact', Contact)) for finger in FINGERS)
             commands.update((finger, self.commanded[finger].last) for finger in FINGERS)
-            return all(contact.normal_force > FELT for contact in contacts.values()) and all(
-                norm(command.force) > FELT for command in commands.values())
+            fed_back[:] = [self.one('cloth/contact_forces', ContactForces)]
+            return fed_back[0].triangles and all(
+                contact.normal_force > FELT for contact in contacts.values()) and all(
+                    norm(command.force) > FELT for command in commands.values())
 
         self.eventually(pinched, 'a pinch')
         normals = [contacts[finger].normal for finger in FINGERS]
@@ -115,9 +117,7 @@ class ForceRenderer(DeviceTest):
             command = commands[finger]
             self.assertEqual(command.header.frame_id, 'hand_base')
             self.assertGreater(sum(command.stiffness[i] for i in (0, 4, 8)), 0.0)
-        forces = self.one('cloth/contact_forces', ContactForces)
-        self.assertGreater(len(forces.triangles), 0)
-        self.assertEqual(len(forces.stiffness), 9 * len(forces.triangles))
+        self.assertEqual(len(fed_back[0].stiffness), 9 * len(fed_back[0].triangles))
 
     def test_forces_of_both_fingers_come_in_one_message_too(self):
         both = self.one('exoskeleton/servo_cf', ServoForces)
