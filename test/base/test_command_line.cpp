@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/base/command_line.h"
 
 namespace haptex::base::test_command_line {
@@ -12,12 +13,7 @@ namespace {
 
 std::string refusalOf(const std::vector<std::string>& arguments,
                       const std::vector<std::string>& options) {
-  try {
-    readCommandLine(arguments, options);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusalOf([&] { readCommandLine(arguments, options); });
 }
 
 TEST(CommandLine, TellsFilesFromOptions) {

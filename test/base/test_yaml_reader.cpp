@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/base/quoted.h"
 #include "haptex/base/yaml_reader.h"
 
@@ -14,18 +15,17 @@ namespace {
 const std::vector<std::string> kKeys = {"name", "size"};
 
 std::string refusal(const std::string& text, const std::string& name = "file") {
-  try {
+  return test::refusalOf([&] {
     const YamlValue file = YamlValue::parse(text, name);
     file.requireKeys(kKeys);
     file.at("name").text();
     file.at("size").number();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "accepted";
+  });
 }
 
-TEST(YamlReader, AcceptsWhatIsAsAskedFor) { EXPECT_EQ(refusal("name: wool\nsize: 2"), "accepted"); }
+TEST(YamlReader, AcceptsWhatIsAsAskedFor) {
+  EXPECT_EQ(refusal("name: wool\nsize: 2"), "(not refused)");
+}
 
 TEST(YamlReader, RefusesAPasswordFileWithoutItsContent) {
   EXPECT_EQ(refusal("root:x:0:0:root:/root:/bin/bash\ndaemon:x:1:1:daemon:/usr/sbin:/bin/sh\n"),

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 
@@ -73,12 +74,7 @@ void expectARejectedStepToLeaveThePastAlone(Sheet& sheet) {
 }
 
 inline std::string refusal(const material::Fabric& fabric, const ModelledEffects& effects) {
-  try {
-    const Cloth cloth(square(2), fabric, effects);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { const Cloth cloth(square(2), fabric, effects); });
 }
 
 }  // namespace haptex::cloth

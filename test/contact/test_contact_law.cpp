@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/contact/contact_law.h"
 #include "haptex/material/compression.h"
 
@@ -136,12 +137,7 @@ TEST(ContactLaw, TakesItsNumbersFromFabricAndPulp) {
 }
 
 std::string refusalOf(const Fabric& fabric, const PulpSettings& pulp = {}) {
-  try {
-    ContactLaw law(fabric, pulp);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { ContactLaw law(fabric, pulp); });
 }
 
 TEST(ContactLaw, NamesTheMissingProperty) {

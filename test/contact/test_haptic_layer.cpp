@@ -4,10 +4,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "../refusal.h"
 #include "fixtures.h"
 
 namespace haptex::contact::test_haptic_layer {
 namespace {
+
+using test::refusalOf;
 
 using base::Finger;
 using Eigen::Vector3d;
@@ -23,16 +26,6 @@ class HapticLayerTest : public testing::Test {
   Fingertip pressingMiddle(double depth = 1e-3) const {
     return pressing(layer_.law(), kSmallSampleMiddle, depth);
   }
-  template <typename Function>
-  static std::string refusalOf(Function function) {
-    try {
-      function();
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
-  }
-
   const mesh::ClothMesh mesh_ = smallSample();
   const std::vector<int> middle_ = trianglesAround(mesh_, {0.02, 0.02}, 0.01);
   HapticLayer layer_{mesh_, wool(), {true, Vector3d::Zero()}, {}};

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "dressing_fixtures.h"
 #include "haptex/dressing/drape.h"
 #include "haptex/garment/placement/overlaps.h"
@@ -15,22 +16,14 @@
 namespace haptex::dressing::test_drape {
 namespace {
 
+using test::refusalOf;
+
 constexpr double kEdge = 0.05;  // m
 
 const DrapeOutcome& tubeOnCone() {
   static const DrapeOutcome outcome =
       drape(garment::makeGarmentMesh(tube(0.15), kEdge), wool(), cone(0.2, 0.04, 0.4), {});
   return outcome;
-}
-
-template <typename Call>
-std::string refusalOf(Call call) {
-  try {
-    call();
-  } catch (const std::exception& refusal) {
-    return refusal.what();
-  }
-  return "not refused";
 }
 
 /// m, above the ground.

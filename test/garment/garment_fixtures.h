@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/garment/pattern/pattern_file.h"
 
 namespace haptex::garment {
@@ -62,12 +63,8 @@ inline std::string refusalOf(std::string text, const std::string& part,
                              const std::string& replacement) {
   const std::size_t begin = text.find(part);
   if (begin == std::string::npos) return "(no such part)";
-  try {
-    parsePattern(text.replace(begin, part.size(), replacement), "small.yaml");
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf(
+      [&] { parsePattern(text.replace(begin, part.size(), replacement), "small.yaml"); });
 }
 
 }  // namespace haptex::garment

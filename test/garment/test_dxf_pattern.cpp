@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "dxf_text.h"
 #include "haptex/garment/importers/dxf_pattern.h"
 #include "haptex/garment/importers/dxf_reader.h"
@@ -19,12 +20,7 @@ ImportedPattern import(const std::string& text, const std::string& sidecar = "")
 }
 
 std::string refusal(const std::string& text, const std::string& sidecar = "") {
-  try {
-    import(text, sidecar);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { import(text, sidecar); });
 }
 
 DxfText square() {
@@ -201,12 +197,7 @@ TEST(DxfPattern, RefusesWhatIsNoPattern) {
 
 TEST(DxfReader, NamesTheLine) {
   const auto refused = [](const std::string& text) -> std::string {
-    try {
-      readDxf(text, "x.dxf");
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { readDxf(text, "x.dxf"); });
   };
   const std::string begin = "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n1\n10\n";
   EXPECT_EQ(refused(begin + "abc\n"), "x.dxf: line 10: 'abc' must be a number");

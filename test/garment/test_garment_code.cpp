@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "../refusal.h"
 #include "expected_patterns.h"
 #include "garment_fixtures.h"
 #include "haptex/garment/importers/garment_code.h"
@@ -27,12 +28,7 @@ Pattern import(const std::string& part = "", const std::string& replacement = ""
 }
 
 std::string refusal(const std::string& part, const std::string& replacement) {
-  try {
-    import(part, replacement);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { import(part, replacement); });
 }
 
 // The first edge of the front with a curvature.

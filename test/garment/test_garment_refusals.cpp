@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "../refusal.h"
 #include "garment_fixtures.h"
 
 namespace haptex::garment::test_garment_refusals {
@@ -156,12 +157,7 @@ TEST(GarmentRefusals, TooManyPanelsEdgesAndPoints) {
 TEST(GarmentRefusals, PatternsThatDidNotComeFromAFile) {
   Pattern pattern = parsePattern(kSmallGarment, "small.yaml");
   const auto refusal = [](const Pattern& of) -> std::string {
-    try {
-      requireSound(of, "made");
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { requireSound(of, "made"); });
   };
   Pattern broken = pattern;
   broken.panels.clear();

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../refusal.h"
 #include "garment_fixtures.h"
 #include "haptex/garment/pattern/outfit.h"
 
@@ -28,12 +29,7 @@ class Outfit : public testing::Test {
     return loadOutfit(directory_ + "/outfit.yaml");
   }
   std::string refusal(const std::string& garments) const {
-    try {
-      load(garments);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return test::refusalOf([&] { load(garments); });
   }
 
   const std::string directory_ = testing::TempDir() + "outfit_" + std::to_string(getpid());

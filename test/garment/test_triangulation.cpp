@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "garment_fixtures.h"
 #include "haptex/base/repeatable_random.h"
 #include "haptex/garment/triangulation/panel_mesh.h"
@@ -336,12 +337,7 @@ TEST(Triangulation, OutlinesAtRandomAreCovered) {
 TEST(Triangulation, RefusesWhatItCannotDo) {
   const Panel panel = panelOf({polygon({{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}})});
   const auto refusal = [&](double edge_length, double tolerance) -> std::string {
-    try {
-      triangulate(panel, edge_length, tolerance);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { triangulate(panel, edge_length, tolerance); });
   };
   EXPECT_EQ(refusal(std::nan(""), 0.01),
             "triangulate: edge_length is nan; it must be >= 0.0005 m and <= 20 m");

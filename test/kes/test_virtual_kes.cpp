@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include "../refusal.h"
 #include "haptex/kes/virtual_kes.h"
 #include "haptex/kes/virtual_test.h"
 #include "haptex/material/fabric_file.h"
@@ -17,12 +18,7 @@ material::Fabric shipped(const std::string& name) {
 
 std::string refusal(const material::Fabric& fabric, const std::string& test) {
   std::ostringstream out;
-  try {
-    printKes(fabric, test, out);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { printKes(fabric, test, out); });
 }
 
 double measured(const KesResult& result, const std::string& name) {

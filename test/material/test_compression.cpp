@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/material/compression.h"
 
 namespace haptex::material::test_compression {
@@ -69,12 +70,7 @@ TEST(CompressionFromKes, RisesEverywhereAndKeepsAThickness) {
 }
 
 std::string refusalOf(const KesCompression& kes) {
-  try {
-    compressionFromKes(kes);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { compressionFromKes(kes); });
 }
 
 TEST(CompressionFromKes, RefusesThicknessesThatDoNotFall) {
@@ -130,12 +126,7 @@ TEST(CompressionFromPoints, GoesOnWithThePowerThatContinuesTheLastSlope) {
 }
 
 std::string pointsRefusalOf(const std::vector<ThicknessPoint>& points) {
-  try {
-    compressionFromPoints(points);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { compressionFromPoints(points); });
 }
 
 TEST(CompressionFromPoints, RefusesPointsThatAreNoCompression) {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "fabric_file_fixtures.h"
 #include "haptex/material/fabric_file.h"
 
@@ -302,12 +303,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.name; });
 
 std::string runtimeErrorOf(const std::string& path) {
-  try {
-    loadFabric(path);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf<std::runtime_error>([&] { loadFabric(path); });
 }
 
 TEST(FabricFile, NamesTheFileThatCannotBeRead) {

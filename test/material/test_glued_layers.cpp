@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/material/compression.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/material/glued_layers.h"
@@ -132,12 +133,7 @@ class GluedFile : public testing::Test {
     return loadFabric(path.string());
   }
   std::string refusalOf(const std::string& layers) const {
-    try {
-      load(layers);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { load(layers); });
   }
 
   fs::path directory_;

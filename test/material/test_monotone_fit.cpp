@@ -4,12 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "../refusal.h"
 #include "haptex/base/repeatable_random.h"
 #include "haptex/material/monotone_fit.h"
 #include "haptex/material/nonnegative_least_squares.h"
 
 namespace haptex::material::test_monotone_fit {
 namespace {
+
+using test::refusalOf;
 
 constexpr double kEnd = 0.1;
 
@@ -29,16 +32,6 @@ std::vector<CurvePoint> sampled(const Function& function, int count, double nois
 
 StrainStressCurve asFabricFilesReadIt(const PiecewiseCubic& cubic) {
   return StrainStressCurve::fromPolynomials(cubic.knots, cubic.coefficients);
-}
-
-template <typename Call>
-std::string refusalOf(const Call& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "not refused";
 }
 
 TEST(NonnegativeLeastSquares, AgreesWithTheBestOfAllActiveSets) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/material/strain_measures.h"
 
 namespace haptex::material::test_strain_measures {
@@ -76,12 +77,7 @@ TEST(StrainMeasures, ConvertsSamplesInOrder) {
 
 TEST(StrainMeasures, RefusesSamplesByIndexAndValue) {
   const auto refusal = [](const CurvePoint& sample) -> std::string {
-    try {
-      curvePointsFromTester({{0.0, 0.0}, sample});
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { curvePointsFromTester({{0.0, 0.0}, sample}); });
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(refusal({-1.0, 0.0}), "points[1]: engineering strain -1 must be finite and > -1");

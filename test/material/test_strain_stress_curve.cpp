@@ -10,10 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/material/strain_stress_curve.h"
 
 namespace haptex::material::test_strain_stress_curve {
 namespace {
+
+using test::refusalOf;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -46,15 +49,6 @@ double integral(const StrainStressCurve& curve, double a, double b, int steps) {
            curve.evaluate(x + h).stress;
   }
   return sum * h / 6.0;
-}
-
-std::string refusalOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
 }
 
 TEST(StrainStressCurve, PassesThroughEveryPoint) {

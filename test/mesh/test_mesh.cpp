@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "../refusal.h"
 #include "haptex/mesh/circles.h"
 #include "haptex/mesh/mesh.h"
 
@@ -188,12 +189,7 @@ TEST(Circles, MakeASoundRingOfTrianglesAsHighAsTheCirclesAreApart) {
 
 TEST(Circles, RefuseRadiiThatDoNotAscend) {
   const auto refusal = [](const std::vector<double>& radii) -> std::string {
-    try {
-      meshOfCircles(radii);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "none";
+    return test::refusalOf([&] { meshOfCircles(radii); });
   };
   EXPECT_EQ(refusal({0.1}), "a round mesh has 1 circles: allowed are 2 or more");
   EXPECT_EQ(refusal({-0.1, 0.2}),

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/base/workload.h"
 #include "haptex/oracles/exact/elastica.h"
 
@@ -118,12 +119,7 @@ TEST(Elastica, RisesWithTheWeight) {
 }
 
 std::string refusalOf(double gamma) {
-  try {
-    exactDropOverReach(gamma);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { exactDropOverReach(gamma); });
 }
 
 TEST(Elastica, RefusesWeightsOutOfItsDomain) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/contact/sphere_contact.h"
 #include "haptex/kes/virtual_kes.h"
 #include "haptex/kes/virtual_test.h"
@@ -25,6 +26,8 @@
 namespace haptex::oracles::test_oracle_domains {
 namespace {
 
+using test::refusalOf;
+
 using cloth::IntegrationMethod;
 using kes::Direction;
 using material::Fabric;
@@ -32,15 +35,6 @@ using material::StrainStressCurve;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 const double kNan = std::nan("");
-
-std::string refusalOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
-}
 
 TEST(Domains, ExactElongationFromNoWeightToAHugeOne) {
   const auto elongation = [](double gravity) { return exactElongation({1.0, 1.0, 1.0, gravity}); };

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/contact/sphere_contact.h"
 #include "haptex/material/compression.h"
 #include "haptex/oracles/exact/pinched_sheet.h"
@@ -117,12 +118,7 @@ TEST(PinchedSheet, IsWhatParticleContactConvergesTo) {
 }
 
 std::string refusalOf(double radius, double distance) {
-  try {
-    pinchForce(softLaw(), radius, distance);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { pinchForce(softLaw(), radius, distance); });
 }
 
 TEST(PinchedSheet, RefusesSpheresThatAreNone) {

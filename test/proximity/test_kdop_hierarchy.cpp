@@ -8,11 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "../refusal.h"
 #include "fixtures.h"
 #include "haptex/proximity/kdop_hierarchy.h"
 
 namespace haptex::proximity::test_kdop_hierarchy {
 namespace {
+
+using test::refusalOf;
 
 using Eigen::Vector3d;
 
@@ -41,15 +44,6 @@ void expectSame(const std::vector<NearElement>& found, const std::vector<NearEle
     EXPECT_EQ(found[i].barycentric, exact[i].barycentric) << what;
     EXPECT_EQ(found[i].normal, exact[i].normal) << what;
   }
-}
-
-std::string message(const std::function<void()>& refused) {
-  try {
-    refused();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing thrown";
 }
 
 TEST(KdopHierarchy, AnswersAreThoseOfBruteForceInEveryState) {
@@ -237,17 +231,17 @@ TEST(KdopHierarchy, LeafHoldsEverythingIfItMay) {
 TEST(KdopHierarchy, RefusesMeshesThatAreNone) {
   const std::vector<Vector3d> positions(3, Vector3d::Zero());
   using Triangles = std::vector<std::array<int, 3>>;
-  EXPECT_EQ(message([&] { KdopHierarchy(Triangles{}, positions); }),
+  EXPECT_EQ(refusalOf([&] { KdopHierarchy(Triangles{}, positions); }),
             "a hierarchy needs at least one triangle");
-  EXPECT_EQ(message([&] {
+  EXPECT_EQ(refusalOf([&] {
               KdopHierarchy(Triangles{{0, 1, 2}, {0, 3, 1}}, positions);
             }),
             "triangle 1 has vertex 3: must be from 0 to 2");
-  EXPECT_EQ(message([&] {
+  EXPECT_EQ(refusalOf([&] {
               KdopHierarchy(Triangles{{0, -1, 2}}, positions);
             }),
             "triangle 0 has vertex -1: must be from 0 to 2");
-  EXPECT_EQ(message([&] {
+  EXPECT_EQ(refusalOf([&] {
               KdopHierarchy(Triangles{{0, 1, 2}}, positions, {KdopKind::k6, 0});
             }),
             "triangles_per_leaf 0: must be >= 1");
@@ -257,14 +251,14 @@ TEST(KdopHierarchy, RefusedPositionsLeaveItAsItWas) {
   const mesh::ClothMesh mesh = sheet(8);
   KdopHierarchy hierarchy = hierarchyOver(mesh);
   const std::vector<Vector3d> good = restPositions(mesh);
-  EXPECT_EQ(message([&] {
+  EXPECT_EQ(refusalOf([&] {
               hierarchy.refit({good.begin(), good.end() - 1});
             }),
             "80 positions for a hierarchy over 81 vertices");
   for (double bad : {kNaN, kInfinity, -kInfinity, 1.5e9}) {
     std::vector<Vector3d> positions(good.size(), Vector3d(7, 7, 7));
     positions.back().y() = bad;
-    EXPECT_NE(message([&] { hierarchy.refit(positions); }).find("position 80 (7, "),
+    EXPECT_NE(refusalOf([&] { hierarchy.refit(positions); }).find("position 80 (7, "),
               std::string::npos);
   }
   std::vector<NearElement> found;
@@ -278,9 +272,9 @@ TEST(KdopHierarchy, RefusesDistancesThatAreNone) {
   const KdopHierarchy hierarchy({{0, 1, 2}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   std::vector<NearElement> found;
   const Cursor cursor = Cursor::point({0, 0, 0});
-  EXPECT_EQ(message([&] { hierarchy.query(cursor, {-0.5}, found); }),
+  EXPECT_EQ(refusalOf([&] { hierarchy.query(cursor, {-0.5}, found); }),
             "distance of a proximity query -0.5 m: must be >= 0");
-  EXPECT_NE(message([&] { hierarchy.query(cursor, {kNaN}, found); }).find("nan m: must be >= 0"),
+  EXPECT_NE(refusalOf([&] { hierarchy.query(cursor, {kNaN}, found); }).find("nan m: must be >= 0"),
             std::string::npos);
 }
 

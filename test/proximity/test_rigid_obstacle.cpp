@@ -9,12 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "exact_distance.h"
 #include "haptex/base/workload.h"
 #include "haptex/proximity/rigid_obstacle.h"
 
 namespace haptex::proximity::test_rigid_obstacle {
 namespace {
+
+using test::refusalOf;
 
 using Eigen::Vector3d;
 using Triangles = std::vector<std::array<int, 3>>;
@@ -305,16 +308,6 @@ TEST(RigidObstacle, CopiesHaveTheirOwnPose) {
   second.setPose(Eigen::Isometry3d(Eigen::Translation3d(5, 0, 0)));
   EXPECT_EQ(first.support(Vector3d::UnitX()), 1.0);
   EXPECT_EQ(second.support(Vector3d::UnitX()), 6.0);
-}
-
-template <typename Call>
-std::string refusalOf(const Call& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
 }
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();

@@ -9,12 +9,15 @@
 #include <utility>
 #include <vector>
 
+#include "../refusal.h"
 #include "fixtures.h"
 #include "haptex/proximity/sky_occlusion.h"
 #include "ray_caster.h"
 
 namespace haptex::proximity::test_sky_occlusion {
 namespace {
+
+using test::refusalOf;
 
 using Eigen::Vector3d;
 
@@ -103,15 +106,6 @@ TEST(SkyOcclusion, SeesAllWhereThereIsNoNormal) {
       EXPECT_TRUE(share.front == 1.0f && share.back == 1.0f) << state;
     }
   }
-}
-
-std::string refusalOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
 }
 
 TEST(SkyOcclusion, RefusesWhatIsNotOfTheMeshAndKeepsTheLastShares) {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/scene/scene.h"
 
 namespace haptex::scene {
@@ -47,12 +48,7 @@ class SceneFile : public testing::Test {
   }
 
   std::string refusalOf(const std::string& text) const {
-    try {
-      load(text);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { load(text); });
   }
 
   std::filesystem::path root_;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/scene/cloth_state_file.h"
 #include "scene_fixtures.h"
@@ -161,12 +162,7 @@ TEST_F(StateFile, IsRefusedForWhatIsWrongWithIt) {
 TEST_F(StateFile, IsWrittenToAbsolutePathsOfItsKindOnlyOrNotAtAll) {
   const std::string old = savedText();
   const auto refusal = [&](const std::string& path) -> std::string {
-    try {
-      saveState(path, state_);
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { saveState(path, state_); });
   };
   for (const std::string& path :
        {std::string(), std::string("cloth.state"), std::string("./cloth.state"),

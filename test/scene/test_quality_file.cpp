@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/scene/quality_file.h"
 
 namespace haptex::scene::test_quality_file {
@@ -51,12 +52,7 @@ class QualityFile : public testing::Test {
     std::string text = kTwoQualities;
     const std::size_t begin = text.find(part);
     if (begin == std::string::npos) return "(no such part)";
-    try {
-      load(text.replace(begin, part.size(), replacement));
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { load(text.replace(begin, part.size(), replacement)); });
   }
 
   void expectRefused(const std::string& part, const std::string& replacement,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/scene/scene.h"
 #include "scene_fixtures.h"
@@ -368,12 +369,7 @@ TEST_F(SceneFile, MayHaveAnotherSheet) {
 TEST_F(SceneFile, RefusesSheetsThatCannotBe) {
   load(kValid);
   const auto refusal = [&](const SheetChange& change) -> std::string {
-    try {
-      loadScene(path(), change);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusalOf([&] { loadScene(path(), change); });
   };
   SheetChange long_sheet, no_cells, fine;
   long_sheet.size = {0.1, 101.0};

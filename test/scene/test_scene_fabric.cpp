@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/scene/scene_fabric.h"
 
 namespace haptex::scene::test_scene_fabric {
@@ -31,12 +32,7 @@ class SceneFabric : public testing::Test {
                                << "sheet: {size: [1, 1], cells: [2, 2], diagonals: one_way}\n"
                                << "attach: []\ntime_step: 0.01\n"
                                << more;
-    try {
-      loadSceneFabrics(scenePath(), loadScene(scenePath()));
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { loadSceneFabrics(scenePath(), loadScene(scenePath())); });
   }
 
   /// A shipped fabric without one of its keys.

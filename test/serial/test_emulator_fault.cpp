@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/serial/emulator_fault.h"
 
 namespace haptex::serial::test_emulator_fault {
@@ -15,12 +16,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// What parse() says to a request that it refuses.
 std::string refusal(const std::string& fault, const std::string& direction, double probability,
                     double duration) {
-  try {
-    EmulatorFault::parse(fault, direction, probability, duration, {"saturated_sensor"});
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusalOf(
+      [&] { EmulatorFault::parse(fault, direction, probability, duration, {"saturated_sensor"}); });
 }
 
 TEST(EmulatorFault, KnowsEveryFaultOfTheLineByItsName) {
@@ -59,7 +56,7 @@ TEST(EmulatorFault, RefusesAnUnknownNameWithAllThatAreAllowed) {
     EXPECT_NE(refused.find(serial::name(fault)), std::string::npos) << refused;
   }
   EXPECT_NE(refused.find("closed_port, saturated_sensor"), std::string::npos) << refused;
-  EXPECT_NE(refusal("", "both", 1.0, 1.0), "");
+  EXPECT_NE(refusal("", "both", 1.0, 1.0), "(not refused)");
 }
 
 TEST(EmulatorFault, RefusesAnUnknownDirection) {
@@ -73,15 +70,15 @@ TEST(EmulatorFault, RefusesWhatIsNoProbability) {
   for (const double probability : {-0.1, 1.1, kNaN, kInfinity, -kInfinity}) {
     EXPECT_NE(refusal("drop", "both", probability, 1.0).find("probability = "), std::string::npos);
   }
-  EXPECT_EQ(refusal("drop", "both", 0.0, 1.0), "");
-  EXPECT_EQ(refusal("drop", "both", 1.0, 1.0), "");
+  EXPECT_EQ(refusal("drop", "both", 0.0, 1.0), "(not refused)");
+  EXPECT_EQ(refusal("drop", "both", 1.0, 1.0), "(not refused)");
 }
 
 TEST(EmulatorFault, RefusesDurationsThatAreNoneOrTooLong) {
   for (const double duration : {-1.0, 0.0, 3601.0, 1e300, kNaN, kInfinity}) {
     EXPECT_NE(refusal("drop", "both", 1.0, duration).find("duration = "), std::string::npos);
   }
-  EXPECT_EQ(refusal("drop", "both", 1.0, EmulatorFault::kLongest), "");
+  EXPECT_EQ(refusal("drop", "both", 1.0, EmulatorFault::kLongest), "(not refused)");
 }
 
 TEST(EmulatorFault, IsDescribedByNameAndDirection) {

@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "byte_fixtures.h"
 #include "haptex/serial/pseudo_terminal.h"
 #include "haptex/serial/serial_port.h"
@@ -48,12 +49,7 @@ ByteVector everyByte() {
 }
 
 std::string refusal(const std::string& path) {
-  try {
-    SerialPort port(path);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusalOf<std::runtime_error>([&] { SerialPort port(path); });
 }
 
 // Root may do everything, so that nothing is refused to it.
@@ -155,7 +151,7 @@ TEST(SerialPort, RefusesASecondDriver) {
     SerialPort driver(device.path());
     EXPECT_EQ(refusal(device.path()), device.path() + ": another program has it open");
   }
-  EXPECT_EQ(refusal(device.path()), "");
+  EXPECT_EQ(refusal(device.path()), "(not refused)");
 }
 
 // TIOCEXCL would, for everybody but root.
@@ -170,7 +166,7 @@ TEST(SerialPort, AKilledDriverDoesNotKeepOutItsSuccessor) {
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
-  EXPECT_EQ(refusal(device.path()), "");
+  EXPECT_EQ(refusal(device.path()), "(not refused)");
 }
 
 TEST(SerialPort, NoticesThatTheOtherEndIsGone) {
@@ -308,7 +304,7 @@ TEST(PseudoTerminal, ReplacesALinkThatADeadEmulatorHasLeft) {
   ASSERT_EQ(::symlink("/nowhere", link.c_str()), 0);
   std::ofstream(link + ".lock").close();
   const PseudoTerminal device(link);
-  EXPECT_EQ(refusal(link), "");
+  EXPECT_EQ(refusal(link), "(not refused)");
 }
 
 TEST(PseudoTerminal, DoesNotTakeTheLinkOfAnother) {
@@ -340,7 +336,7 @@ TEST(PseudoTerminal, RemovesOnlyItsOwnLink) {
     ASSERT_EQ(::unlink(link.c_str()), 0);
     ASSERT_EQ(::symlink(other.path().c_str(), link.c_str()), 0);
   }
-  EXPECT_EQ(refusal(link), "") << "leads to the other";
+  EXPECT_EQ(refusal(link), "(not refused)") << "leads to the other";
   ::unlink(link.c_str());
 }
 

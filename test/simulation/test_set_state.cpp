@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../refusal.h"
 #include "haptex/contact/obstacles/obstacle_collision.h"
 #include "haptex/contact/obstacles/obstacles.h"
 #include "haptex/material/fabric_file.h"
@@ -84,12 +85,7 @@ TEST(SetState, KeepsAttachedParticlesInTheirPlaces) {
                       {});
   EXPECT_EQ(simulation.state().positions, on_its_way.positions);
   const auto refusal = [&](const Vectors& positions, const Vectors& velocities) -> std::string {
-    try {
-      simulation.setState({0, kSmallTop}, positions, velocities);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { simulation.setState({0, kSmallTop}, positions, velocities); });
   };
   EXPECT_NE(refusal({Vector3d::Zero(), Vector3d(0.0, -0.1, 1.0)}, {})
                 .find("particle 20 is attached: allowed is its place (0.0"),

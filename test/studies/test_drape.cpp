@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/base/constants.h"
 #include "haptex/base/workload.h"
 #include "haptex/material/fabric_file.h"
@@ -108,12 +109,7 @@ TEST(Drape, InternalFrictionHoldsTheFabricUp) {
 
 TEST(Drape, RefusesWhatIsNoTest) {
   const auto refusal = [](const material::Fabric& fabric, const DrapeTest& test) -> std::string {
-    try {
-      drape(fabric, test, 1);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "none";
+    return test::refusalOf([&] { drape(fabric, test, 1); });
   };
   for (double DrapeTest::*member :
        {&DrapeTest::fabric_radius, &DrapeTest::support_radius, &DrapeTest::cell,
@@ -130,7 +126,7 @@ TEST(Drape, RefusesWhatIsNoTest) {
   EXPECT_NE(refusal(wool(), test).find("support_radius"), std::string::npos);
   material::Fabric limp = wool();
   limp.bending.reset();
-  EXPECT_NE(refusal(limp, coarse()), "none");
+  EXPECT_NE(refusal(limp, coarse()), "(not refused)");
 }
 
 TEST(DrapeCoefficient, IsTheShareOfTheRingInTheShadow) {

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/oracles/experiments/known_surfaces.h"
 #include "haptex/tactile/stroke.h"
 
@@ -18,17 +19,6 @@ using oracles::whiteNoise;
 inline SmallScale singleWave(const Eigen::Vector2d& k, double amplitude,
                              double friction_per_slope = 0.0) {
   return {{{k.x()}, {k.y()}, {0.5 * amplitude * amplitude}}, friction_per_slope};
-}
-
-/// What a call refuses with, or nothing.
-template <typename Exception, typename Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const Exception& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace haptex::tactile

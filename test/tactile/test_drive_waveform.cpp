@@ -115,7 +115,7 @@ TEST(DriveWaveform, ContactorsDoNotMix) {
 }
 
 TEST(DriveWaveform, RefusesRatesThatCannotCarryTheChannels) {
-  EXPECT_EQ(refusal<std::invalid_argument>([] { DriveWaveform(640.0); }),
+  EXPECT_EQ(test::refusalOf([] { DriveWaveform(640.0); }),
             "the sample rate is 640 Hz: allowed are numbers above 640 Hz and up to 1e+06 Hz");
   for (const double rate :
        {0.0, -44100.0, 2e6, std::nan(""), std::numeric_limits<double>::infinity()}) {

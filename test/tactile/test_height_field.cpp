@@ -9,7 +9,7 @@ namespace haptex::tactile::test_height_field {
 namespace {
 
 std::string refusalOf(const HeightField& field) {
-  return refusal<std::invalid_argument>([&] { requireSound(field); });
+  return test::refusalOf([&] { requireSound(field); });
 }
 
 TEST(HeightField, IsRowByRow) {
@@ -19,8 +19,8 @@ TEST(HeightField, IsRowByRow) {
 }
 
 TEST(HeightField, OfTheSmallestAndOfTheLargestSideIsSound) {
-  EXPECT_EQ(refusalOf(flatField(2, 2)), "");
-  EXPECT_EQ(refusalOf(flatField(kMaxSamples, 2)), "");
+  EXPECT_EQ(refusalOf(flatField(2, 2)), "(not refused)");
+  EXPECT_EQ(refusalOf(flatField(kMaxSamples, 2)), "(not refused)");
 }
 
 TEST(HeightField, RefusalsNameFieldValueAndWhatIsAllowed) {

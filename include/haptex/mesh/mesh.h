@@ -108,9 +108,9 @@ ClothMesh makeDisc(double radius, int rings);
 /// Positions (m) of the particles of a sheet that lies in the plane z = 0: their rest coordinates.
 std::vector<Eigen::Vector3d> flatPositions(const ClothMesh& mesh);
 
-/// Cuts every triangle from the fabric by itself, as large as its initial positions have it and
-/// with its first edge along weft, as for a closed surface that no plane pattern makes. Its rest
-/// coordinates are replaced.
+/// Cuts every triangle from the fabric by itself, as large as its initial positions have it, which
+/// is more than nothing, and with its first edge along weft, as for a closed surface that no plane
+/// pattern makes. Its rest coordinates are replaced.
 void cutAsInSpace(ClothMesh& mesh);
 
 /// The particles on one side of the bounding rectangle of the rest coordinates, in ascending order:

@@ -3,23 +3,16 @@
 #include <limits>
 #include <numeric>
 
+#include "../../refusal.h"
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/cloth.h"
 
 namespace haptex::cloth::test_cloth {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using test::refusalOf;
 
-template <typename Action>
-std::string refusal(Action action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 AttachmentPath pathAt(const Eigen::Vector3d& place) {
   AttachmentPath path;
@@ -37,14 +30,14 @@ TEST(Cloth, MassesSumToDensityTimesArea) {
 TEST(Cloth, RefusesWhatCannotBeSimulated) {
   mesh::ClothMesh bad = square(2);
   bad.triangles.push_back({0, 0, 1});
-  EXPECT_EQ(refusal([&] { Cloth(bad, linearFabric(), {}); }), "degenerate triangles: 8");
+  EXPECT_EQ(refusalOf([&] { Cloth(bad, linearFabric(), {}); }), "degenerate triangles: 8");
   material::Fabric weightless = linearFabric();
   weightless.areal_density = 0.0;
-  EXPECT_NE(refusal([&] { Cloth(square(2), weightless, {}); }).find("areal density"),
+  EXPECT_NE(refusalOf([&] { Cloth(square(2), weightless, {}); }).find("areal density"),
             std::string::npos);
   ModelledEffects effects;
   effects.gravity.z() = kNaN;
-  EXPECT_NE(refusal([&] { Cloth(square(2), linearFabric(), effects); }).find("gravity"),
+  EXPECT_NE(refusalOf([&] { Cloth(square(2), linearFabric(), effects); }).find("gravity"),
             std::string::npos);
 }
 
@@ -96,28 +89,28 @@ TEST(Cloth, ExternalForcesAndGravityEnterForcesAndEnergy) {
 
 TEST(Cloth, RefusesLoadsAndAttachmentsByName) {
   Cloth cloth(square(2), linearFabric(), {});
-  EXPECT_NE(refusal([&] {
+  EXPECT_NE(refusalOf([&] {
               cloth.setExternalForce(9, {0, 0, 0});
             }).find("particles 0 to 8"),
             std::string::npos);
-  EXPECT_NE(refusal([&] {
+  EXPECT_NE(refusalOf([&] {
               cloth.setExternalForce(1, {0, kNaN, 0});
             }).find("not finite"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { cloth.attach(-1, {}); }).find("particle -1"), std::string::npos);
-  EXPECT_NE(refusal([&] {
+  EXPECT_NE(refusalOf([&] { cloth.attach(-1, {}); }).find("particle -1"), std::string::npos);
+  EXPECT_NE(refusalOf([&] {
               cloth.attach(0, pathAt({kNaN, 0, 0}));
             }).find("finite"),
             std::string::npos);
   AttachmentPath backward;
   backward.duration = -1.0;
-  EXPECT_NE(refusal([&] { cloth.attach(0, backward); }).find("at least 0"), std::string::npos);
+  EXPECT_NE(refusalOf([&] { cloth.attach(0, backward); }).find("at least 0"), std::string::npos);
   for (int what = 0; what < 3; ++what) {
     AttachmentPath path;
     (what == 0 ? path.displacement.y() : what == 1 ? path.start_time : path.duration) = kNaN;
-    EXPECT_NE(refusal([&] { cloth.attach(0, path); }).find("finite"), std::string::npos) << what;
+    EXPECT_NE(refusalOf([&] { cloth.attach(0, path); }).find("finite"), std::string::npos) << what;
   }
-  EXPECT_EQ(refusal([&] { cloth.release(3); }), "particle 3 is not attached");
+  EXPECT_EQ(refusalOf([&] { cloth.release(3); }), "particle 3 is not attached");
   EXPECT_FALSE(cloth.isAttached(0));
 }
 
@@ -149,7 +142,7 @@ TEST(Cloth, RefusesAStateOfAnotherSize) {
   ClothState state = cloth.initialState();
   state.velocities.pop_back();
   std::vector<Eigen::Vector3d> forces;
-  const std::string message = refusal([&] { cloth.computeForces(state, forces); });
+  const std::string message = refusalOf([&] { cloth.computeForces(state, forces); });
   EXPECT_NE(message.find("8 velocities; the cloth has 9 particles"), std::string::npos) << message;
   EXPECT_THROW(cloth.jacobian(state, {0}), std::invalid_argument);
   EXPECT_THROW(cloth.potentialEnergy(state), std::invalid_argument);

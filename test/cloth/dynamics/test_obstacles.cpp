@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "../../refusal.h"
 #include "haptex/mesh/obj_file.h"
 #include "haptex/scene/scene.h"
 
@@ -52,12 +53,7 @@ class ObstacleList : public testing::Test {
   }
 
   std::string refusalOf(const std::string& obstacles) const {
-    try {
-      load(obstacles);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { load(obstacles); });
   }
 
   fs::path root_;

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <tuple>
 
+#include "../../refusal.h"
 #include "haptex/cloth/dynamics/cloth_part.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "seam_fixtures.h"
 
 namespace haptex::cloth::test_ties {
 namespace {
+
+using test::refusalOf;
 
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
@@ -242,16 +245,6 @@ TEST(Ties, AnOpenSeamClosesAtTheSpeedThatIsAskedForAndHolds) {
     // 30 mm in 0.15 s: no particle was ever much faster than the seam.
     for (const Vector3d& velocity : state.velocities) EXPECT_LT(velocity.norm(), 2.0 * kSpeed);
   }
-}
-
-template <typename Function>
-std::string refusalOf(const Function& function) {
-  try {
-    function();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Ties, WhatCannotBeDoneWithThemIsRefused) {

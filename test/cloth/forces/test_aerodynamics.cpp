@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "../../refusal.h"
 #include "air_fixtures.h"
 #include "fixtures.h"
 #include "force_fixtures.h"
@@ -237,12 +238,7 @@ TEST(Aerodynamics, ANewtonIterationDescendsThePotentialOfFixedNormals) {
 
 TEST(Aerodynamics, RefusesWhatIsNotPhysical) {
   const auto refusal = [](const Air& air) -> std::string {
-    try {
-      Cloth(square(2), limpFabric(), effectsOf(air));
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { Cloth(square(2), limpFabric(), effectsOf(air)); });
   };
   Air air;
   air.coefficients.normal = -1.0;

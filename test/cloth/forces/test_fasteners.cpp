@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "../../refusal.h"
 #include "derivatives.h"
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
@@ -12,6 +13,8 @@
 
 namespace haptex::cloth::test_fasteners {
 namespace {
+
+using test::refusalOf;
 
 using Eigen::Vector3d;
 
@@ -47,15 +50,6 @@ Cloth oneSheet(const std::vector<Fastener>& fasteners) {
   ModelledEffects effects;
   effects.fasteners = fasteners;
   return Cloth(square(4), linearFabric(), effects);
-}
-
-std::string refusalOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
 }
 
 TEST(Fasteners, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce) {

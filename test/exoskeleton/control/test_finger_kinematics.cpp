@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "../../refusal.h"
 #include "haptex/exoskeleton/control/finger_kinematics.h"
 #include "haptex/exoskeleton/emulator/emulated_linkage.h"
 #include "shipped_urdf.h"
@@ -195,12 +196,7 @@ TEST(FingerKinematics, CouplingComesFromTheMimicOfTheUrdf) {
 
 /// What the constructor says about a URDF.
 std::string refusal(const std::string& urdf, Finger finger = Finger::kIndex) {
-  try {
-    FingerKinematics(urdf, finger);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusalOf([&] { FingerKinematics(urdf, finger); });
 }
 
 std::string refusalWith(const std::string& old_part, const std::string& new_part) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../../refusal.h"
 #include "emulator_fixtures.h"
 #include "haptex/exoskeleton/emulator/emulated_linkage.h"
 
@@ -129,12 +130,7 @@ INSTANTIATE_TEST_SUITE_P(Both, EmulatedLinkageOf, testing::ValuesIn(kFingers),
                          [](const auto& info) { return std::string(name(info.param)); });
 
 std::string refusalOf(const std::string& urdf) {
-  try {
-    EmulatedLinkage linkage(urdf, Finger::kIndex);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::refusalOf([&] { EmulatedLinkage linkage(urdf, Finger::kIndex); });
 }
 
 std::string chainOf(int joints, const std::string& type, const std::string& mass) {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../../refusal.h"
 #include "haptex/exoskeleton/emulator/hand_path.h"
 
 namespace haptex::exoskeleton::test_hand_path {
@@ -30,12 +31,7 @@ class PathFile : public testing::Test {
   }
 
   std::string refusalOf(const std::string& text) const {
-    try {
-      load(text);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "(not refused)";
+    return test::refusalOf([&] { load(text); });
   }
 
   fs::path path_;

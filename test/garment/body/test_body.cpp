@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "../../refusal.h"
 #include "body_fixtures.h"
 #include "haptex/garment/body/body_file.h"
 #include "haptex/garment/body/measured_body.h"
@@ -15,12 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 std::string refusalOf(FigureShape shape, const Measures& asked) {
-  try {
-    measuredBody(bodyPath("makehuman"), shape, asked);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusalOf([&] { measuredBody(bodyPath("makehuman"), shape, asked); });
 }
 
 TEST(Body, ShippedBodiesAreClosedAndStandOnTheGround) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "../../refusal.h"
 #include "body/body_fixtures.h"
 #include "haptex/garment/body/body_file.h"
 #include "haptex/garment/pattern/pattern_file.h"
@@ -139,12 +140,7 @@ TEST(Preposition, WhatIsNotKnownIsRefused) {
   const auto refusal = [&](const std::string& text) -> std::string {
     const Pattern pattern = parsePattern(text, "tube.yaml");
     std::vector<PanelMesh> meshes = meshesOf(pattern, 0.1);
-    try {
-      preposition(pattern, body, meshes);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return test::refusalOf([&] { preposition(pattern, body, meshes); });
   };
   EXPECT_EQ(refusal(replaced(kTube, "segment: spine", "segment: tail")),
             "carrier 'tube': segment 'tail' is unknown: the body has spine");

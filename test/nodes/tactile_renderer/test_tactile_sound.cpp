@@ -11,6 +11,7 @@
 #include <fstream>
 #include <limits>
 
+#include "../../refusal.h"
 #include "haptex/nodes/tactile_renderer/sound_request.h"
 #include "haptex/nodes/tactile_renderer/tactile_recording.h"
 
@@ -196,18 +197,13 @@ TEST(RecordedSteps, SayWhatIsInTheBagIfTheTopicIsNotClear) {
   const std::string bag = directory.file("a.bag");
   record(bag, "/haptex/index/tactile", {0.0, 0.025});
   const auto refusal = [&](const std::string& finger) -> std::string {
-    try {
-      recordedSteps(bag, finger, 5);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return test::refusalOf([&] { recordedSteps(bag, finger, 5); });
   };
   EXPECT_EQ(refusal("thumb"), bag +
                                   ": 0 topics end in thumb/tactile, one is needed; of "
                                   "haptex/Tactile there is /haptex/index/tactile");
-  EXPECT_NE(refusal("dex"), "");  // a finger is a whole name
-  EXPECT_EQ(refusal("index"), "");
+  EXPECT_NE(refusal("dex"), "(not refused)");  // a finger is a whole name
+  EXPECT_EQ(refusal("index"), "(not refused)");
   record(bag, "/other/index/tactile", {0.0}, rosbag::bagmode::Append);
   EXPECT_EQ(refusal("index"), bag +
                                   ": 2 topics end in index/tactile, one is needed; of "
@@ -250,12 +246,7 @@ TEST(SoundRequest, ReadsARecording) {
 
 TEST(SoundRequest, NamesWhatIsWrong) {
   const auto refusal = [](const std::vector<std::string>& arguments) -> std::string {
-    try {
-      parseSoundRequest(arguments);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return test::refusalOf([&] { parseSoundRequest(arguments); });
   };
   EXPECT_EQ(refusal({}), "0 file names: it takes a fabric and a sound");
   EXPECT_EQ(refusal({"wool", "a.wav", "--speed"}), "--speed needs a value");

@@ -7,11 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "../../refusal.h"
 #include "../small_scene.h"
 #include "haptex/simulation/simulated_cloth.h"
 
 namespace haptex::simulation::test_carrying_frames {
 namespace {
+
+using test::refusalOf;
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
@@ -27,16 +30,6 @@ scene::Scene carriedScene() {
   }
   scene.frames = {frame};
   return scene;
-}
-
-template <typename Call>
-std::string refusalOf(const Call& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& refusal) {
-    return refusal.what();
-  }
-  return "accepted";
 }
 
 SimulatedCloth carriedCloth() { return SimulatedCloth(carriedScene(), smallFabric()); }

@@ -12,10 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "../../refusal.h"
 #include "haptex/base/yaml_reader.h"
 #include "haptex/studies/jobs/study_jobs.h"
 
 namespace haptex::studies {
+
+using test::refusalOf;
 
 /// Tells the squares of numbers.
 class Squares final : public Study {
@@ -40,15 +43,6 @@ class Squares final : public Study {
  private:
   std::size_t units_;
 };
-
-inline std::string refusalOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::exception& refusal) {
-    return refusal.what();
-  }
-  return "accepted";
-}
 
 class StudyJobs : public testing::Test {
  protected:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "../../../refusal.h"
 #include "../linear/coupled_system.h"
 #include "derivatives.h"
 #include "fixtures.h"
@@ -129,12 +130,7 @@ TEST(Stuffing, AssemblesTheJacobianForNewtonAndAPositiveSemidefinitePartOfIt) {
 
 TEST(Stuffing, RefusesWhatIsNotOneClosedCloth) {
   const auto refusal = [](const mesh::ClothMesh& mesh, const StuffingMass& mass) -> std::string {
-    try {
-      Stuffing(mesh, mass);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return test::refusalOf([&] { Stuffing(mesh, mass); });
   };
   const auto expect = [](const std::string& message, const char* part) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
