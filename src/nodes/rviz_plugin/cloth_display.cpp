@@ -150,7 +150,13 @@ void ClothDisplay::refresh() {
   if (!surface_ || !state_) return;
   // The side that is seen may be another one, of the same state.
   const bool has_turned = self_shadow_->getBool() && eye() != eye_;
-  if ((state_is_new_ || has_turned) && surface_->knows(*state_)) draw();
+  if (surface_->knows(*state_)) {
+    if (state_is_new_) {
+      draw();
+    } else if (has_turned) {
+      recolour();
+    }
+  }
   state_is_new_ = false;
   place(state_->header);
 }
@@ -166,6 +172,14 @@ void ClothDisplay::draw() {
   } catch (const std::exception& error) {
     refuse("State", error.what());
   }
+}
+
+void ClothDisplay::recolour() {
+  eye_ = eye();
+  if (!eye_) return;
+  surface_->seeFrom(*eye_);
+  object_->recolour(*surface_);
+  queueRender();
 }
 
 }  // namespace haptex::nodes

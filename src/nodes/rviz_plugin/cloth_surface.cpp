@@ -189,6 +189,12 @@ void ClothSurface::setEye(const std::optional<Eigen::Vector3d>& eye) {
   if (eye_ && !sky_) sky_.emplace(triangles_, points_.size());
 }
 
+void ClothSurface::seeFrom(const Eigen::Vector3d& eye) {
+  if (sky_shares_ == nullptr) return;
+  eye_ = eye;
+  colourVertices();
+}
+
 void ClothSurface::take(const haptex::ContactForces& forces) {
   if (forces.mesh != mesh_) return;
   std::fill(contact_forces_.begin(), contact_forces_.end(), 0.0);
@@ -209,7 +215,8 @@ void ClothSurface::take(const haptex::ClothState& state) {
   readPositions(state);
   sumTriangles();
   sky_shares_ = eye_ ? &sky_->compute(points_) : nullptr;
-  colourVertices(state);
+  markExcluded(state);
+  colourVertices();
 }
 
 void ClothSurface::readPositions(const haptex::ClothState& state) {
@@ -275,11 +282,14 @@ double ClothSurface::skyShareAt(int particle) const {
   return normal.dot(*eye_ - points_[particle]) >= 0.0 ? share.front : share.back;
 }
 
-void ClothSurface::colourVertices(const haptex::ClothState& state) {
+void ClothSurface::markExcluded(const haptex::ClothState& state) {
   std::fill(excluded_.begin(), excluded_.end(), 0);
   for (const std::uint32_t particle : state.excluded) {
     if (particle < excluded_.size()) excluded_[particle] = 1;
   }
+}
+
+void ClothSurface::colourVertices() {
   const bool by_quantity = isQuantity(colour_by_);
   for (std::size_t vertex = 0; vertex < particles_.size(); ++vertex) {
     const int particle = particles_[vertex];

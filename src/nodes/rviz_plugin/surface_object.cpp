@@ -137,10 +137,14 @@ void SurfaceObject::setStyle(const SurfaceStyle& style) {
                                             mesh_->getSubMesh(kLines)->indexData->indexCount > 0);
 }
 
+void SurfaceObject::recolour(const ClothSurface& surface) {
+  colours_->writeData(0, colours_->getSizeInBytes(), surface.colours().data(), true);
+}
+
 void SurfaceObject::update(const ClothSurface& surface,
                            const std::vector<std::uint32_t>& attached) {
   positions_->writeData(0, positions_->getSizeInBytes(), surface.positions().data(), true);
-  colours_->writeData(0, colours_->getSizeInBytes(), surface.colours().data(), true);
+  recolour(surface);
   if (attached != attached_) {
     attached_ = attached;
     Ogre::IndexData* points = mesh_->getSubMesh(kPoints)->indexData;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../../refusal.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
 #include "haptex/nodes/rviz_plugin/cloth_surface.h"
@@ -145,9 +146,16 @@ TEST(ClothSurface, ShadowsTheSideInACornerAndNotTheOneOutside) {
   surface.take(state);
   EXPECT_LT(surface.colours()[0][2], bare[0][2]);
   EXPECT_EQ(surface.colours()[0][3], bare[0][3]);
+  const std::vector<VertexColour> shadowed = surface.colours();
+  surface.seeFrom(Eigen::Vector3d(-5.0, 0.5, 0.5));
+  EXPECT_EQ(surface.colours()[0], bare[0]);
+  surface.seeFrom(Eigen::Vector3d(5.0, 0.5, 0.5));
+  EXPECT_EQ(surface.colours(), shadowed) << "the eye went and came back, the cloth did not move";
   surface.setEye(std::nullopt);
   surface.take(state);
   EXPECT_EQ(surface.colours(), bare);
+  surface.seeFrom(Eigen::Vector3d(5.0, 0.5, 0.5));
+  EXPECT_EQ(surface.colours(), bare) << "a state without shadows has none";
 }
 
 TEST(ClothSurface, FabricsMeetInASharpEdge) {
@@ -194,12 +202,7 @@ TEST(ClothSurface, WhatIsLeftOutIsGreyAndNotMarkedAsAttached) {
 }
 
 std::string refusalOf(const haptex::ClothMesh& mesh, ColourBy colour_by = ColourBy::kStrain) {
-  try {
-    const ClothSurface surface(mesh, colour_by);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "taken";
+  return test::refusalOf([&] { const ClothSurface surface(mesh, colour_by); });
 }
 
 TEST(ClothSurface, RefusesMeshesThatDoNotFitTogether) {
@@ -216,7 +219,7 @@ TEST(ClothSurface, RefusesMeshesThatDoNotFitTogether) {
   mesh.fabric_files = {"name: another"};
   EXPECT_NE(refusalOf(mesh, ColourBy::kStress).find("fabric 'linear' in cloth/mesh"),
             std::string::npos);
-  EXPECT_EQ(refusalOf(mesh, ColourBy::kStrain), "taken") << "which needs no fabric";
+  EXPECT_EQ(refusalOf(mesh, ColourBy::kStrain), "(not refused)") << "which needs no fabric";
 }
 
 TEST(ClothSurface, RefusesStatesThatCannotBeDrawn) {

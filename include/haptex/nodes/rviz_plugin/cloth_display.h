@@ -41,6 +41,7 @@ class ClothDisplay : public LiveDisplay {
   void rebuild();
   void restyle();
   void draw();
+  void recolour();
   void showLegend();
   ColourBy colourBy() const;
   std::optional<Eigen::Vector3d> eye() const;

@@ -46,6 +46,10 @@ class ClothSurface {
   /// that is computed.
   void setEye(const std::optional<Eigen::Vector3d>& eye);
 
+  /// The last state from another eye (as setEye()): colours() anew by the shares of the sky that
+  /// are known. Nothing changes where that state was computed without an eye.
+  void seeFrom(const Eigen::Vector3d& eye);
+
   /// Forces of another mesh are ignored. They are shown until others come.
   void take(const haptex::ContactForces& forces);
 
@@ -90,7 +94,8 @@ class ClothSurface {
   double valueOf(std::size_t triangle, const cloth::MembraneStrain& strain) const;
   double valueAt(int particle) const;
   double skyShareAt(int particle) const;
-  void colourVertices(const haptex::ClothState& state);
+  void markExcluded(const haptex::ClothState& state);
+  void colourVertices();
 
   std::uint32_t mesh_;
   ColourBy colour_by_;

@@ -42,6 +42,8 @@ class SurfaceObject {
   /// Overwrites the buffers. @param surface the one it was made of, or of as many vertices
   /// @param attached vertices that are marked
   void update(const ClothSurface& surface, const std::vector<std::uint32_t>& attached);
+  /// Overwrites the colours alone. @param surface as for update()
+  void recolour(const ClothSurface& surface);
 
  private:
   void makeBuffers(const ClothSurface& surface);
