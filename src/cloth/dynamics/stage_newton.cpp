@@ -1,10 +1,36 @@
 // The Newton iterations of a stage.
+#include <Eigen/Geometry>
 #include <cmath>
 #include <utility>
 
 #include "haptex/cloth/dynamics/stage_solver.h"
 
 namespace haptex::cloth {
+namespace {
+
+/// Whether an edge of the cloth at a contact that holds has turned by more than 0.02 rad in the
+/// stage. A solve moves particles along their tangents, which stretches what turns by an angle a by
+/// a^2/2, and friction multiplies that tension around the obstacle: of 0.06 rad two solves leave up
+/// to 1.6 % in the capstan equation, five 0.1 %; of 0.016 rad 0.3 and 0.2 %.
+/// @param pattern with a block for every edge
+bool touchingTurns(const Cloth& cloth, const std::vector<ContactReaction>& reactions,
+                   const linear::SymmetricBlockMatrix& pattern, double a,
+                   const ClothState& result) {
+  constexpr double kTurn = 0.02;  // rad
+  for (std::size_t c = 0; c < reactions.size(); ++c) {
+    if (reactions[c].state == ContactReaction::State::kOpen) continue;
+    const int i = cloth.contacts()[c].particle;
+    for (int slot = pattern.rowBegin(i); slot < pattern.rowBegin(i + 1); ++slot) {
+      const int j = pattern.column(slot);
+      const Eigen::Vector3d edge = result.positions[j] - result.positions[i];
+      const Eigen::Vector3d change = a * (result.velocities[j] - result.velocities[i]);
+      if (edge.cross(change).norm() > kTurn * edge.squaredNorm()) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
 
 /// @param potential incremental one of the result
 /// @param most_solves linear ones
@@ -18,6 +44,7 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
   double reference = linearised_norm_;   // of a start without first solve, its own residual
   double near = kNearMinimum * reference;
   constexpr int kMostWhileCut = 20;  // iterations beyond, as long as the last one was cut
+  constexpr int kLeastTurning = 5;   // solves where cloth turns that touches
   const int last_solve = report.newton_iterations + most_solves;
   int beyond = 0;
   prescribed_.setZero();  // the fixed particles have reached their places
@@ -33,9 +60,11 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     const bool is_small = solves > 0 && isSmallError(norm / stage.a, norm * norm / least_mass_);
     converged = norm <= settings_.newton_tolerance * reference || is_small;
     if (converged) break;
-    if (report.newton_iterations >= last_solve &&
-        (report.self_cut.particles == 0 || beyond++ == kMostWhileCut)) {
-      break;
+    if (report.newton_iterations >= last_solve) {
+      const bool was_cut = report.self_cut.particles > 0 && beyond++ < kMostWhileCut;
+      const bool turns = solves < kLeastTurning && touching() &&
+                         touchingTurns(cloth, contacts_->reactions(), matrix_, stage.a, result);
+      if (!was_cut && !turns) break;
     }
     solution_.setZero();
     ++solves;

@@ -77,10 +77,10 @@ struct StepSettings {
   /// Relative residual |b - A dv| / |b| that every linear solve aims at;
   /// StepReport::linear_converged tells whether it was reached.
   double tolerance = 1e-6;
-  /// 1: the linearised stage alone. More: Newton iterations with line search until the nonlinear
-  /// residual of the stage falls below newton_tolerance times the right-hand side of the
-  /// linearised one, or the error of the stage is small enough (newton_error), or it cannot fall
-  /// any more for rounding, or this number is spent.
+  /// 1: the linearised stage alone. More: Newton iterations with line search until the residual of
+  /// the stage falls below newton_tolerance times the right-hand side of the linearised one, or its
+  /// error is small enough (newton_error), or rounding ends it, or this number is spent; where
+  /// cloth that touches turns by more than 0.02 rad in a step, at least 5.
   int newton_iterations = 1;
   double newton_tolerance = 1e-8;
   /// An error E of a stage that is small enough, relative; 0: none is. With weight = mass times
