@@ -8,7 +8,7 @@ from bag_report.reading import as_array
 
 from .looks import Fabric
 from .obj_file import Surface
-from .solids import Hand, of_quaternion, obstacles_of, pose_of
+from .solids import Hand, obstacles_of, pose_of_message
 
 WORLD = 'world'
 OLDEST_TRANSFORM = 1.0  # s
@@ -89,8 +89,8 @@ class Recording:
                 link = parents.get(name)
                 before = None if link is None or name in passed else pose(link.header.frame_id, passed | {name})
                 step = None if before is None else link.transform
-                poses[name] = None if step is None else before @ pose_of(
-                    of_quaternion(step.rotation), [step.translation.x, step.translation.y, step.translation.z])
+                poses[name] = None if step is None else before @ pose_of_message(
+                    step.rotation, step.translation)
             return poses[name]
         return {name: found for name in parents if (found := pose(name, frozenset())) is not None}
 

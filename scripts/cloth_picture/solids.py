@@ -7,6 +7,7 @@ import roslib.packages
 import yaml
 
 from bag_report.bags import Refused
+from tf.transformations import euler_matrix, quaternion_matrix, rotation_matrix
 
 from . import povray
 from .looks import FIGURE, Look
@@ -15,31 +16,15 @@ from .obj_file import Surface, read_obj
 SKIN_GLOSS = 0.03, 0.45
 
 
-def rotation(rpy):
-    """About the fixed axes x, y and z, in this order."""
-    (sr, sp, sy), (cr, cp, cy) = np.sin(rpy), np.cos(rpy)
-    return np.array([[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-                     [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-                     [-sp, cp * sr, cp * cr]])
-
-
-def about(axis, angle):
-    x, y, z = np.asarray(axis, float) / np.linalg.norm(axis)
-    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * across + (1.0 - np.cos(angle)) * across @ across
-
-
-def of_quaternion(q):
-    x, y, z, w = np.array([q.x, q.y, q.z, q.w]) / np.linalg.norm([q.x, q.y, q.z, q.w])
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
-
-
 def pose_of(turn, place):
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = turn, place
-    return pose
+    """@param turn homogeneous, as tf.transformations makes them; changed"""
+    turn[:3, 3] = place
+    return turn
+
+
+def pose_of_message(turn, place):
+    """@param turn, place of a geometry_msgs/Pose, or of a Transform"""
+    return pose_of(quaternion_matrix([turn.x, turn.y, turn.z, turn.w]), [place.x, place.y, place.z])
 
 
 def floats(text):
@@ -112,18 +97,17 @@ class Obstacles:
 
 def pose_at(item, time, with_mass):
     """Of an obstacle of a scene file. @param with_mass iterator over poses of those with mass"""
-    turn, place = rotation(item.get('rpy', (0, 0, 0))), np.array(item['position'], float)
+    turn, place = euler_matrix(*item.get('rpy', (0, 0, 0))), np.array(item['position'], float)
     if 'orbit' in item:
         orbit = item['orbit']
         centre = np.array(orbit['centre'], float)
-        turned = about(orbit['axis'], 2.0 * np.pi * time / orbit['period'])
-        turn, place = turned @ turn, centre + turned @ (place - centre)
+        turned = rotation_matrix(2.0 * np.pi * time / orbit['period'], orbit['axis'])
+        turn, place = turned @ turn, centre + turned[:3, :3] @ (place - centre)
     if 'velocity' in item:
         place = place + time * np.array(item['velocity'], float)
     body = next(with_mass, None) if 'body' in item else None
     if body is not None:
-        turn = of_quaternion(body.orientation)
-        place = np.array([body.position.x, body.position.y, body.position.z])
+        return pose_of_message(body.orientation, body.position)
     return pose_of(turn, place)
 
 
@@ -151,7 +135,7 @@ class Hand:
 
     def visual(self, visual):
         origin, geometry = visual.find('origin'), visual.find('geometry')[0]
-        pose = pose_of(rotation(floats(origin.get('rpy', '0 0 0'))), floats(origin.get('xyz', '0 0 0')))
+        pose = pose_of(euler_matrix(*floats(origin.get('rpy', '0 0 0'))), floats(origin.get('xyz', '0 0 0')))
         name = visual.find('material').get('name')
         # Colours of a URDF are those of a screen.
         linear = np.array(self.colours.get(name, (0.6, 0.6, 0.6))) ** 2.2

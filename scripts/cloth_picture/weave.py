@@ -10,7 +10,8 @@ from matplotlib.image import imread
 
 from bag_report.bags import Refused
 
-from .povray import finish_of, matrix_of, vector
+from .looks import Look
+from .povray import finish_of, matrix_of, plain_texture
 
 SIDE = 256  # samples along the pictures of a piece, whatever its size
 BLUR = 0.75  # times the width of a pixel: standard deviation of what a pixel sees
@@ -91,7 +92,7 @@ class Weave:
         self.relief = seen if seen is not None and (seen.slopes() > LEAST_SLOPE or spread > LEAST_COLOUR) else None
 
     def plain(self):
-        return f'texture {{ pigment {{ rgb {vector(self.colour)} }} {finish_of(self.look)} }}'
+        return plain_texture(Look(self.colour, self.look.gloss, self.look.width))
 
     def files(self, name):
         """Pictures that declaration() names."""

@@ -221,12 +221,6 @@ class Solids(Folder):
     def test_of_a_bag_that_does_not_say_are_none(self):
         self.assertIsNone(solids.obstacles_of('scene: sheet.yaml\n'))
 
-    def test_turn_as_quaternions_do(self):
-        turn = solids.rotation((0.3, -0.5, 1.1))
-        x = np.cross(turn[0], turn[1])
-        np.testing.assert_allclose(x, turn[2])
-        np.testing.assert_allclose(solids.about([0, 0, 3.0], 1.1), solids.rotation((0, 0, 1.1)), atol=1e-12)
-
 
 class Looks(Folder):
     def test_are_those_of_the_file(self):
