@@ -194,13 +194,18 @@ class ForceRenderer(DeviceTest):
         self.assertTrue(set_fabric('wool').success)
         self.await_touch()
 
+    def largest_of_a_cycle(self):
+        """Force (N) of the fingers while the hand pinches and opens once: a pinch that closes is felt
+        with more than one that holds, and on a busy machine with 0.25 to 0.5 N."""
+        for forces in self.commanded.values():
+            forces.series.clear()
+        time.sleep(CYCLE)
+        return max(size for forces in self.commanded.values() for _, size in list(forces.series))
+
     def test_other_sheets_and_properties_come_without_a_force(self):
         set_sheet = rospy.ServiceProxy('cloth/set_sheet', SetSheet)
         set_properties = rospy.ServiceProxy('cloth/set_properties', SetProperties)
-        for forces in self.commanded.values():
-            forces.series.clear()
-        time.sleep(CYCLE)  # a pinch that closes is felt with more than one that holds
-        before = max(size for forces in self.commanded.values() for _, size in list(forces.series))
+        ordinary = self.largest_of_a_cycle()
         for forces in self.commanded.values():
             forces.series.clear()
         self.await_touch()
@@ -217,9 +222,10 @@ class ForceRenderer(DeviceTest):
                  for forces in self.commanded.values()]
         largest = max(size.max() for size in sizes)
         step = max(np.abs(np.diff(size)).max() for size in sizes)
-        print(f'before {before:.3f} N, largest {largest:.3f} N, largest step of the force between '
-              f'two commands {step:.3f} N')
-        self.assertLess(largest, 1.5 * before + 0.1)
+        ordinary = max(ordinary, self.largest_of_a_cycle())
+        print(f'without a change {ordinary:.3f} N, largest {largest:.3f} N, largest step of the force '
+              f'between two commands {step:.3f} N')
+        self.assertLess(largest, 1.5 * ordinary + 0.1)
 
     def die(self, node, listeners, zero):
         """Kills a node under contact. @returns how long forces lasted (ms), the machine's standing
