@@ -54,7 +54,7 @@ Vector3d directRadiance(const ReliefSurface& surface, const Reflectance& reflect
                         const ReliefSurface::Point& point, const Vector3d& view,
                         const Vector3d& light) {
   const double cosine = point.normal.dot(light);
-  if (!(cosine > 0.0) || surface.texelMet(point, light)) return Vector3d::Zero();
+  if (!(cosine > 0.0) || surface.met(point, light)) return Vector3d::Zero();
   return cosine * reflectance.of(surface.warpOnTop()[point.texel], point.normal, light, view);
 }
 

@@ -65,7 +65,8 @@ Interreflection::Interreflection(const ReliefSurface& surface, const material::L
   met_.reserve(static_cast<std::size_t>(surface_.texels()) * kRays);
   for (int texel = 0; texel < surface_.texels(); ++texel) {
     for (int ray = 0; ray < kRays; ++ray) {
-      met_.push_back(surface_.texelMet(centres_[texel], rayOf(texel, ray)).value_or(-1));
+      const auto met = surface_.met(centres_[texel], rayOf(texel, ray));
+      met_.push_back(met ? met->texel : -1);
     }
   }
 }
@@ -91,7 +92,7 @@ Matrix Interreflection::arriving(const std::vector<Vector3d>& directions) const 
   for (int texel = 0; texel < surface_.texels(); ++texel) {
     for (std::size_t i = 0; i < directions.size(); ++i) {
       const double cosine = centres_[texel].normal.dot(directions[i]);
-      const bool lit = cosine > 0.0 && !surface_.texelMet(centres_[texel], directions[i]);
+      const bool lit = cosine > 0.0 && !surface_.met(centres_[texel], directions[i]);
       arriving(texel, i) = lit ? static_cast<float>(cosine) : 0.0f;
     }
   }

@@ -205,10 +205,12 @@ ReliefSurface::Point ReliefSurface::seenAt(const Vector2d& seen,
   return pointIn(met->texel, origin - met->distance * towards_eye);
 }
 
-std::optional<int> ReliefSurface::texelMet(const Point& from, const Vector3d& direction) const {
-  const auto met = meet(from.place + lift_ * from.normal, direction);
+std::optional<ReliefSurface::Point> ReliefSurface::met(const Point& from,
+                                                       const Vector3d& direction) const {
+  const Vector3d origin = from.place + lift_ * from.normal;
+  const auto met = meet(origin, direction);
   if (!met) return std::nullopt;
-  return met->texel;
+  return pointIn(met->texel, origin + met->distance * direction);
 }
 
 }  // namespace haptex::appearance

@@ -85,12 +85,12 @@ TEST(ReliefSurface, HidesTheSunAsItsCrestsDo) {
     const double elevation = std::min(degrees, 180.0 - degrees);
     if (std::abs(elevation - horizon) < 1.0) continue;
     const double angle = degrees * M_PI / 180.0;
-    EXPECT_EQ(surface.texelMet(bottom, {std::cos(angle), 0.0, std::sin(angle)}).has_value(),
+    EXPECT_EQ(surface.met(bottom, {std::cos(angle), 0.0, std::sin(angle)}).has_value(),
               elevation < horizon)
         << degrees;
   }
   // Along the furrow nothing is in the way.
-  EXPECT_FALSE(surface.texelMet(bottom, Vector3d(0.0, 0.999, 0.05).normalized()));
+  EXPECT_FALSE(surface.met(bottom, Vector3d(0.0, 0.999, 0.05).normalized()));
 }
 
 TEST(ReliefSurface, RepeatsWithoutEnd) {

@@ -50,9 +50,9 @@ class ReliefSurface {
   /// @param towards_eye unit, z >= kFlattest
   Point seenAt(const Eigen::Vector2d& seen, const Eigen::Vector3d& towards_eye) const;
 
-  /// The texel that a ray from a point of the surface meets, nothing if it leaves the relief.
+  /// What a ray from a point of the surface meets, nothing if it leaves the relief.
   /// @param direction unit, out of the surface: with a positive component along the normal
-  std::optional<int> texelMet(const Point& from, const Eigen::Vector3d& direction) const;
+  std::optional<Point> met(const Point& from, const Eigen::Vector3d& direction) const;
 
  private:
   struct Meeting {
