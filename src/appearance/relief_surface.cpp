@@ -141,9 +141,9 @@ ReliefSurface::Point ReliefSurface::pointIn(int texel, const Vector3d& place) co
 
 ReliefSurface::Point ReliefSurface::centreOf(int texel) const {
   const Patch& patch = patches_[texel];
-  return pointIn(texel,
-                 {(texel % columns_ + 0.5) * spacing_.x(), (texel / columns_ + 0.5) * spacing_.y(),
-                  patch.h + 0.5 * (patch.hx + patch.hy) + 0.25 * patch.hxy});
+  const int column = texel % columns_, row = texel / columns_;
+  return pointIn(texel, {(column + 0.5) * spacing_.x(), (row + 0.5) * spacing_.y(),
+                         patch.h + 0.5 * (patch.hx + patch.hy) + 0.25 * patch.hxy});
 }
 
 std::optional<ReliefSurface::Meeting> ReliefSurface::meet(const Vector3d& origin,
