@@ -2,10 +2,12 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "haptex/appearance/btf.h"
 #include "haptex/appearance/btf_measures.h"
 #include "haptex/base/repeatable_random.h"
+#include "haptex/oracles/checks/random_checks.h"
 #include "haptex/oracles/checks/validation.h"
 #include "haptex/oracles/exact/light_paths.h"
 #include "haptex/oracles/experiments/known_surfaces.h"
@@ -69,8 +71,7 @@ void validateFlat(const Sink& sink) {
 
 /// From the sky all of the surface is seen, so a surface sees as much of the sky, by the ratio of
 /// the areas (reciprocity of view factors), whatever its shape.
-void validateSky(const Sink& sink, const std::string& of, const tactile::FaceRelief& relief) {
-  const Interreflection light(ReliefSurface(relief, kTexels, kTexels), kWhite);
+base::Quantity shareOfSky(const std::string& name, const Interreflection& light, double tolerance) {
   const ReliefSurface& surface = light.surface();
   double open = 0.0, area = 0.0;
   for (int texel = 0; texel < surface.texels(); ++texel) {
@@ -78,8 +79,12 @@ void validateSky(const Sink& sink, const std::string& of, const tactile::FaceRel
     open += weight * light.openShare(texel);
     area += weight;
   }
-  sink(base::relativeTo(1.0, name("share_of_sky/" + of), surface.texels() / area, open / area,
-                        0.01));
+  return base::relativeTo(1.0, name, surface.texels() / area, open / area, tolerance);
+}
+
+void validateSky(const Sink& sink, const std::string& of, const tactile::FaceRelief& relief) {
+  sink(shareOfSky(name("share_of_sky/" + of),
+                  Interreflection(ReliefSurface(relief, kTexels, kTexels), kWhite), 0.01));
 }
 
 /// Against paths of light, mean over the repeat. Light flatter than 75 degrees goes between texels
@@ -132,6 +137,33 @@ void validateAppearance(const std::string&, const Sink& sink) {
     validateFurnace(sink, of, relief);
     validateFunction(sink, of, relief);
   }
+}
+
+/// Waves of any direction, up to as deep as a quarter of their length: the share of the sky is the
+/// ratio of the areas, and of white all light that arrives leaves towards the sky.
+void randomRelief(const std::string&, Random& random, const Sink& sink) {
+  const int columns = 30 + random.below(30), rows = 30 + random.below(30);
+  tactile::HeightField field = flatField(columns, rows);
+  const int along_weft = 1 + random.below(2), along_warp = random.below(3);
+  const double length = 1e-4 / std::hypot(static_cast<double>(along_weft) / columns,
+                                          static_cast<double>(along_warp) / rows);
+  const double depth = random.uniform(0.02, 0.25);
+  addGrating(field, along_weft, along_warp, 0.5 * depth * length);
+  const double polar = random.uniform(0.0, 60.0), azimuth = random.uniform(0.0, 360.0);
+  CaseName text("appearance", "relief");
+  text.with("depth", depth).with("polar", polar).with("azimuth", azimuth);
+  const std::vector<bool> warp(field.heights.size(), true);
+  const Interreflection light(ReliefSurface({field, warp}, 72, 72), kWhite);
+  sink(shareOfSky(text.text() + "/share_of_sky", light, 0.015));
+  const Vector3d sun = towards(polar, azimuth);
+  const Interreflection::Light solved = light.solve({sun});
+  double sent = 0.0;
+  for (int texel = 0; texel < light.surface().texels(); ++texel) {
+    sent += light.openShare(texel) * solved.radiosity(texel, 0) /
+            light.surface().centreOf(texel).normal.z();
+  }
+  sink(base::relativeTo(sun.z(), text.text() + "/light_sent_back", sun.z(),
+                        sent / light.surface().texels(), 0.005));
 }
 
 }  // namespace haptex::oracles
