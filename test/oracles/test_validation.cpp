@@ -149,7 +149,7 @@ std::vector<Validation> allButContact() {
 INSTANTIATE_TEST_SUITE_P(Rooms, RoomValidation, testing::ValuesIn(allButContact()),
                          [](const auto& info) { return info.param.room; });
 
-TEST(Validation, KnowsEveryRoomThatHasOracles) { EXPECT_EQ(validations().size(), 12u); }
+TEST(Validation, KnowsEveryRoomThatHasOracles) { EXPECT_EQ(validations().size(), 13u); }
 
 TEST(Validation, EveryQuantityOfObstaclesPasses) {
   int quantities = 0;

@@ -8,12 +8,13 @@ namespace haptex::oracles {
 
 const std::vector<Validation>& validations() {
   static const std::vector<Validation> all = {
-      {"material", validateMaterial},   {"cloth", validateCloth},
-      {"proximity", validateProximity}, {"self_collision", validateSelfCollision},
-      {"contact", validateContact},     {"table", validateTable},
-      {"regions", validateRegions},     {"body", validateBody},
-      {"garment", validateGarment},     {"exoskeleton", validateExoskeleton},
-      {"tactile", validateTactile},     {"tactile_driver", validateTactileDriver}};
+      {"material", validateMaterial},    {"cloth", validateCloth},
+      {"proximity", validateProximity},  {"self_collision", validateSelfCollision},
+      {"contact", validateContact},      {"table", validateTable},
+      {"regions", validateRegions},      {"body", validateBody},
+      {"garment", validateGarment},      {"exoskeleton", validateExoskeleton},
+      {"tactile", validateTactile},      {"tactile_driver", validateTactileDriver},
+      {"appearance", validateAppearance}};
   return all;
 }
 

@@ -81,5 +81,6 @@ void randomGrating(const std::string&, Random& random, const Sink& sink);
 void randomContactors(const std::string&, Random& random, const Sink& sink);
 void randomPose(const std::string& config_directory, Random& random, const Sink& sink);
 void randomStaticForce(const std::string& config_directory, Random& random, const Sink& sink);
+void randomRelief(const std::string&, Random& random, const Sink& sink);
 
 }  // namespace haptex::oracles

@@ -84,6 +84,11 @@ void validateTactile(const std::string& config_directory, const Sink& sink);
 /// @throws what tactile::loadCalibration() throws
 void validateTactileDriver(const std::string& config_directory, const Sink& sink);
 
+/// Bidirectional texture functions of small reliefs: the sky that they see, white furnace,
+/// reciprocity, directions between the sampled ones, and the mean over a repeat against paths of
+/// light.
+void validateAppearance(const std::string& config_directory, const Sink& sink);
+
 /// The [strain, stress] samples of a fabric file as they stand in it, as Green-Lagrange strain and
 /// second Piola-Kirchhoff stress. @param curve for example "warp.elastic"
 /// @throws what loadFabric() throws for a bad file, std::invalid_argument if the curve has no

@@ -40,6 +40,7 @@ const std::vector<RandomCheck>& randomChecks() {
       {"exoskeleton", "static_force", randomStaticForce},
       {"tactile", "grating", randomGrating},
       {"tactile_driver", "contactors", randomContactors},
+      {"appearance", "relief", randomRelief},
   };
   return all;
 }
