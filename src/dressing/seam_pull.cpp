@@ -4,7 +4,7 @@
 #include <map>
 
 #include "haptex/base/disjoint_sets.h"
-#include "haptex/mesh/seam_edges.h"
+#include "haptex/mesh/seam_partners.h"
 
 namespace haptex::dressing {
 namespace {

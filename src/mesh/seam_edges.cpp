@@ -146,19 +146,6 @@ void addSeamHinges(const SeamEdge& first, const SeamEdge& second, double angle, 
   }
 }
 
-std::vector<std::array<int, 2>> partners(const Seam& seam) {
-  std::vector<std::array<int, 2>> pairs;
-  std::size_t j = 0;
-  for (std::size_t i = 0; i < seam.first.size(); ++i) {
-    const double place = seam.first_places[i];
-    while (j < seam.second.size() && seam.second_places[j] < place - kSamePlace) ++j;
-    if (j == seam.second.size()) break;
-    if (seam.second_places[j] > place + kSamePlace) continue;
-    pairs.push_back({seam.first[i], seam.second[j]});
-  }
-  return pairs;
-}
-
 void requireSeamAngle(double angle) {
   if (std::isfinite(angle) && std::abs(angle) < M_PI) return;
   base::refuse("the angle of a seam is ", angle, " rad; it must lie above -pi and below pi");

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "haptex/mesh/mesh.h"
-#include "haptex/mesh/seam.h"
 
 namespace haptex::mesh {
 
@@ -39,9 +38,6 @@ void addSeamHinges(const SeamEdge& first, const SeamEdge& second, double angle, 
 
 /// Places (of the whole seam) that differ by less than this are one.
 constexpr double kSamePlace = 1e-9;
-
-/// Pairs of particles of both sides that are in the same places, which have to be given.
-std::vector<std::array<int, 2>> partners(const Seam& seam);
 
 /// @throws std::invalid_argument if it is not finite, or not above -pi and below pi
 void requireSeamAngle(double angle);

@@ -6,6 +6,7 @@
 
 #include "haptex/base/disjoint_sets.h"
 #include "haptex/mesh/seam_edges.h"
+#include "haptex/mesh/seam_partners.h"
 
 namespace haptex::garment {
 namespace {
