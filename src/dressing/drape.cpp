@@ -22,8 +22,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// N/m, of threads at most until the garment is nearly at rest: stiff ones make each step several
-// times as long. Its weight stretches them by less than 1 %.
+// N/m, of threads at most while seams close, and layers come to lie on each other: stiff ones make
+// each step several times as long. A garment's weight stretches them by less than 1 %.
 constexpr double kSoftModulus = 500.0;
 // m, of the longest edges with which panels are sewn if shorter ones are asked for.
 constexpr double kSewnEdge = 0.045;
@@ -82,9 +82,9 @@ class Dressing {
   DrapeOutcome run() {
     const std::clock_t begin = std::clock();
     closeSeams();
-    thin();
+    if (hasLayers()) thin();
     for (int i = 0; i < settings_.halvings; ++i) {
-      if (i > 0) settle(fabrics_, settings_.halved_speed);
+      settle(fabrics_, settings_.halved_speed);
       halveEdges();
     }
     settle(fabrics_, settings_.rest_speed);
@@ -124,6 +124,13 @@ class Dressing {
   double closingThickness() const {
     const double altitude = cloth::RestSurface(garment_.mesh).shortestAltitude();
     return std::min(settings_.thickness, 0.5 * altitude);
+  }
+
+  bool hasLayers() const {
+    const std::vector<garment::Panel>& panels = garment_.pattern.panels;
+    return std::any_of(panels.begin(), panels.end(), [&](const garment::Panel& panel) {
+      return panel.layer != panels.front().layer;
+    });
   }
 
   /// From what the garment was sewn with to its fabrics as they are, in turns: where layers lie on

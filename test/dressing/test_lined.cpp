@@ -20,6 +20,7 @@ garment::Pattern linedTube() {
   for (int p : {0, 1}) {
     garment::Panel lining = pattern.panels[p];
     lining.name = "lining of " + lining.name;
+    pattern.panels[p].layer = 1;
     std::get<Eigen::Isometry3d>(lining.placement).translation().x() += p == 0 ? -0.01 : 0.01;
     pattern.panels.push_back(lining);
   }

@@ -17,7 +17,7 @@ TEST(ShippedGarments, AreSewnOfPanelsAndStartAtRestOnTheFigureWithoutIntersectio
   for (const Garment& garment :
        {Garment{"tshirt", 8, 1714, 100}, Garment{"skirt", 2, 1442, 30},
         Garment{"trousers_and_shirt", 12, 4624, 200}, Garment{"shirt_in_trousers", 12, 4624, 200},
-        Garment{"jacket", 14, 5320, 200}}) {
+        Garment{"jacket", 14, 2340, 100}}) {
     const Scene scene =
         loadScene((kConfig / "scenes" / (garment.name + std::string(".yaml"))).string());
     EXPECT_EQ(scene.mesh.panelCount(), garment.panels) << garment.name;
