@@ -12,6 +12,7 @@
 #include "haptex/base/constants.h"
 #include "haptex/base/require.h"
 #include "haptex/cloth/forces/self_contact/rest_surface.h"
+#include "haptex/dressing/fastened.h"
 #include "haptex/dressing/overdamped_cloth.h"
 #include "haptex/dressing/seam_pull.h"
 #include "haptex/garment/placement/overlaps.h"
@@ -21,12 +22,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// N/m, of threads while seams close at most: stiff ones make each step several times as long.
-constexpr double kClosingModulus = 500.0;
+// N/m, of threads at most while seams close, and layers come to lie on each other: stiff ones make
+// each step several times as long. A garment's weight stretches them by less than 1 %.
+constexpr double kSoftModulus = 500.0;
 // m, of the longest edges with which panels are sewn if shorter ones are asked for.
 constexpr double kSewnEdge = 0.045;
 constexpr int kMostHalvings = 8;
-constexpr double kStepGrowth = 1.5;  // of a time step from step to step, at most
+// Layers do not come nearer by more than a fifth in an iteration (cloth::SafeMotion).
+constexpr double kThinner = 0.8;
+constexpr double kThinningSpeed = 0.05;       // m/s, of the fastest particle, from turn to turn
+constexpr double kFastenerStiffness = 200.0;  // N/m
+constexpr double kStepGrowth = 1.5;           // of a time step from step to step, at most
 
 void requireSound(const DrapeSettings& settings) {
   const auto require = [](const char* name, double value) {
@@ -52,20 +58,36 @@ void requireSound(const DrapeSettings& settings) {
   require("most_time", settings.most_time);
 }
 
+/// With linear threads that are no stiffer than kSoftModulus.
+std::vector<material::Fabric> withSoftThreads(std::vector<material::Fabric> fabrics) {
+  for (material::Fabric& fabric : fabrics) {
+    for (material::MembraneCurves* threads : {&fabric.weft, &fabric.warp}) {
+      const double modulus = threads->elastic.evaluate(0.0).slope;
+      threads->elastic = material::StrainStressCurve::linear(std::min(modulus, kSoftModulus));
+    }
+  }
+  return fabrics;
+}
+
 class Dressing {
  public:
   Dressing(const garment::GarmentMesh& garment, const std::vector<material::Fabric>& fabrics,
            const mesh::ObstacleMesh& body, const DrapeSettings& settings)
-      : garment_(garment), fabrics_(fabrics), body_(body), settings_(settings) {}
+      : garment_(garment),
+        fabrics_(fabrics),
+        body_(body),
+        settings_(settings),
+        soft_(withSoftThreads(fabrics)) {}
 
   DrapeOutcome run() {
     const std::clock_t begin = std::clock();
     closeSeams();
+    if (hasLayers()) thin();
     for (int i = 0; i < settings_.halvings; ++i) {
-      settle(settings_.halved_speed);
+      settle(fabrics_, settings_.halved_speed);
       halveEdges();
     }
-    settle(settings_.rest_speed);
+    settle(fabrics_, settings_.rest_speed);
     outcome_.computing_seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     countIntersections();
     return std::move(outcome_);
@@ -74,8 +96,8 @@ class Dressing {
  private:
   OverdampedCloth makeCloth(const mesh::ClothMesh& mesh,
                             const std::vector<material::Fabric>& fabrics,
-                            const cloth::ModelledEffects& effects,
-                            std::optional<double> friction) const {
+                            cloth::ModelledEffects effects, std::optional<double> friction) const {
+    effects.fasteners = fastened(garment_.pattern, mesh, kFastenerStiffness);
     mesh::Obstacle body{"body", body_, Eigen::Isometry3d::Identity()};
     body.friction = friction;
     return {mesh, fabrics, effects, {std::move(body)}, {settings_.damping, settings_.threads}};
@@ -88,28 +110,50 @@ class Dressing {
     time += time_step;
   }
 
-  /// Without friction, with soft threads, and at least so thick (m).
-  std::vector<material::Fabric> smoothFabrics(double thickness) const {
-    std::vector<material::Fabric> smooth = fabrics_;
-    for (material::Fabric& fabric : smooth) {
-      fabric.friction = 0.0;
-      for (material::MembraneCurves* threads : {&fabric.weft, &fabric.warp}) {
-        const double modulus = threads->elastic.evaluate(0.0).slope;
-        threads->elastic = material::StrainStressCurve::linear(std::min(modulus, kClosingModulus));
-      }
+  /// With soft threads, and at least so thick (m).
+  std::vector<material::Fabric> thickened(double thickness) const {
+    std::vector<material::Fabric> thick = soft_;
+    for (material::Fabric& fabric : thick) {
       if (!fabric.compression) continue;  // which is refused
       fabric.compression->thickness = std::max(thickness, fabric.compression->thickness);
     }
-    return smooth;
+    return thick;
+  }
+
+  /// m, while seams close.
+  double closingThickness() const {
+    const double altitude = cloth::RestSurface(garment_.mesh).shortestAltitude();
+    return std::min(settings_.thickness, 0.5 * altitude);
+  }
+
+  bool hasLayers() const {
+    const std::vector<garment::Panel>& panels = garment_.pattern.panels;
+    return std::any_of(panels.begin(), panels.end(), [&](const garment::Panel& panel) {
+      return panel.layer != panels.front().layer;
+    });
+  }
+
+  /// From what the garment was sewn with to its fabrics as they are, in turns: where layers lie on
+  /// each other they would be out of equilibrium everywhere otherwise, and too near to move.
+  void thin() {
+    const auto thinner = [](const material::Fabric& a, const material::Fabric& b) {
+      return a.compression->thickness < b.compression->thickness;
+    };
+    const double least =
+        std::min_element(fabrics_.begin(), fabrics_.end(), thinner)->compression->thickness;
+    double thickness = closingThickness();
+    settle(thickened(thickness), settings_.halved_speed);
+    while ((thickness *= kThinner) > least) settle(thickened(thickness), kThinningSpeed);
+    settle(soft_, settings_.halved_speed);
   }
 
   void closeSeams() {
-    const double altitude = cloth::RestSurface(garment_.mesh).shortestAltitude();
-    const double thickness = std::min(settings_.thickness, 0.5 * altitude);
+    std::vector<material::Fabric> smooth = thickened(closingThickness());
+    for (material::Fabric& fabric : smooth) fabric.friction = 0.0;
     cloth::ModelledEffects effects;
     effects.gravity = {0.0, 0.0, settings_.lift};
     effects.bending = effects.contacts = effects.self_collision = effects.point_loads = true;
-    OverdampedCloth cloth = makeCloth(garment_.mesh, smoothFabrics(thickness), effects, 0.0);
+    OverdampedCloth cloth = makeCloth(garment_.mesh, smooth, effects, 0.0);
     SeamPull pull(garment_, settings_.tension);
     const double farthest = 0.5 * settings_.closing_speed * settings_.time_step;
     double tried_at = 0.0;  // or it was not to be tried
@@ -188,17 +232,17 @@ class Dressing {
     merged_ = std::move(merged.particles);
   }
 
-  OverdampedCloth makeSewnCloth() const {
+  OverdampedCloth makeSewnCloth(const std::vector<material::Fabric>& fabrics) const {
     cloth::ModelledEffects effects;
     effects.gravity = {0.0, 0.0, -base::kStandardGravity};
     effects.bending = effects.contacts = effects.self_collision = true;
-    return makeCloth(outcome_.mesh, fabrics_, effects, std::nullopt);
+    return makeCloth(outcome_.mesh, fabrics, effects, std::nullopt);
   }
 
   /// Lets the sewn garment come out of itself (cloth::Untangling).
   /// @return whether it has in patience times 2
   bool pullApart() {
-    OverdampedCloth cloth = makeSewnCloth();
+    OverdampedCloth cloth = makeSewnCloth(fabrics_);
     double time = 0.0;
     do {
       step(cloth, settings_.time_step, time);
@@ -209,8 +253,8 @@ class Dressing {
   }
 
   /// @param rest_speed m/s, below which the garment is at rest
-  void settle(double rest_speed) {
-    OverdampedCloth cloth = makeSewnCloth();
+  void settle(const std::vector<material::Fabric>& fabrics, double rest_speed) {
+    OverdampedCloth cloth = makeSewnCloth(fabrics);
     outcome_.at_rest = false;
     double time = 0.0, fast_at = 0.0, time_step = settings_.time_step;
     while (!outcome_.at_rest && time < settings_.most_time) {
@@ -236,6 +280,7 @@ class Dressing {
   const std::vector<material::Fabric>& fabrics_;
   const mesh::ObstacleMesh& body_;
   DrapeSettings settings_;
+  const std::vector<material::Fabric> soft_;
   DrapeOutcome outcome_;
   std::vector<int> merged_;  // particles of the sewn mesh, for those of the garment
 };

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "haptex/base/disjoint_sets.h"
-#include "haptex/mesh/seam_edges.h"
+#include "haptex/mesh/seam_partners.h"
 
 namespace haptex::dressing {
 namespace {
@@ -28,20 +28,6 @@ std::vector<double> lengthsAt(const mesh::ClothMesh& mesh, const std::vector<int
   return lengths;
 }
 
-/// Pairs of particles of both sides that are in the same places.
-std::vector<std::array<int, 2>> partners(const mesh::Seam& seam) {
-  std::vector<std::array<int, 2>> pairs;
-  std::size_t j = 0;
-  for (std::size_t i = 0; i < seam.first.size(); ++i) {
-    const double place = seam.first_places[i];
-    while (j < seam.second.size() && seam.second_places[j] < place - mesh::kSamePlace) ++j;
-    if (j == seam.second.size()) break;
-    if (seam.second_places[j] > place + mesh::kSamePlace) continue;
-    pairs.push_back({seam.first[i], seam.second[j]});
-  }
-  return pairs;
-}
-
 }  // namespace
 
 SeamPull::SeamPull(const garment::GarmentMesh& garment, double tension) {
@@ -50,7 +36,7 @@ SeamPull::SeamPull(const garment::GarmentMesh& garment, double tension) {
   std::map<int, Member> members;
   for (std::size_t s = 0; s < garment.seams.size(); ++s) {
     const mesh::Seam& seam = garment.seams[s];
-    for (const auto& [a, b] : partners(seam)) together.join(a, b);
+    for (const auto& [a, b] : mesh::partners(seam)) together.join(a, b);
     for (const std::vector<int>* side : {&seam.first, &seam.second}) {
       const std::vector<double> lengths = lengthsAt(mesh, *side);
       for (std::size_t i = 0; i < side->size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include "haptex/base/require.h"
 #include "haptex/garment/placement/preposition.h"
+#include "haptex/garment/triangulation/doubled_edges.h"
 #include "haptex/garment/triangulation/panel_mesh.h"
 #include "haptex/garment/triangulation/seam_divisions.h"
 
@@ -102,17 +103,36 @@ std::vector<PanelMesh> triangulateAlike(const Pattern& pattern, double edge_leng
   return panels;
 }
 
-/// @param body on which panels are laid; null: none may be on a carrier
-GarmentMesh make(const Pattern& pattern, double edge_length, const Body* body) {
-  SeamDivisions divisions;
-  std::vector<PanelMesh> panels = triangulateAlike(pattern, edge_length, divisions);
-  if (body != nullptr) preposition(pattern, *body, panels);
-  std::vector<int> first;  // particle, of every panel
+/// The number of every panel's first particle in the garment.
+std::vector<int> firstParticles(const std::vector<PanelMesh>& panels) {
+  std::vector<int> first;
   int particles = 0;
   for (const PanelMesh& panel : panels) {
     first.push_back(particles);
     particles += static_cast<int>(panel.mesh.rest_coordinates.size());
   }
+  return first;
+}
+
+std::vector<mesh::Seam> seamsOf(const Pattern& pattern, const SeamDivisions& divisions,
+                                const std::vector<PanelMesh>& panels) {
+  const std::vector<int> first = firstParticles(panels);
+  std::vector<mesh::Seam> seams;
+  for (std::size_t s = 0; s < pattern.seams.size(); ++s) {
+    auto [a, b] = sewnSides(pattern, s, divisions, panels, first);
+    seams.push_back(
+        {std::move(a.particles), std::move(b.particles), std::move(a.shares), std::move(b.shares)});
+  }
+  return seams;
+}
+
+/// @param body on which panels are laid; null: none may be on a carrier
+GarmentMesh make(const Pattern& pattern, double edge_length, const Body* body) {
+  SeamDivisions divisions;
+  std::vector<PanelMesh> panels = triangulateAlike(pattern, edge_length, divisions);
+  splitDoubledEdges(seamsOf(pattern, divisions, panels), panels);
+  if (body != nullptr) preposition(pattern, *body, panels);
+  const std::vector<int> first = firstParticles(panels);
   GarmentMesh garment;
   garment.pattern = pattern;
   garment.mesh = joined(panels);
@@ -126,11 +146,7 @@ GarmentMesh make(const Pattern& pattern, double edge_length, const Body* body) {
       }
     }
   }
-  for (std::size_t s = 0; s < pattern.seams.size(); ++s) {
-    auto [a, b] = sewnSides(pattern, s, divisions, panels, first);
-    garment.seams.push_back(
-        {std::move(a.particles), std::move(b.particles), std::move(a.shares), std::move(b.shares)});
-  }
+  garment.seams = seamsOf(pattern, divisions, panels);
   return garment;
 }
 

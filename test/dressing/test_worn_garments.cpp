@@ -21,7 +21,7 @@ TEST_P(WornGarment, IntersectsNeitherItselfNorTheFigure) {
 
 INSTANTIATE_TEST_SUITE_P(, WornGarment,
                          testing::Values("tshirt", "skirt", "shirt_over_trousers",
-                                         "shirt_in_trousers"),
+                                         "shirt_in_trousers", "jacket"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace haptex::garment {
 
-/// Two panels with every kind of edge, a hole, a dart and a seam.
+/// Two panels with every kind of edge, a hole, a dart, a seam and a button.
 inline const std::string kSmallGarment = R"(source: made up for tests
 carriers:
   - {name: torso, shape: cylinder, segment: spine}
@@ -42,6 +42,8 @@ seams:
   - {sides: [{panel: front, edges: [6, hem]}, {panel: back, edges: [0]}], easing: 0.1}
 darts:
   - {panel: front, edges: [left of dart, right of dart], easing: 0}
+fasteners:
+  - {name: button, between: [{panel: front, at: [0.05, 0.1]}, {panel: back, at: [0.3, 0.2]}]}
 )";
 
 /// Two squares of 20 cm that face each other in front of and behind the body, sewn at their left

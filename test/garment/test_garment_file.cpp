@@ -72,6 +72,10 @@ TEST(GarmentFile, IsTheSameAfterItWasWritten) {
     EXPECT_EQ(lengthOf(again, again.seams[s].sides[0]),
               lengthOf(pattern, pattern.seams[s].sides[0]));
   }
+  ASSERT_EQ(again.fastenings.size(), 1u);
+  EXPECT_EQ(again.fastenings[0].name, "button");
+  EXPECT_EQ(again.fastenings[0].places[1].panel, 1);
+  EXPECT_EQ(again.fastenings[0].places[1].at, Vector2d(0.3, 0.2));
 }
 
 TEST(GarmentFile, NamesMayHaveAnyCharacter) {

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -40,6 +42,40 @@ seams:
   - sides: [{panel: left, edges: [seam]}, {panel: right, edges: [1, 3], reversed: true}]
     easing: 0.1
 )";
+
+/// A square and its lining, which is sewn to it along two sides that meet, and along a third.
+constexpr const char* kLined = R"(
+source: drawn for a test
+panels:
+  - name: shell
+    fabric: wool
+    layer: 1
+    outline: &square
+      - {line: [[0, 0], [0.3, 0]], name: hem}
+      - {line: [[0.3, 0], [0.3, 0.3]], name: opening}
+      - {line: [[0.3, 0.3], [0, 0.3]], name: neck}
+      - {line: [[0, 0.3], [0, 0]]}
+  - name: lining
+    fabric: wool
+    outline: *square
+seams:
+  - sides: [{panel: shell, edges: [hem]}, {panel: lining, edges: [hem]}]
+  - sides: [{panel: shell, edges: [opening]}, {panel: lining, edges: [opening]}]
+  - sides: [{panel: shell, edges: [neck]}, {panel: lining, edges: [neck]}]
+)";
+
+/// Edges that more than two triangles have.
+std::size_t edgesOfSeveral(const mesh::ClothMesh& mesh) {
+  std::map<std::array<int, 2>, int> triangles;
+  for (const auto& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const auto [a, b] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
+      ++triangles[{a, b}];
+    }
+  }
+  return static_cast<std::size_t>(std::count_if(triangles.begin(), triangles.end(),
+                                                [](const auto& edge) { return edge.second > 2; }));
+}
 
 double areaOf(const mesh::ClothMesh& mesh, int panel) {
   double area = 0.0;
@@ -96,6 +132,20 @@ TEST(GarmentMesh, HasAParticleWhereTheOtherSideHasACorner) {
     double nearest = 1.0;
     for (const double at : seam.first_places) nearest = std::min(nearest, std::abs(at - place));
     EXPECT_LT(nearest, 1e-12);
+  }
+}
+
+/// Both have a triangle in the corners between the seams, of the same three particles.
+TEST(GarmentMesh, HasNoEdgeOfFourTrianglesWhereALiningIsSewnToItsShellAroundACorner) {
+  for (const double edge_length : {0.1, 0.05, 0.03}) {
+    const GarmentMesh garment = makeGarmentMesh(parsePattern(kLined, "lined"), edge_length);
+    for (const GarmentMesh& fine : {garment, halved(garment)}) {
+      const mesh::ClothMesh sewn = mesh::merge(fine.mesh, fine.seams).mesh;
+      EXPECT_NO_THROW(mesh::requireSound(sewn));
+      EXPECT_EQ(edgesOfSeveral(sewn), 0u) << edge_length;
+      EXPECT_NEAR(areaOf(sewn, 0), 0.09, 1e-12);
+      EXPECT_NEAR(areaOf(sewn, 1), 0.09, 1e-12);
+    }
   }
 }
 

@@ -96,6 +96,26 @@ TEST(GarmentRefusals, NameTheSeamAndWhatItsEasingAllows) {
   }
 }
 
+TEST(GarmentRefusals, NameTheFastenerThatIsOnNoPanel) {
+  const Refused refused[] = {
+      {"at: [0.3, 0.2]", "at: [0.6, 0.2]",
+       "fastener 'button': (0.6, 0.2) is not on panel 'back': allowed are places within its "
+       "outline "
+       "and outside of its holes"},
+      {"at: [0.05, 0.1]", "at: [0.2, 0.21]",
+       "fastener 'button': (0.2, 0.21) is not on panel 'front': allowed are places within its "
+       "outline and outside of its holes"},
+      {"fasteners:\n",
+       "fasteners:\n  - {name: button, between: [{panel: front, at: [0.1, 0.1]}, "
+       "{panel: back, at: [0.1, 0.1]}]}\n",
+       "fastener 'button' is there twice: names must differ"},
+  };
+  for (const auto& [part, replacement, message] : refused) {
+    EXPECT_EQ(refusalOf(kSmallGarment, part, replacement), std::string("small.yaml: ") + message)
+        << part;
+  }
+}
+
 TEST(GarmentRefusals, NameTheKeyOfWhatCannotBeRead) {
   const Refused refused[] = {
       {"[[0.4, 0], [0.45, 0.3]", "[[0.4, .nan], [0.45, 0.3]",
@@ -131,6 +151,10 @@ TEST(GarmentRefusals, NameTheKeyOfWhatCannotBeRead) {
       {"[left of dart, right of dart]", "[left of dart, side]",
        "darts[0].edges: a list of 2 must be two successive edges, which meet in the tip of the "
        "dart"},
+      {"at: [0.3, 0.2]", "at: [0.3]",
+       "fasteners[0].between[1].at: a list of 1 must be a list of 2"},
+      {"{panel: back, at", "{panel: sleeve, at",
+       "fasteners[0].between[1].panel: 'sleeve' is no panel"},
       {"shape: cylinder", "shape: sphere",
        "carriers[0].shape: 'sphere' must be one of cylinder, cone"},
   };

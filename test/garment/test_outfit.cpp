@@ -49,6 +49,9 @@ TEST_F(Outfit, HasAllPanelsCarriersAndSeamsEachUnderTheNameOfItsGarment) {
     EXPECT_EQ(both.seams[seams + s].sides[0].panel,
               one.seams[s].sides[0].panel + static_cast<int>(panels));
   }
+  ASSERT_EQ(both.fastenings.size(), 2u);
+  EXPECT_EQ(both.fastenings[1].name, "shirt/button");
+  EXPECT_EQ(both.fastenings[1].places[1].panel, 1 + static_cast<int>(panels));
 }
 
 TEST_F(Outfit, LayersFollowTheOrderOfDressingAlone) {

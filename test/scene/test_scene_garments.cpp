@@ -14,9 +14,10 @@ TEST(ShippedGarments, AreSewnOfPanelsAndStartAtRestOnTheFigureWithoutIntersectio
     int panels;
     std::size_t triangles, seam_hinges;  // at least so many hinges
   };
-  for (const Garment& garment : {Garment{"tshirt", 8, 1714, 100}, Garment{"skirt", 2, 1442, 30},
-                                 Garment{"trousers_and_shirt", 12, 4624, 200},
-                                 Garment{"shirt_in_trousers", 12, 4624, 200}}) {
+  for (const Garment& garment :
+       {Garment{"tshirt", 8, 1714, 100}, Garment{"skirt", 2, 1442, 30},
+        Garment{"trousers_and_shirt", 12, 4624, 200}, Garment{"shirt_in_trousers", 12, 4624, 200},
+        Garment{"jacket", 14, 2340, 100}}) {
     const Scene scene =
         loadScene((kConfig / "scenes" / (garment.name + std::string(".yaml"))).string());
     EXPECT_EQ(scene.mesh.panelCount(), garment.panels) << garment.name;

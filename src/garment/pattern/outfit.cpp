@@ -36,6 +36,11 @@ void add(Pattern garment, const std::string& name, int first_layer, Pattern& all
     for (SeamSide& side : seam.sides) side.panel += first_panel;
     all.seams.push_back(seam);
   }
+  for (Fastening& fastening : garment.fastenings) {
+    fastening.name = before + fastening.name;
+    for (PlaceOnPanel& place : fastening.places) place.panel += first_panel;
+    all.fastenings.push_back(std::move(fastening));
+  }
 }
 
 Pattern readList(const base::YamlValue& file) {

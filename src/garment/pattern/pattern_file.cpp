@@ -18,7 +18,7 @@ class PatternReader {
   explicit PatternReader(const YamlValue& file) : file_(file) {}
 
   Pattern read() {
-    file_.requireKeys({"source", "panels"}, {"carriers", "seams", "darts"});
+    file_.requireKeys({"source", "panels"}, {"carriers", "seams", "darts", "fasteners"});
     pattern_.source = file_.at("source").text();
     if (file_.has("carriers")) {
       for (const YamlValue& value : itemsOf(file_.at("carriers"), kMostPanels)) {
@@ -28,10 +28,11 @@ class PatternReader {
     for (const YamlValue& value : itemsOf(file_.at("panels"), kMostPanels)) {
       pattern_.panels.push_back(readPanel(value));
     }
-    for (const char* list : {"seams", "darts"}) {
+    for (const char* list : {"seams", "darts", "fasteners"}) {
       if (file_.has(list)) itemsOf(file_.at(list), kMostSeams);
     }
     readSeams(file_, pattern_);
+    readFastenings(file_, pattern_);
     return std::move(pattern_);
   }
 

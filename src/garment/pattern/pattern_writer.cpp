@@ -140,6 +140,16 @@ std::string writePattern(const Pattern& pattern) {
     writeSide(pattern, seam.sides[1], out);
     out << "]\n    easing: " << number(seam.easing) << '\n';
   }
+  if (!pattern.fastenings.empty()) out << "fasteners:\n";
+  for (const Fastening& fastening : pattern.fastenings) {
+    out << "  - name: " << quoted(fastening.name) << "\n    between: [";
+    for (const PlaceOnPanel& place : fastening.places) {
+      if (&place != &fastening.places.front()) out << ",\n              ";
+      out << "{panel: " << quoted(pattern.panels[place.panel].name) << ", at: " << list(place.at)
+          << '}';
+    }
+    out << "]\n";
+  }
   return out.str();
 }
 

@@ -103,4 +103,20 @@ void readSeams(const YamlValue& file, Pattern& pattern) {
   }
 }
 
+void readFastenings(const YamlValue& file, Pattern& pattern) {
+  if (!file.has("fasteners")) return;
+  for (const YamlValue& value : file.at("fasteners").items()) {
+    value.requireKeys({"name", "between"});
+    const auto places = value.at("between").items(2);
+    Fastening& fastening = pattern.fastenings.emplace_back();
+    fastening.name = value.at("name").text();
+    for (int i = 0; i < 2; ++i) {
+      places[i].requireKeys({"panel", "at"});
+      const auto point = places[i].at("at").items(2);
+      fastening.places[i] = {panelOf(places[i].at("panel"), pattern),
+                             {point[0].number(), point[1].number()}};
+    }
+  }
+}
+
 }  // namespace haptex::garment

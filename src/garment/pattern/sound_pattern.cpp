@@ -21,6 +21,7 @@ class SoundPattern {
   void require() const {
     requireCount("panels", pattern_.panels.size(), 1, kMostPanels);
     requireCount("seams", pattern_.seams.size(), 0, kMostSeams);
+    requireCount("fasteners", pattern_.fastenings.size(), 0, kMostSeams);
     requireCount("points", countPoints(), 1, kMostPatternPoints);
     std::set<std::string> carriers, names;
     for (const Carrier& carrier : pattern_.carriers) {
@@ -36,6 +37,13 @@ class SoundPattern {
       requirePlacement(panel, carriers);
     }
     for (std::size_t i = 0; i < pattern_.seams.size(); ++i) requireSeam(i);
+    std::set<std::string> fastenings;
+    for (const Fastening& fastening : pattern_.fastenings) {
+      if (!fastenings.insert(fastening.name).second) {
+        refuse(file_, ": fastener '", fastening.name, "' is there twice: names must differ");
+      }
+      for (const PlaceOnPanel& place : fastening.places) requirePlace(place, fastening.name);
+    }
   }
 
  private:
@@ -169,6 +177,27 @@ class SoundPattern {
     }
   }
 
+  void requirePlace(const PlaceOnPanel& place, const std::string& name) const {
+    const std::string where = file_ + ": fastener '" + name + "'";
+    requirePanelExists(place.panel, where);
+    const Panel& panel = pattern_.panels[place.panel];
+    requireCoordinates(place.at, where);
+    const std::vector<OutlineLine> lines = straightLines(panel.outlines, kCrossingTolerance);
+    bool inside = isInside(place.at, lines, 0);
+    for (int hole = 1; hole < static_cast<int>(panel.outlines.size()); ++hole) {
+      inside = inside && !isInside(place.at, lines, hole);
+    }
+    if (inside) return;
+    refuse(where, ": (", place.at.x(), ", ", place.at.y(), ") is not on panel '", panel.name,
+           "': allowed are places within its outline and outside of its holes");
+  }
+
+  void requirePanelExists(int panel, const std::string& where) const {
+    const int panels = static_cast<int>(pattern_.panels.size());
+    if (panel >= 0 && panel < panels) return;
+    refuse(where, ": has panel ", panel, ": allowed are 0 to ", panels - 1);
+  }
+
   void requireSeam(std::size_t index) const {
     const Seam& seam = pattern_.seams[index];
     const std::string where = file_ + ": seam " + std::to_string(index);
@@ -186,10 +215,7 @@ class SoundPattern {
   }
 
   void requireSide(const SeamSide& side, const std::string& where) const {
-    const int panels = static_cast<int>(pattern_.panels.size());
-    if (side.panel < 0 || side.panel >= panels) {
-      refuse(where, ": has panel ", side.panel, ": allowed are 0 to ", panels - 1);
-    }
+    requirePanelExists(side.panel, where);
     const Panel& panel = pattern_.panels[side.panel];
     const int outlines = static_cast<int>(panel.outlines.size());
     if (side.outline < 0 || side.outline >= outlines) {

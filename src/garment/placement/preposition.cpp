@@ -232,24 +232,25 @@ class Prepositioner {
   /// Makes room where something intersects; whether there is anything to be done.
   bool widen(const Body& body) {
     bool any = false;
-    std::set<int> shifted;
+    std::set<int> shifted;  // segments: layers that are sewn to each other go together
     for (const auto& overlap : overlaps_) {
       const auto [a, b] = overlap.first;
       const int first = ring_of_[a];
       if (b == static_cast<int>(meshes_.size())) {
-        if (first >= 0 && depthOf(body, first) > 0) shifted.insert(first);
+        if (first >= 0 && depthOf(body, first) > 0) shifted.insert(rings_[first].segment);
         continue;
       }
       const int second = ring_of_[b];
       if (first >= 0 && second >= 0 && rings_[first].segment != rings_[second].segment) {
-        shifted.insert(depthOf(body, first) >= depthOf(body, second) ? first : second);
+        const int outer = depthOf(body, first) >= depthOf(body, second) ? first : second;
+        shifted.insert(rings_[outer].segment);
       } else {
         any = widenSeams(a, b) || any;
       }
     }
-    for (const int ring : shifted) {
-      double& shift = rings_[ring].shift;
-      shift = shift == 0.0 ? kFirstShift : 2.0 * shift;
+    for (Ring& ring : rings_) {
+      if (shifted.count(ring.segment) == 0) continue;
+      ring.shift = ring.shift == 0.0 ? kFirstShift : 2.0 * ring.shift;
     }
     return any || !shifted.empty();
   }

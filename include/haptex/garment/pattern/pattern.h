@@ -88,11 +88,24 @@ struct Seam {
   double easing = kUsualEasing;  ///< allowed difference of lengths, of the longer one
 };
 
+/// A place on a panel, in its plane (m).
+struct PlaceOnPanel {
+  int panel = 0;
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+};
+
+/// Two places that are fastened to each other, as by a button, where the garment is worn.
+struct Fastening {
+  std::string name;
+  std::array<PlaceOnPanel, 2> places;
+};
+
 struct Pattern {
   std::string source;  ///< where it comes from
   std::vector<Carrier> carriers;
   std::vector<Panel> panels;
   std::vector<Seam> seams;  ///< darts, too: seams of two edges that meet
+  std::vector<Fastening> fastenings = {};
 };
 
 /// m^2, of a panel without its holes. Exact to rounding.
@@ -117,8 +130,8 @@ std::string describeEdge(const Panel& panel, int outline, int edge);
 ///   is no panel or more of anything than is allowed, an outline is open, touches itself or
 ///   another (by an exact test of lines no farther than kCrossingTolerance from it), a hole lies
 ///   outside, an edge or area is too small, a number is not finite or too large, a name is given
-///   twice, a carrier is unknown, or the sides of a seam do not exist, share an edge or differ in
-///   length by more than its easing
+///   twice, a carrier is unknown, the sides of a seam do not exist, share an edge or differ in
+///   length by more than its easing, or a place to fasten is on no panel
 void requireSound(const Pattern& pattern, const std::string& file);
 
 }  // namespace haptex::garment

@@ -13,4 +13,8 @@ namespace haptex::garment {
 /// @throws std::invalid_argument naming file and key, value and what is allowed
 void readSeams(const base::YamlValue& file, Pattern& pattern);
 
+/// Adds the places to fasten of a list `fasteners`, if there is one, likewise.
+/// @throws std::invalid_argument naming file and key, value and what is allowed
+void readFastenings(const base::YamlValue& file, Pattern& pattern);
+
 }  // namespace haptex::garment

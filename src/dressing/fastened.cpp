@@ -1,0 +1,48 @@
+#include "haptex/dressing/fastened.h"
+
+#include <limits>
+#include <optional>
+
+#include "haptex/base/require.h"
+#include "haptex/garment/triangulation/threads.h"
+#include "haptex/mesh/rest_place.h"
+
+namespace haptex::dressing {
+namespace {
+
+cloth::ClothPlace placeOn(const mesh::ClothMesh& mesh, const garment::Pattern& pattern,
+                          const garment::PlaceOnPanel& place, const std::string& name) {
+  const garment::Panel& panel = pattern.panels[place.panel];
+  std::vector<int> triangles;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.panelOf(t) == place.panel) triangles.push_back(static_cast<int>(t));
+  }
+  const std::optional<mesh::RestPlace> found =
+      mesh::findRestPlace(mesh, triangles, garment::Threads(panel).restOf(place.at));
+  if (!found) {
+    base::refuse("fastener '", name, "': (", place.at.x(), ", ", place.at.y(),
+                 ") is in no triangle of panel '", panel.name,
+                 "': allowed are places that are farther from its outline, or shorter edges");
+  }
+  const Eigen::Vector3d& weights = found->weights;
+  return {mesh.triangles[found->triangle], {weights[0], weights[1], weights[2]}};
+}
+
+}  // namespace
+
+std::vector<cloth::Fastener> fastened(const garment::Pattern& pattern, const mesh::ClothMesh& mesh,
+                                      double stiffness) {
+  std::vector<cloth::Fastener> fasteners;
+  for (const garment::Fastening& fastening : pattern.fastenings) {
+    cloth::Fastener& fastener = fasteners.emplace_back();
+    fastener.name = fastening.name;
+    for (int i : {0, 1}) {
+      fastener.places[i] = placeOn(mesh, pattern, fastening.places[i], fastening.name);
+    }
+    fastener.stiffness = stiffness;
+    fastener.release_force = std::numeric_limits<double>::max();
+  }
+  return fasteners;
+}
+
+}  // namespace haptex::dressing
