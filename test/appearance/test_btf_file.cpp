@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "fixtures.h"
 #include "haptex/appearance/btf_file.h"
 #include "haptex/base/checksum.h"
@@ -57,13 +58,9 @@ class BtfFile : public testing::Test {
     return changed;
   }
   void expectRefusal(const std::string& text) const {
-    try {
-      readBtf(path_);
-      ADD_FAILURE() << text;
-    } catch (const std::runtime_error& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(path_ + ": ", 0), 0u) << error.what();
-      EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
-    }
+    const std::string refusal = test::refusalOf<std::runtime_error>([&] { readBtf(path_); });
+    EXPECT_EQ(refusal.rfind(path_ + ": ", 0), 0u) << refusal;
+    EXPECT_NE(refusal.find(text), std::string::npos) << refusal;
   }
 
   std::filesystem::path folder_;
