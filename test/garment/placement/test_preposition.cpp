@@ -123,6 +123,25 @@ TEST(Preposition, LayersLieAroundEachOtherInTheirOrder) {
   }
 }
 
+/// The lining's sleeves are sewn to those of the shell at the cuffs.
+TEST(Preposition, LayersOfASleeveAreShiftedTogether) {
+  const Pattern pattern = loadPattern(HAPTEX_CONFIG_DIRECTORY "/garments/jacket.yaml");
+  const Body body = loadBody(HAPTEX_CONFIG_DIRECTORY "/bodies/figure.yaml");
+  std::vector<PanelMesh> meshes = meshesOf(pattern, 0.03);
+  const Preposition laid = preposition(pattern, body, meshes);
+  EXPECT_TRUE(laid.overlaps.empty());
+  int compared = 0;
+  for (const LaidPanel& shell : laid.panels) {
+    for (const LaidPanel& lining : laid.panels) {
+      const std::string& name = pattern.panels[shell.panel].name;
+      if (pattern.panels[lining.panel].name != "lining_" + name) continue;
+      EXPECT_NEAR(lining.along, shell.along, 0.01) << name;
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 7);
+}
+
 TEST(Preposition, OverlapsAreReported) {
   const std::string text =
       replaced(kTube, "{carrier: tube}", "{carrier: tube, angle: 0.2, along: 0.55}");
