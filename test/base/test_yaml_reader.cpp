@@ -15,7 +15,7 @@ namespace {
 const std::vector<std::string> kKeys = {"name", "size"};
 
 std::string refusal(const std::string& text, const std::string& name = "file") {
-  return test::refusalOf([&] {
+  return test::refusalOf<std::exception>([&] {
     const YamlValue file = YamlValue::parse(text, name);
     file.requireKeys(kKeys);
     file.at("name").text();

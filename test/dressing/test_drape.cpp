@@ -16,7 +16,7 @@
 namespace haptex::dressing::test_drape {
 namespace {
 
-using test::refusalOf;
+const auto refusalOf = [](const auto& call) { return test::refusalOf<std::exception>(call); };
 
 constexpr double kEdge = 0.05;  // m
 

@@ -162,7 +162,7 @@ TEST_F(StateFile, IsRefusedForWhatIsWrongWithIt) {
 TEST_F(StateFile, IsWrittenToAbsolutePathsOfItsKindOnlyOrNotAtAll) {
   const std::string old = savedText();
   const auto refusal = [&](const std::string& path) -> std::string {
-    return test::refusalOf([&] { saveState(path, state_); });
+    return test::refusalOf<std::exception>([&] { saveState(path, state_); });
   };
   for (const std::string& path :
        {std::string(), std::string("cloth.state"), std::string("./cloth.state"),

@@ -18,7 +18,7 @@
 namespace haptex::garment::test_body_file {
 namespace {
 
-using test::refusalOf;
+const auto refusalOf = [](const auto& call) { return test::refusalOf<std::exception>(call); };
 
 namespace fs = std::filesystem;
 

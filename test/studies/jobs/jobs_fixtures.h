@@ -18,7 +18,9 @@
 
 namespace haptex::studies {
 
-using test::refusalOf;
+inline const auto refusalOf = [](const auto& call) {
+  return test::refusalOf<std::exception>(call);
+};
 
 /// Tells the squares of numbers.
 class Squares final : public Study {
