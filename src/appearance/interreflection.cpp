@@ -160,6 +160,7 @@ Matrix Interreflection::send(int texel, const Light& light,
     (other < 0 ? leaving : meeting).push_back(rayOf(texel, ray));
     if (other >= 0) met.push_back(other);
   }
+  if (met.empty()) return Matrix::Zero(views.size(), light.radiosity.cols());
   const Matrix radiance = radianceMet(light, met, meeting);
   // The diffuse part is the same for all views.
   const material::Look& look = reflectance_.look();
@@ -168,7 +169,7 @@ Matrix Interreflection::send(int texel, const Light& light,
   const Eigen::RowVectorXf even =
       (radiance.colwise().sum().array() * repeated(diffuse, light.directions.size())).matrix();
   Matrix sent = even.replicate(views.size(), 1);
-  if (!(look.gloss > 0.0) || met.empty()) return sent;
+  if (!(look.gloss > 0.0)) return sent;
   // The highlight, its weights over all rays of sum 1: none of it is lost between the few rays.
   const Vector3d& normal = centres_[texel].normal;
   Matrix weights(views.size(), met.size());
