@@ -177,14 +177,15 @@ class Stopping(DeviceTest):
         self.addCleanup(launch.wait)
         self.addCleanup(launch.terminate)  # with its nodes, if it is still there
         watcher = subprocess.Popen([sys.executable, f'{here}/watch_force.py', 'index', str(FELT)],
-                                   env=environment, stdout=subprocess.PIPE, text=True)
+                                   env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   text=True)
         self.addCleanup(watcher.kill)
         self.assertIn('felt\n', iter(watcher.stdout.readline, ''))  # after what rospy says
         begin = time.monotonic()
         launch.send_signal(signal.SIGINT)
         output, _ = launch.communicate(timeout=30.0)
         took = time.monotonic() - begin
-        last, _ = watcher.communicate(timeout=WAIT)
+        last, _ = watcher.communicate('gone\n', timeout=WAIT)
         print(f'a launch is gone {took:.1f} s after SIGINT; {last.strip()}')
         self.assertNotIn('escalating', output)
         self.assertLess(took, 2.0 * GONE)  # roslaunch itself waits for one node after the other

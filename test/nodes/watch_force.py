@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Watches the force that is commanded to a finger: watch_force.py FINGER FELT prints `felt` when it
-is above FELT, in N, and the last force when nothing has come for a second after that. Ends after a
-minute if no force is felt."""
+is above FELT, in N, then waits for a line on its standard input, which says that the renderer has
+gone, and prints the last force once nothing has come for a second. Ends after a minute if no force
+is felt."""
 import sys
 import time
 
@@ -33,6 +34,7 @@ def main():
             sys.exit('no force')
         time.sleep(0.01)
     print('felt', flush=True)
+    sys.stdin.readline()  # silence alone may be that of a busy machine
     while time.monotonic() < watcher.time + SILENCE:
         time.sleep(0.01)
     print(f'the last force: {watcher.size:.3g} N', flush=True)
