@@ -6,8 +6,10 @@
 
 namespace haptex::test {
 
+constexpr const char* kNotRefused = "(not refused)";
+
 /// The message of the exception that the call throws. Another exception goes on to the test, which
-/// fails by it.
+/// fails by it. @returns kNotRefused if there is none
 template <typename Exception = std::invalid_argument, typename Call>
 std::string refusalOf(const Call& call) {
   try {
@@ -15,7 +17,7 @@ std::string refusalOf(const Call& call) {
   } catch (const Exception& refusal) {
     return refusal.what();
   }
-  return "(not refused)";
+  return kNotRefused;
 }
 
 }  // namespace haptex::test

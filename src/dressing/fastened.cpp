@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "haptex/base/require.h"
+#include "haptex/cloth/forces/fasteners/place_in.h"
 #include "haptex/garment/triangulation/threads.h"
 #include "haptex/mesh/rest_place.h"
 
@@ -24,8 +25,7 @@ cloth::ClothPlace placeOn(const mesh::ClothMesh& mesh, const garment::Pattern& p
                  ") is in no triangle of panel '", panel.name,
                  "': allowed are places that are farther from its outline, or shorter edges");
   }
-  const Eigen::Vector3d& weights = found->weights;
-  return {mesh.triangles[found->triangle], {weights[0], weights[1], weights[2]}};
+  return cloth::placeIn(mesh, *found);
 }
 
 }  // namespace

@@ -103,17 +103,6 @@ std::vector<PanelMesh> triangulateAlike(const Pattern& pattern, double edge_leng
   return panels;
 }
 
-/// The number of every panel's first particle in the garment.
-std::vector<int> firstParticles(const std::vector<PanelMesh>& panels) {
-  std::vector<int> first;
-  int particles = 0;
-  for (const PanelMesh& panel : panels) {
-    first.push_back(particles);
-    particles += static_cast<int>(panel.mesh.rest_coordinates.size());
-  }
-  return first;
-}
-
 std::vector<mesh::Seam> seamsOf(const Pattern& pattern, const SeamDivisions& divisions,
                                 const std::vector<PanelMesh>& panels) {
   const std::vector<int> first = firstParticles(panels);

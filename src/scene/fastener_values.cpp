@@ -5,6 +5,7 @@
 #include <string>
 
 #include "haptex/base/require.h"
+#include "haptex/cloth/forces/fasteners/place_in.h"
 #include "haptex/mesh/rest_place.h"
 #include "haptex/scene/scene_values.h"
 
@@ -34,8 +35,7 @@ ClothPlace readCoordinates(const YamlValue& value, const mesh::ClothMesh& mesh,
                         "] must be rest coordinates (m) within the cloth" +
                         (group != nullptr ? ", in this group" : ""));
   }
-  const Eigen::Vector3d& weights = place->weights;
-  return {mesh.triangles[place->triangle], {weights[0], weights[1], weights[2]}};
+  return cloth::placeIn(mesh, *place);
 }
 
 ClothPlace readPlace(const YamlValue& value, const mesh::ClothMesh& mesh,

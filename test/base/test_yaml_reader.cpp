@@ -24,7 +24,7 @@ std::string refusal(const std::string& text, const std::string& name = "file") {
 }
 
 TEST(YamlReader, AcceptsWhatIsAsAskedFor) {
-  EXPECT_EQ(refusal("name: wool\nsize: 2"), "(not refused)");
+  EXPECT_EQ(refusal("name: wool\nsize: 2"), test::kNotRefused);
 }
 
 TEST(YamlReader, RefusesAPasswordFileWithoutItsContent) {

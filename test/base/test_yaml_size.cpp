@@ -50,7 +50,7 @@ TEST(YamlSize, AListOfTwoMillionItemsIsRefusedByItsBytes) {
 
 TEST(YamlSize, AListOfTooManyItemsIsRefusedWhileItIsRead) {
   const std::string begin = "[" + repeated("1,", kMostYamlValues - 1);
-  EXPECT_EQ(refusal(begin + "]"), "(not refused)");
+  EXPECT_EQ(refusal(begin + "]"), test::kNotRefused);
   expectRefusedInLittleMemory(begin + repeated("1,", 30'000) + "]",
                               "file: line 1: more than 100000 values, an alias counted as what "
                               "it stands for");
@@ -64,7 +64,7 @@ TEST(YamlSize, AliasesCountAsWhatTheyStandFor) {
               repeated(alias + ", ", 9) + "]\n";
   }
   // 1 + 5 (keys) + 10 + 91 + 820 + 7381 + 66430.
-  EXPECT_EQ(refusal(laughs), "(not refused)");
+  EXPECT_EQ(refusal(laughs), test::kNotRefused);
   expectRefusedInLittleMemory(laughs + "a5: [*a4, *a4]\n",
                               "file: line 6: more than 100000 values, an alias counted as what it "
                               "stands for");
@@ -75,7 +75,7 @@ TEST(YamlSize, AnAliasWithinWhatItStandsForIsRefused) {
 }
 
 TEST(YamlSize, DeepNestingIsRefusedAtTheLevelThatIsTooMany) {
-  EXPECT_EQ(refusal(repeated("[", kDeepestYaml) + repeated("]", kDeepestYaml)), "(not refused)");
+  EXPECT_EQ(refusal(repeated("[", kDeepestYaml) + repeated("]", kDeepestYaml)), test::kNotRefused);
   for (const std::size_t depth : {kDeepestYaml + 1, std::size_t{10'000}, std::size_t{250'000}}) {
     expectRefusedInLittleMemory(repeated("[", depth), "file: line 1: nested deeper than 32 levels");
     expectRefusedInLittleMemory(repeated("- ", depth / 2 + kDeepestYaml),

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/contact/fingertip.h"
 
 namespace haptex::contact::test_fingertip {
@@ -55,16 +56,16 @@ std::string refusalOf(const Fingertip& fingertip) {
     EXPECT_FALSE(isSound(fingertip));
     return error.what();
   }
-  return "(not refused)";
+  return test::kNotRefused;
 }
 
 TEST(Fingertip, IsSoundWithFiniteNumbersAndAUnitQuaternion) {
-  EXPECT_EQ(refusalOf(sound()), "(not refused)");
+  EXPECT_EQ(refusalOf(sound()), test::kNotRefused);
   Fingertip fingertip = sound();
   fingertip.orientation.coeffs() *= 1.0009;
-  EXPECT_EQ(refusalOf(fingertip), "(not refused)");
+  EXPECT_EQ(refusalOf(fingertip), test::kNotRefused);
   fingertip.radius = 0.1;
-  EXPECT_EQ(refusalOf(fingertip), "(not refused)");
+  EXPECT_EQ(refusalOf(fingertip), test::kNotRefused);
 }
 
 TEST(Fingertip, RefusesWhatIsNotFiniteByName) {

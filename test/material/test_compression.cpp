@@ -91,7 +91,7 @@ TEST(CompressionFromKes, RefusesWorkThatNoCurveWithACoreDoes) {
   EXPECT_EQ(refusalOf({1e-3, 0.5e-3, 0.72}), "WC: 0.72" + range);
   EXPECT_EQ(refusalOf({1e-3, 0.5e-3, 0.024}), "WC: 0.024" + range);
   EXPECT_EQ(refusalOf({1e-3, 0.5e-3, std::numeric_limits<double>::infinity()}), "WC: inf" + range);
-  EXPECT_EQ(refusalOf({1e-3, 0.5e-3, 0.717}), "(not refused)");
+  EXPECT_EQ(refusalOf({1e-3, 0.5e-3, 0.717}), test::kNotRefused);
 }
 
 TEST(CompressionFromKes, RefusesAFabricThatIsMostlyAir) {

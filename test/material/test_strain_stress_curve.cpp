@@ -367,8 +367,8 @@ TEST(StrainStressCurve, AllowsJumpsWithinItsToleranceOnly) {
     });
   };
   // The largest stress at a knot is 2.
-  EXPECT_EQ(jump(1.9 * StrainStressCurve::kJumpTolerance), "(not refused)");
-  EXPECT_NE(jump(2.1 * StrainStressCurve::kJumpTolerance), "(not refused)");
+  EXPECT_EQ(jump(1.9 * StrainStressCurve::kJumpTolerance), test::kNotRefused);
+  EXPECT_NE(jump(2.1 * StrainStressCurve::kJumpTolerance), test::kNotRefused);
 }
 
 }  // namespace

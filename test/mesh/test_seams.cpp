@@ -76,7 +76,7 @@ TEST(ResolvedTies, RefuseWhatHasNoPlace) {
             std::string::npos);
   EXPECT_NE(refusal({{0, {1, 2}, std::nan("")}}).find("nan"), std::string::npos);
   EXPECT_NE(refusal({{0, {1, 2}, 0.5}, {0, {1, 3}, 0.5}}).find("tied twice"), std::string::npos);
-  EXPECT_EQ(refusal({{0, {1, 2}, 0.5}, {3, {0, 2}, 1.0}}), "(not refused)");
+  EXPECT_EQ(refusal({{0, {1, 2}, 0.5}, {3, {0, 2}, 1.0}}), test::kNotRefused);
 }
 
 TEST(Sewing, TiesTheFinerEdgeToThePlacesBesideIt) {
@@ -148,11 +148,12 @@ TEST(Sewing, RefusesWhatNoSeamCanBe) {
       ClothMesh copy = mesh;
       sew(copy, {seam});
     });
-    EXPECT_EQ(refusalOf([&] { merge(mesh, {seam}); }) == "(not refused)", sewn == "(not refused)");
+    EXPECT_EQ(refusalOf([&] { merge(mesh, {seam}); }) == test::kNotRefused,
+              sewn == test::kNotRefused);
     return sewn;
   };
   const Seam sound = {side(0, 4, 1), side(10, 6, 0)};
-  EXPECT_EQ(refusal(sound), "(not refused)");
+  EXPECT_EQ(refusal(sound), test::kNotRefused);
   EXPECT_NE(refusal({{1}, sound.second}).find("has 1 particles"), std::string::npos);
   EXPECT_NE(refusal({{1, 5}, sound.second}).find("no edge of a triangle"), std::string::npos);
   EXPECT_NE(refusal({{0, 3}, sound.second}).find("edge of two triangles"), std::string::npos);

@@ -118,7 +118,7 @@ TEST_F(StateFile, OfAnotherClothIsRefused) {
   EXPECT_EQ(refusalOf(kFromState), path() + ": state: " + statePath() +
                                        " has particle 9 0.002 m from where it is attached, (0, "
                                        "-0.05, 0) m: allowed are 1e-09 m");
-  EXPECT_EQ(refusalOf(replaced(kFromState, "[top]", "[]")), "(not refused)");
+  EXPECT_EQ(refusalOf(replaced(kFromState, "[top]", "[]")), test::kNotRefused);
 }
 
 TEST_F(StateFile, IsRefusedBesideObstaclesWithMass) {

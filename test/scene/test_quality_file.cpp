@@ -106,14 +106,7 @@ TEST_F(QualityFile, MayHaveOneOfANameForEachFabric) {
   };
   replace("name: slow", "name: quick\n    fabric: linear");
   replace("motion: hang, fabric: wool", "motion: hang, fabric: linear");
-  const auto refusal = [&] {
-    try {
-      load(text);
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string("(not refused)");
-  };
+  const auto refusal = [&] { return test::refusalOf([&] { load(text); }); };
   EXPECT_NE(refusal().find("qualities[1].name: 'quick' is listed twice for 'linear'"),
             std::string::npos)
       << refusal() << ": the first is for any fabric";

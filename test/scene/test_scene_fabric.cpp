@@ -56,8 +56,8 @@ TEST_F(SceneFabric, IsRefusedForTactileWithoutASurface) {
   EXPECT_EQ(refusal(kConfig + "/fabrics/linear.yaml", "fingers, tactile"),
             scenePath() + ": model: lists tactile, but fabric 'linear' has no surface: " + kConfig +
                 "/fabrics/linear.yaml needs the key surface");
-  EXPECT_EQ(refusal(kConfig + "/fabrics/linear.yaml", "fingers"), "(not refused)");
-  EXPECT_EQ(refusal(kConfig + "/fabrics/wool.yaml", "fingers, tactile"), "(not refused)");
+  EXPECT_EQ(refusal(kConfig + "/fabrics/linear.yaml", "fingers"), test::kNotRefused);
+  EXPECT_EQ(refusal(kConfig + "/fabrics/wool.yaml", "fingers, tactile"), test::kNotRefused);
 }
 
 TEST_F(SceneFabric, IsRefusedForFingersThatCannotTouchIt) {
@@ -67,14 +67,14 @@ TEST_F(SceneFabric, IsRefusedForFingersThatCannotTouchIt) {
                   ": model: lists fingers, but fabric linear: contact needs the property "
                   "'" +
                   key + "'");
-    EXPECT_EQ(refusal(without(key), ""), "(not refused)") << "nobody touches it";
+    EXPECT_EQ(refusal(without(key), ""), test::kNotRefused) << "nobody touches it";
   }
   EXPECT_EQ(refusal(without("bending"), "fingers"),
             scenePath() +
                 ": model: lists fingers, but fabric 'linear' has no bending; a patch "
                 "needs it: add the key bending");
   EXPECT_EQ(refusal(without("bending"), "fingers", "haptics: {layer: whole_cloth}\n"),
-            "(not refused)");
+            test::kNotRefused);
 }
 
 TEST_F(SceneFabric, IsRefusedWithAWrongKeyHaptics) {

@@ -56,7 +56,7 @@ TEST(EmulatorFault, RefusesAnUnknownNameWithAllThatAreAllowed) {
     EXPECT_NE(refused.find(serial::name(fault)), std::string::npos) << refused;
   }
   EXPECT_NE(refused.find("closed_port, saturated_sensor"), std::string::npos) << refused;
-  EXPECT_NE(refusal("", "both", 1.0, 1.0), "(not refused)");
+  EXPECT_NE(refusal("", "both", 1.0, 1.0), test::kNotRefused);
 }
 
 TEST(EmulatorFault, RefusesAnUnknownDirection) {
@@ -70,15 +70,15 @@ TEST(EmulatorFault, RefusesWhatIsNoProbability) {
   for (const double probability : {-0.1, 1.1, kNaN, kInfinity, -kInfinity}) {
     EXPECT_NE(refusal("drop", "both", probability, 1.0).find("probability = "), std::string::npos);
   }
-  EXPECT_EQ(refusal("drop", "both", 0.0, 1.0), "(not refused)");
-  EXPECT_EQ(refusal("drop", "both", 1.0, 1.0), "(not refused)");
+  EXPECT_EQ(refusal("drop", "both", 0.0, 1.0), test::kNotRefused);
+  EXPECT_EQ(refusal("drop", "both", 1.0, 1.0), test::kNotRefused);
 }
 
 TEST(EmulatorFault, RefusesDurationsThatAreNoneOrTooLong) {
   for (const double duration : {-1.0, 0.0, 3601.0, 1e300, kNaN, kInfinity}) {
     EXPECT_NE(refusal("drop", "both", 1.0, duration).find("duration = "), std::string::npos);
   }
-  EXPECT_EQ(refusal("drop", "both", 1.0, EmulatorFault::kLongest), "(not refused)");
+  EXPECT_EQ(refusal("drop", "both", 1.0, EmulatorFault::kLongest), test::kNotRefused);
 }
 
 TEST(EmulatorFault, IsDescribedByNameAndDirection) {

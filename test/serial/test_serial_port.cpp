@@ -151,7 +151,7 @@ TEST(SerialPort, RefusesASecondDriver) {
     SerialPort driver(device.path());
     EXPECT_EQ(refusal(device.path()), device.path() + ": another program has it open");
   }
-  EXPECT_EQ(refusal(device.path()), "(not refused)");
+  EXPECT_EQ(refusal(device.path()), test::kNotRefused);
 }
 
 // TIOCEXCL would, for everybody but root.
@@ -166,7 +166,7 @@ TEST(SerialPort, AKilledDriverDoesNotKeepOutItsSuccessor) {
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
-  EXPECT_EQ(refusal(device.path()), "(not refused)");
+  EXPECT_EQ(refusal(device.path()), test::kNotRefused);
 }
 
 TEST(SerialPort, NoticesThatTheOtherEndIsGone) {
@@ -304,7 +304,7 @@ TEST(PseudoTerminal, ReplacesALinkThatADeadEmulatorHasLeft) {
   ASSERT_EQ(::symlink("/nowhere", link.c_str()), 0);
   std::ofstream(link + ".lock").close();
   const PseudoTerminal device(link);
-  EXPECT_EQ(refusal(link), "(not refused)");
+  EXPECT_EQ(refusal(link), test::kNotRefused);
 }
 
 TEST(PseudoTerminal, DoesNotTakeTheLinkOfAnother) {
@@ -336,7 +336,7 @@ TEST(PseudoTerminal, RemovesOnlyItsOwnLink) {
     ASSERT_EQ(::unlink(link.c_str()), 0);
     ASSERT_EQ(::symlink(other.path().c_str(), link.c_str()), 0);
   }
-  EXPECT_EQ(refusal(link), "(not refused)") << "leads to the other";
+  EXPECT_EQ(refusal(link), test::kNotRefused) << "leads to the other";
   ::unlink(link.c_str());
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../refusal.h"
 #include "haptex/simulation/scene_explanation.h"
 
 namespace haptex::simulation::test_scene_explanation {
@@ -187,12 +188,7 @@ TEST_F(ExplainedScene, TellsTheErrorOfTheNearestStudiedSetting) {
 
 TEST_F(ExplainedScene, IsRefusedAsTheNodesRefuseIt) {
   const auto refusal = [this](const std::string& fabric, const std::string& model) {
-    try {
-      explain(fabric, model);
-    } catch (const std::exception& error) {
-      return std::string(error.what());
-    }
-    return std::string("(not refused)");
+    return test::refusalOf<std::exception>([&] { explain(fabric, model); });
   };
   EXPECT_EQ(refusal("wool", "magic").rfind(path_ + ": model[0]: 'magic' must be one of ", 0), 0u);
   EXPECT_EQ(refusal("linear", "fingers, tactile")

@@ -95,7 +95,7 @@ TEST(SetState, KeepsAttachedParticlesInTheirPlaces) {
             std::string::npos);
   EXPECT_EQ(simulation.state().positions, on_its_way.positions);
   simulation.release({kSmallTop});
-  EXPECT_EQ(refusal({Vector3d::Zero(), Vector3d(0.0, -0.1, 1.0)}, {}), "(not refused)");
+  EXPECT_EQ(refusal({Vector3d::Zero(), Vector3d(0.0, -0.1, 1.0)}, {}), test::kNotRefused);
   EXPECT_EQ(simulation.state().positions[kSmallTop], Vector3d(0.0, -0.1, 1.0));
 }
 

@@ -126,7 +126,7 @@ TEST(Drape, RefusesWhatIsNoTest) {
   EXPECT_NE(refusal(wool(), test).find("support_radius"), std::string::npos);
   material::Fabric limp = wool();
   limp.bending.reset();
-  EXPECT_NE(refusal(limp, coarse()), "(not refused)");
+  EXPECT_NE(refusal(limp, coarse()), test::kNotRefused);
 }
 
 TEST(DrapeCoefficient, IsTheShareOfTheRingInTheShadow) {

@@ -152,7 +152,7 @@ TEST(ArrayLimits, RefusalsNameLimitValueAndWhatIsAllowed) {
   const auto refusal_of = [](const ArrayLimits& limits) {
     return test::refusalOf([&] { requireSound(limits); });
   };
-  EXPECT_EQ(refusal_of({}), "(not refused)");
+  EXPECT_EQ(refusal_of({}), test::kNotRefused);
   EXPECT_EQ(refusal_of({0.0, 400.0, 1e-4}),
             "the lowest frequency of the array is 0: allowed are finite numbers > 0 Hz");
   EXPECT_EQ(refusal_of({20.0, 20.0, 1e-4}),

@@ -19,8 +19,8 @@ TEST(HeightField, IsRowByRow) {
 }
 
 TEST(HeightField, OfTheSmallestAndOfTheLargestSideIsSound) {
-  EXPECT_EQ(refusalOf(flatField(2, 2)), "(not refused)");
-  EXPECT_EQ(refusalOf(flatField(kMaxSamples, 2)), "(not refused)");
+  EXPECT_EQ(refusalOf(flatField(2, 2)), test::kNotRefused);
+  EXPECT_EQ(refusalOf(flatField(kMaxSamples, 2)), test::kNotRefused);
 }
 
 TEST(HeightField, RefusalsNameFieldValueAndWhatIsAllowed) {

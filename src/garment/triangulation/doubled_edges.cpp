@@ -31,13 +31,9 @@ void split(mesh::ClothMesh& mesh, int a, int b) {
 }  // namespace
 
 void splitDoubledEdges(const std::vector<mesh::Seam>& seams, std::vector<PanelMesh>& panels) {
-  std::vector<int> first;  // particle, of every panel
-  int particles = 0;
-  for (const PanelMesh& panel : panels) {
-    first.push_back(particles);
-    particles += static_cast<int>(panel.mesh.rest_coordinates.size());
-  }
-  base::DisjointSets together(particles);
+  const std::vector<int> first = firstParticles(panels);
+  if (panels.empty()) return;
+  base::DisjointSets together(first.back() + panels.back().mesh.rest_coordinates.size());
   for (const mesh::Seam& seam : seams) {
     for (const auto& [a, b] : mesh::partners(seam)) together.join(a, b);
   }

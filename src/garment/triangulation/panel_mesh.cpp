@@ -247,14 +247,25 @@ PanelMesh triangulate(const Panel& panel, double edge_length) {
   return triangulate(panel, edge_length, kCurveTolerance * edge_length);
 }
 
+std::vector<int> firstParticles(const std::vector<PanelMesh>& panels) {
+  std::vector<int> first;
+  int particles = 0;
+  for (const PanelMesh& panel : panels) {
+    first.push_back(particles);
+    particles += static_cast<int>(panel.mesh.rest_coordinates.size());
+  }
+  return first;
+}
+
 mesh::ClothMesh joined(const std::vector<PanelMesh>& panels) {
   mesh::ClothMesh all;
   const auto add = [](const auto& from, auto& to) {
     to.insert(to.end(), from.begin(), from.end());
   };
+  const std::vector<int> firsts = firstParticles(panels);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const mesh::ClothMesh& panel = panels[p].mesh;
-    const int first = static_cast<int>(all.rest_coordinates.size());
+    const int first = firsts[p];
     all.panels.push_back({0, 0.0});
     add(panel.rest_coordinates, all.rest_coordinates);
     add(panel.initial_positions, all.initial_positions);

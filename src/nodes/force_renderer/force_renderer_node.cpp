@@ -35,8 +35,10 @@ constexpr double kMarkerPeriod = 1.0 / 30.0;  // s
 constexpr std::uint32_t kContactQueue = 5;    // messages, for a subscriber that is slow for 20 ms
 constexpr int kTicksPerContact = 4;
 constexpr std::uint32_t kTransformQueue = 100;  // messages
-/// In which the loop commands no force before it ends.
-constexpr Time kLastCommands = std::chrono::milliseconds(5);
+constexpr int kLastCommands = 5;                // of no force, before the loop ends
+/// For them, of a machine whose kernel holds real-time threads back.
+constexpr Time kEndPatience = std::chrono::milliseconds(200);
+constexpr Time kEndLook = std::chrono::milliseconds(1);
 /// Of a transform whose stamp is to be believed.
 constexpr Time kOldestTransform = std::chrono::milliseconds(20);
 
@@ -113,7 +115,10 @@ ForceRendererNode::~ForceRendererNode() { stop(); }
 
 void ForceRendererNode::stop() {
   if (stopping_.exchange(true)) return;  // from now on the loop commands no force
-  std::this_thread::sleep_for(kLastCommands);
+  const Time end = realtime::steadyNow() + kEndPatience;
+  while (last_commands_ < kLastCommands && realtime::steadyNow() < end) {
+    std::this_thread::sleep_for(kEndLook);
+  }
   fingertip_subscriber_.shutdown();
   for (FingerTopics& topics : fingers_.values) {
     topics.pose.shutdown();
@@ -284,7 +289,9 @@ void ForceRendererNode::work(Time now) {
   }
   loop_.tick(now);
   const ros::Time stamp = ros::Time::now();
+  const bool is_last = stopping_;  // looked at before: they are all of no force then
   publishForces(stamp);
+  if (is_last) ++last_commands_;
   for (const Finger finger : kFingers) {
     if (contact_due) publishContact(finger, stamp);
   }

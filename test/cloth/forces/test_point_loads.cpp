@@ -306,8 +306,8 @@ TEST(PointLoads, AreRefusedByIndexAndReasonAndThenTheOldOnesStay) {
   const std::string message = refusal(cloth, std::vector<PointLoad>(PointLoads::kMax + 1, load(0)));
   EXPECT_EQ(message, "there are 4097 point loads; allowed are 4096");
   EXPECT_EQ(loadsOf(cloth).size(), 1u);
-  EXPECT_EQ(refusal(cloth, std::vector<PointLoad>(PointLoads::kMax, load(0))), "(not refused)");
-  EXPECT_EQ(refusal(cloth, {}), "(not refused)");
+  EXPECT_EQ(refusal(cloth, std::vector<PointLoad>(PointLoads::kMax, load(0))), test::kNotRefused);
+  EXPECT_EQ(refusal(cloth, {}), test::kNotRefused);
   EXPECT_TRUE(loadsOf(cloth).empty());
 }
 
@@ -315,7 +315,7 @@ TEST(PointLoads, AreRefusedWhereNoneAreModelled) {
   Cloth cloth(square(4), linearFabric(), {});
   EXPECT_EQ(refusal(cloth, {load(0)}),
             "the cloth is modelled without point loads; none can be set");
-  EXPECT_EQ(refusal(cloth, {}), "(not refused)");
+  EXPECT_EQ(refusal(cloth, {}), test::kNotRefused);
   EXPECT_EQ(cloth.forces().find<PointLoads>(), nullptr);
 }
 

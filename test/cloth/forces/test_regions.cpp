@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "../../refusal.h"
 #include "derivatives.h"
 #include "fixtures.h"
 #include "force_fixtures.h"
@@ -147,14 +148,11 @@ TEST(Regions, ThatWhatIsModelledDoesNotKnowAreRefused) {
   fabric.friction = 0.3;
   fabric.compression = {1e-3, material::StrainStressCurve::linear(1e4)};
   const auto refusal = [&](const ModelledEffects& effects, std::size_t fabrics) {
-    try {
+    return test::refusalOf([&] {
       Cloth(divided(square(4), 0.05), std::vector<material::Fabric>(fabrics, fabric), effects);
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string("(not refused)");
+    });
   };
-  EXPECT_EQ(refusal({}, 2), "(not refused)");
+  EXPECT_EQ(refusal({}, 2), test::kNotRefused);
   EXPECT_NE(refusal({}, 1).find("is of fabric 1; there are 1"), std::string::npos);
   ModelledEffects springs, hysteresis;
   springs.elasticity = Elasticity::kMassSpring;

@@ -174,7 +174,7 @@ TEST(SeamBending, RefusesHingesThatAreNone) {
   const auto refusal = [&](const mesh::ClothMesh& mesh, double rigidity) -> std::string {
     return test::refusalOf([&] { SeamBending(mesh, {{rigidity, 1e-5}}); });
   };
-  EXPECT_EQ(refusal(made.mesh, 1e-5), "(not refused)");
+  EXPECT_EQ(refusal(made.mesh, 1e-5), test::kNotRefused);
   EXPECT_NE(refusal(made.mesh, -1e-5).find("-1e-05 N.m; it must be finite and at least 0"),
             std::string::npos);
   mesh::ClothMesh mesh = made.mesh;

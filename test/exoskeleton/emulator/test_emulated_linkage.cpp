@@ -149,7 +149,7 @@ std::string chainOf(int joints, const std::string& type, const std::string& mass
 }
 
 TEST(EmulatedLinkage, RefusesAChainThatIsNotAFinger) {
-  EXPECT_EQ(refusalOf(chainOf(4, "revolute", "0.01")), "(not refused)");
+  EXPECT_EQ(refusalOf(chainOf(4, "revolute", "0.01")), test::kNotRefused);
   EXPECT_EQ(refusalOf("nonsense"), "index: the URDF is not valid");
   EXPECT_EQ(refusalOf(R"(<robot name="r"><link name="hand_base"/></robot>)"),
             "index: the URDF has no link index_tip");

@@ -187,7 +187,7 @@ void expectReadOrRefused(const std::string& text,
   for (int seed = 0; seed < 200; ++seed) {
     const std::string malformed = malformedText(text, 5000 + seed);
     const std::string refusal = refusalOf([&] { read(malformed); });
-    if (refusal == "(not refused)") continue;
+    if (refusal == test::kNotRefused) continue;
     EXPECT_GT(refusal.size(), 15u) << "seed " << seed;
     ++refused;
   }

@@ -219,7 +219,7 @@ TEST(ClothSurface, RefusesMeshesThatDoNotFitTogether) {
   mesh.fabric_files = {"name: another"};
   EXPECT_NE(refusalOf(mesh, ColourBy::kStress).find("fabric 'linear' in cloth/mesh"),
             std::string::npos);
-  EXPECT_EQ(refusalOf(mesh, ColourBy::kStrain), "(not refused)") << "which needs no fabric";
+  EXPECT_EQ(refusalOf(mesh, ColourBy::kStrain), test::kNotRefused) << "which needs no fabric";
 }
 
 TEST(ClothSurface, RefusesStatesThatCannotBeDrawn) {

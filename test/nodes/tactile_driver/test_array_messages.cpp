@@ -41,7 +41,7 @@ TEST(ArrayMessages, RefusesWhatNoAmplitudeCanBeByFieldAndContactor) {
   haptex::Tactile other = message();
   other.header.frame_id = "index_tactile";
   EXPECT_NE(refusal(other).find("thumb_tactile"), std::string::npos);
-  EXPECT_EQ(refusal(message()), "(not refused)");
+  EXPECT_EQ(refusal(message()), test::kNotRefused);
 }
 
 }  // namespace

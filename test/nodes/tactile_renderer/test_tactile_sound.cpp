@@ -202,8 +202,8 @@ TEST(RecordedSteps, SayWhatIsInTheBagIfTheTopicIsNotClear) {
   EXPECT_EQ(refusal("thumb"), bag +
                                   ": 0 topics end in thumb/tactile, one is needed; of "
                                   "haptex/Tactile there is /haptex/index/tactile");
-  EXPECT_NE(refusal("dex"), "(not refused)");  // a finger is a whole name
-  EXPECT_EQ(refusal("index"), "(not refused)");
+  EXPECT_NE(refusal("dex"), test::kNotRefused);  // a finger is a whole name
+  EXPECT_EQ(refusal("index"), test::kNotRefused);
   record(bag, "/other/index/tactile", {0.0}, rosbag::bagmode::Append);
   EXPECT_EQ(refusal("index"), bag +
                                   ": 2 topics end in index/tactile, one is needed; of "

@@ -60,10 +60,10 @@ TEST(Calibration, RefusalsNameKeyValueAndWhatIsAllowed) {
     EXPECT_NE(refused.find("index.full_displacement_40"), std::string::npos) << value << refused;
   }
   EXPECT_NE(refusalOf(fileWith("1001")).find("from 0.01 to 1000"), std::string::npos);
-  EXPECT_NE(refusalOf(fileWith(list("80", 23))), "(not refused)");
+  EXPECT_NE(refusalOf(fileWith(list("80", 23))), test::kNotRefused);
   EXPECT_NE(refusalOf(fileWith("80", "-1")).find("index.largest_displacement"), std::string::npos);
-  EXPECT_NE(refusalOf("index: 3\n"), "(not refused)");
-  EXPECT_NE(refusalOf("source: a test\nindex: 3\nthumb: 4\n"), "(not refused)");
+  EXPECT_NE(refusalOf("index: 3\n"), test::kNotRefused);
+  EXPECT_NE(refusalOf("source: a test\nindex: 3\nthumb: 4\n"), test::kNotRefused);
 }
 
 TEST(Calibration, DriveIsTheInverseOfWhatContactorsDo) {

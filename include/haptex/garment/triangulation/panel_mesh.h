@@ -68,5 +68,7 @@ PanelMesh triangulate(const Panel& panel, double edge_length);
 
 /// Some panels as one mesh, one after the other, with no particle in common; all of fabric 0.
 mesh::ClothMesh joined(const std::vector<PanelMesh>& panels);
+/// The number of every panel's first particle there.
+std::vector<int> firstParticles(const std::vector<PanelMesh>& panels);
 
 }  // namespace haptex::garment

@@ -172,6 +172,7 @@ class ForceRendererNode {
   ros::SteadyTimer diagnostics_timer_;
 
   std::atomic<bool> stopping_{false};
+  std::atomic<int> last_commands_{0};  ///< of no force, since it is stopping
   PatchSupplier supplier_;
   realtime::PeriodicThread loop_thread_;  // last: it uses the members above
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "haptex/base/workload.h"
+#include "haptex/cloth/forces/fasteners/place_in.h"
 #include "haptex/kes/equilibrium.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/material/linear_fabric.h"
@@ -41,10 +42,9 @@ struct FastenedPieces {
 
 /// @param rest of the place in a piece @param first particle of the piece
 cloth::ClothPlace placeAt(const mesh::ClothMesh& piece, const Eigen::Vector2d& rest, int first) {
-  const mesh::RestPlace place = mesh::findRestPlace(piece, rest).value();
-  const auto& [a, b, c] = piece.triangles[place.triangle];
-  return {{a + first, b + first, c + first},
-          {place.weights[0], place.weights[1], place.weights[2]}};
+  cloth::ClothPlace place = cloth::placeIn(piece, mesh::findRestPlace(piece, rest).value());
+  for (int& particle : place.particles) particle += first;
+  return place;
 }
 
 /// The frame clamp carries the upper edge of the second piece. The places start as far apart as the
