@@ -72,10 +72,14 @@ void IndirectRows::operator()(int texel, float* values) const {
 
 Btf makeBtf(const tactile::FaceRelief& relief, const material::Look& look, const BtfSize& size) {
   requireSound(size.compression);
-  const Interreflection light(ReliefSurface(relief, size.columns, size.rows), look);
+  return makeBtf(Interreflection(ReliefSurface(relief, size.columns, size.rows), look),
+                 size.compression);
+}
+
+Btf makeBtf(const Interreflection& light, const Compression& compression) {
   CompressedRows indirect =
-      compressRows(light.surface().texels(), Btf::kColumns, IndirectRows(light), size.compression);
-  return Btf(light.surface(), look, std::move(indirect));
+      compressRows(light.surface().texels(), Btf::kColumns, IndirectRows(light), compression);
+  return Btf(light.surface(), light.reflectance().look(), std::move(indirect));
 }
 
 }  // namespace haptex::appearance

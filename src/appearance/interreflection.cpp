@@ -11,8 +11,16 @@ namespace {
 using Eigen::Vector3d;
 using Matrix = Interreflection::Matrix;
 
-constexpr int kStrata = 10;
-static_assert(kStrata * kStrata == Interreflection::kRays);
+// Rays from a texel: the square of as many strata. What few rays meet of a highlight is the noisier
+// the more light it has and the narrower it is.
+constexpr int kFewestStrata = 10, kMostStrata = 20;
+constexpr double kStrataOfGloss = 20.0;  // by gloss over width
+
+int strataFor(const material::Look& look) {
+  const double strata = std::round(kStrataOfGloss * look.gloss / look.width);
+  return static_cast<int>(std::clamp<double>(strata, kFewestStrata, kMostStrata));
+}
+
 constexpr int kMostReflections = 200;
 constexpr float kSmallest = 1e-5f;  // of an irradiance of 1: what later reflections would add
 
@@ -23,14 +31,14 @@ Eigen::Array<float, 1, Eigen::Dynamic> repeated(const Vector3d& channels, std::s
   return channels.cast<float>().transpose().replicate(1, lights).array();
 }
 
-/// Directions by the cosine to z, one in the middle of each of 10 x 10 parts of equal weight.
-std::vector<Vector3d> cosineRays() {
+/// Directions by the cosine to z, one in the middle of each of strata^2 parts of equal weight.
+std::vector<Vector3d> cosineRays(int strata) {
   std::vector<Vector3d> rays;
-  for (int i = 0; i < kStrata; ++i) {
-    for (int j = 0; j < kStrata; ++j) {
-      const double square = (i + 0.5) / kStrata, radius = std::sqrt(square);
+  for (int i = 0; i < strata; ++i) {
+    for (int j = 0; j < strata; ++j) {
+      const double square = (i + 0.5) / strata, radius = std::sqrt(square);
       // Each ring is turned against the one before, or rays of all would lie one above the other.
-      const double turn = 2.0 * M_PI * (j + 0.618034 * i) / kStrata;
+      const double turn = 2.0 * M_PI * (j + 0.618034 * i) / strata;
       rays.push_back({radius * std::cos(turn), radius * std::sin(turn), std::sqrt(1.0 - square)});
     }
   }
@@ -58,13 +66,13 @@ Vector3d raised(const Vector3d& view, const Vector3d& normal) {
 }  // namespace
 
 Interreflection::Interreflection(const ReliefSurface& surface, const material::Look& look)
-    : surface_(surface), reflectance_(look), rays_(cosineRays()) {
+    : surface_(surface), reflectance_(look), rays_(cosineRays(strataFor(look))) {
   for (int texel = 0; texel < surface_.texels(); ++texel) {
     centres_.push_back(surface_.centreOf(texel));
   }
-  met_.reserve(static_cast<std::size_t>(surface_.texels()) * kRays);
+  met_.reserve(static_cast<std::size_t>(surface_.texels()) * rays());
   for (int texel = 0; texel < surface_.texels(); ++texel) {
-    for (int ray = 0; ray < kRays; ++ray) {
+    for (int ray = 0; ray < rays(); ++ray) {
       const auto met = surface_.met(centres_[texel], rayOf(texel, ray));
       met_.push_back(met ? met->texel : -1);
     }
@@ -83,8 +91,8 @@ Vector3d Interreflection::rayOf(int texel, int ray) const {
 }
 
 double Interreflection::openShare(int texel) const {
-  const auto first = met_.begin() + static_cast<std::ptrdiff_t>(texel) * kRays;
-  return static_cast<double>(std::count(first, first + kRays, -1)) / kRays;
+  const auto first = met_.begin() + static_cast<std::ptrdiff_t>(texel) * rays();
+  return static_cast<double>(std::count(first, first + rays(), -1)) / rays();
 }
 
 Matrix Interreflection::arriving(const std::vector<Vector3d>& directions) const {
@@ -115,13 +123,13 @@ Interreflection::Light Interreflection::solve(const std::vector<Vector3d>& direc
   light.radiosity = sent;
   for (int i = 0; i < kMostReflections && columns > 0 && sent.maxCoeff() > kSmallest; ++i) {
     for (int texel = 0; texel < surface_.texels(); ++texel) {
-      const int* const met = met_.data() + static_cast<std::ptrdiff_t>(texel) * kRays;
+      const int* const met = met_.data() + static_cast<std::ptrdiff_t>(texel) * rays();
       auto row = gathered.row(texel);
       row.setZero();
-      for (int ray = 0; ray < kRays; ++ray) {
+      for (int ray = 0; ray < rays(); ++ray) {
         if (met[ray] >= 0) row += sent.row(met[ray]);
       }
-      row /= static_cast<float>(kRays);
+      row /= static_cast<float>(rays());
     }
     reflect(gathered);
     light.radiosity += gathered;
@@ -155,8 +163,8 @@ Matrix Interreflection::send(int texel, const Light& light,
                              const std::vector<Vector3d>& views) const {
   std::vector<int> met;
   std::vector<Vector3d> leaving, meeting;
-  for (int ray = 0; ray < kRays; ++ray) {
-    const int other = met_[static_cast<std::size_t>(texel) * kRays + ray];
+  for (int ray = 0; ray < rays(); ++ray) {
+    const int other = met_[static_cast<std::size_t>(texel) * rays() + ray];
     (other < 0 ? leaving : meeting).push_back(rayOf(texel, ray));
     if (other >= 0) met.push_back(other);
   }
@@ -165,7 +173,7 @@ Matrix Interreflection::send(int texel, const Light& light,
   // The diffuse part is the same for all views.
   const material::Look& look = reflectance_.look();
   const auto& colour = surface_.warpOnTop()[texel] ? look.warp : look.weft;
-  const Vector3d diffuse = (1.0 - look.gloss) / kRays * Vector3d(colour[0], colour[1], colour[2]);
+  const Vector3d diffuse = (1.0 - look.gloss) / rays() * Vector3d(colour[0], colour[1], colour[2]);
   const Eigen::RowVectorXf even =
       (radiance.colwise().sum().array() * repeated(diffuse, light.directions.size())).matrix();
   Matrix sent = even.replicate(views.size(), 1);

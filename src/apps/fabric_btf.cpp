@@ -36,18 +36,20 @@ void make(const std::string& name, const std::string& path) {
   }
   const tactile::FaceRelief relief = tactile::faceRelief(*fabric.surface);
   const appearance::ReliefSurface surface(relief, kSize.columns, kSize.rows);
-  const appearance::Btf btf = appearance::makeBtf(relief, *fabric.look, kSize);
+  const appearance::Interreflection light(surface, *fabric.look);
+  const appearance::Btf btf = appearance::makeBtf(light, kSize.compression);
   std::cout << "file: " << appearance::writeBtf(btf, path) << " bytes, " << kSize.columns << " x "
             << kSize.rows << " texels" << std::endl;
-  const appearance::Difference error = appearance::unsampledError(
-      btf, appearance::Interreflection(surface, *fabric.look), {48, 32, 1, 1, kSeed});
+  const appearance::Difference error =
+      appearance::unsampledError(btf, light, {48, 32, 1, 1, kSeed});
   std::cout << "error: " << error.of_mean << " of the mean radiance, " << error.of_root_square
             << " of its root mean square" << std::endl;
   std::cout << "reciprocity: " << appearance::reciprocityError(btf, {192, 32, 1, 1, kSeed})
             << std::endl;
   material::Look white = *fabric.look;
   white.warp = white.weft = {1.0, 1.0, 1.0};
-  const appearance::Btf of_white = appearance::makeBtf(relief, white, kSize);
+  const appearance::Btf of_white =
+      appearance::makeBtf(appearance::Interreflection(surface, white), kSize.compression);
   std::cout << "furnace: " << appearance::furnaceError(of_white, {4, 1, 96, 6, kSeed}) << std::endl;
 }
 

@@ -20,6 +20,15 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr int kMostLanes = 8;
+constexpr int kAlong = 1, kAgainst = 2;  // marks of what hides a particle
+
+// Cells along the sides of the grid, in parts of those that give each particle one. A register
+// takes what lies near along a row, so that few long rows with narrow cells are read least often.
+constexpr double kRowShare = 0.5, kColumnShare = 2.0;
+
+int cells(double share, std::size_t particles) {
+  return std::max(1, static_cast<int>(share * std::sqrt(static_cast<double>(particles))));
+}
 
 // Of a register: four numbers with the baseline, eight with AVX2. The results are the same: none of
 // the instruction sets fuses a multiplication with a sum here.
@@ -58,19 +67,16 @@ SkyOcclusion::SkyOcclusion(std::vector<std::array<int, 3>> triangles, std::size_
       triangles_(std::move(triangles)),
       points_(particles),
       normals_(particles),
-      side_(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(particles))))),
-      x_(particles),
-      y_(particles),
-      z_(particles),
-      column_(particles),
-      row_(particles),
-      begin_(static_cast<std::size_t>(side_) * side_ + 1),
-      order_(particles + kMostLanes - 1),
-      sorted_x_(particles + kMostLanes - 1, std::numeric_limits<float>::quiet_NaN()),
+      columns_(cells(kColumnShare, particles)),
+      rows_(cells(kRowShare, particles)),
+      places_(particles),
+      cell_(particles),
+      begin_(static_cast<std::size_t>(columns_) * rows_ + 1),
+      order_(particles),
+      sorted_x_(particles + kMostLanes, std::numeric_limits<float>::quiet_NaN()),
       sorted_y_(sorted_x_),
       sorted_z_(sorted_x_),
-      hidden_along_(particles + kMostLanes - 1),
-      hidden_against_(particles + kMostLanes - 1),
+      hidden_(particles + kMostLanes),
       total_(particles),
       sums_(particles),
       shares_(particles) {
@@ -120,82 +126,101 @@ void SkyOcclusion::sumNormals() {
 }
 
 void SkyOcclusion::project(const Vector3f& direction) {
+  using Floats = Register<4>::Floats;  // x, y, z, unused
   const Vector3f across = direction.unitOrthogonal(), up = direction.cross(across);
-  float right = -std::numeric_limits<float>::infinity(), high = right;
-  left_ = low_ = std::numeric_limits<float>::infinity();
+  const Floats by_x{across.x(), up.x(), direction.x(), 0.0f};
+  const Floats by_y{across.y(), up.y(), direction.y(), 0.0f};
+  const Floats by_z{across.z(), up.z(), direction.z(), 0.0f};
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  Floats least{kFar, kFar, kFar, kFar}, most = -least;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    x_[i] = across.dot(points_[i]);
-    y_[i] = up.dot(points_[i]);
-    z_[i] = direction.dot(points_[i]);
-    left_ = std::min(left_, x_[i]);
-    right = std::max(right, x_[i]);
-    low_ = std::min(low_, y_[i]);
-    high = std::max(high, y_[i]);
+    const Vector3f& point = points_[i];
+    const Floats place = by_x * point.x() + by_y * point.y() + by_z * point.z();
+    std::memcpy(&places_[i], &place, sizeof(place));
+    least = place < least ? place : least;
+    most = place > most ? place : most;
   }
-  const float cells = static_cast<float>(side_) * (1.0f - 1e-6f);  // the last place is in the last
-  columns_per_metre_ = right > left_ ? cells / (right - left_) : 0.0f;
-  rows_per_metre_ = high > low_ ? cells / (high - low_) : 0.0f;
+  left_ = least[0];
+  low_ = least[1];
+  const float right = most[0], high = most[1];
+  constexpr float kShorter = 1.0f - 1e-6f;  // the last place is in the last cell
+  const float columns = kShorter * static_cast<float>(columns_);
+  const float rows = kShorter * static_cast<float>(rows_);
+  columns_per_metre_ = right > left_ ? columns / (right - left_) : 0.0f;
+  rows_per_metre_ = high > low_ ? rows / (high - low_) : 0.0f;
 }
 
 /// By counting, so that the cells of a row lie one after the other.
 void SkyOcclusion::sort() {
   std::fill(begin_.begin(), begin_.end(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    column_[i] = static_cast<int>((x_[i] - left_) * columns_per_metre_);
-    row_[i] = static_cast<int>((y_[i] - low_) * rows_per_metre_);
-    ++begin_[row_[i] * side_ + column_[i] + 1];
+    const int column = static_cast<int>((places_[i].x - left_) * columns_per_metre_);
+    const int row = static_cast<int>((places_[i].y - low_) * rows_per_metre_);
+    cell_[i] = row * columns_ + column;
+    ++begin_[cell_[i] + 1];
   }
-  for (std::size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] += begin_[cell - 1];
+  int sum = 0;
+  for (std::size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] = sum += begin_[cell];
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const int place = begin_[row_[i] * side_ + column_[i]]++;
+    const int place = begin_[cell_[i]]++;
     order_[place] = static_cast<int>(i);
-    sorted_x_[place] = x_[i];
-    sorted_y_[place] = y_[i];
-    sorted_z_[place] = z_[i];
+    sorted_x_[place] = places_[i].x;
+    sorted_y_[place] = places_[i].y;
+    sorted_z_[place] = places_[i].z;
   }
   // Each has moved on to the next one's.
   std::copy_backward(begin_.begin(), begin_.end() - 1, begin_.end());
   begin_[0] = 0;
 }
 
+/// Hardly a branch depends on what is found: with one for every hit half of the time went into
+/// those that the processor had foretold wrongly.
 template <int kLanes>
 [[gnu::always_inline]] inline void SkyOcclusion::coverWith(const std::array<int, 3>& triangle) {
   using Floats = typename Register<kLanes>::Floats;
   using Integers = typename Register<kLanes>::Integers;
-  const auto [a, b, c] = triangle;
-  const float xa = x_[a], xb = x_[b], xc = x_[c], ya = y_[a], yb = y_[b], yc = y_[c];
+  using Corner = Register<4>::Floats;  // x, y, z, unused
+  Corner a, b, c;
+  load(&places_[triangle[0]], a);
+  load(&places_[triangle[1]], b);
+  load(&places_[triangle[2]], c);
+  const float xa = a[0], xb = b[0], xc = c[0], ya = a[1], yb = b[1], yc = c[1];
   const float area = (xb - xa) * (yc - ya) - (yb - ya) * (xc - xa);
   if (area == 0.0f) return;
-  const auto [first_column, last_column] = std::minmax({column_[a], column_[b], column_[c]});
-  const auto [first_row, last_row] = std::minmax({row_[a], row_[b], row_[c]});
-  // Twice the areas of the triangles that a place makes with the edges, counter-clockwise.
+  Corner least = a < b ? a : b, most = a < b ? b : a;
+  least = c < least ? c : least;
+  most = c > most ? c : most;
+  const Corner origin{left_, low_, 0.0f, 0.0f};
+  const Corner cells_per_metre{columns_per_metre_, rows_per_metre_, 0.0f, 0.0f};
+  using Cell = Register<4>::Integers;  // column, row, unused
+  const auto first = __builtin_convertvector((least - origin) * cells_per_metre, Cell);
+  const auto last = __builtin_convertvector((most - origin) * cells_per_metre, Cell);
+  // Twice the areas of the triangles that a place makes with the edges, counter-clockwise. They are
+  // exactly 0 at the triangle's own corners, which it does not hide.
   const float sign = area > 0.0f ? 1.0f : -1.0f;
   const float abx = sign * (xb - xa), aby = sign * (yb - ya), bcx = sign * (xc - xb),
               bcy = sign * (yc - yb), cax = sign * (xa - xc), cay = sign * (ya - yc);
-  for (int row = first_row; row <= last_row; ++row) {
-    const int end = begin_[row * side_ + last_column + 1];
+  const int width = last[0] - first[0] + 1;
+  const int last_row = last[1] * columns_ + first[0];
+  for (int cell = first[1] * columns_ + first[0]; cell <= last_row; cell += columns_) {
+    const int end = begin_[cell + width];
+    int i = begin_[cell];
     // Those of other cells that a register holds besides are judged as well.
-    for (int i = begin_[row * side_ + first_column]; i < end; i += kLanes) {
+    do {
       Floats x, y, z;
       load(&sorted_x_[i], x);
       load(&sorted_y_[i], y);
+      load(&sorted_z_[i], z);
       const Floats to_c = abx * (y - ya) - aby * (x - xa);
       const Floats to_a = bcx * (y - yb) - bcy * (x - xb);
       const Floats to_b = cax * (y - yc) - cay * (x - xc);
       const Integers inside = (to_c > 0.0f) & (to_a > 0.0f) & (to_b > 0.0f);
-      std::int64_t bits[kLanes / 2], any = 0;
-      std::memcpy(bits, &inside, sizeof(bits));
-      for (const std::int64_t pair : bits) any |= pair;
-      if (any == 0) continue;
-      Integers particle;
-      load(&order_[i], particle);
-      load(&sorted_z_[i], z);
-      const Integers other = inside & (particle != a) & (particle != b) & (particle != c);
-      const Floats weighted = to_a * z_[a] + to_b * z_[b] + to_c * z_[c];
+      const Floats weighted = to_a * a[2] + to_b * b[2] + to_c * c[2];
       const Floats level = (to_a + to_b + to_c) * z;
-      mark(other & (weighted > level), &hidden_along_[i]);
-      mark(other & (weighted <= level), &hidden_against_[i]);
-    }
+      const Integers side = (weighted > level) + kAgainst;  // a comparison is -1 where it holds
+      mark(inside & side, &hidden_[i]);
+      i += kLanes;
+    } while (i < end);
   }
 }
 
@@ -214,10 +239,10 @@ void SkyOcclusion::coverWithAvx2() { cover(); }  // never the best
 void SkyOcclusion::add(const Vector3f& direction) {
   for (std::size_t place = 0; place < points_.size(); ++place) {
     const int particle = order_[place];
-    const float along = normals_[particle].dot(direction), cosine = std::abs(along);
-    if (cosine < kHorizon) continue;
-    const float seen_along = hidden_along_[place] != 0 ? 0.0f : cosine;
-    const float seen_against = hidden_against_[place] != 0 ? 0.0f : cosine;
+    const float along = normals_[particle].dot(direction);
+    const float cosine = std::abs(along) < kHorizon ? 0.0f : std::abs(along);
+    const float seen_along = (hidden_[place] & kAlong) != 0 ? 0.0f : cosine;
+    const float seen_against = (hidden_[place] & kAgainst) != 0 ? 0.0f : cosine;
     total_[particle] += cosine;
     sums_[particle].front += along > 0.0f ? seen_along : seen_against;
     sums_[particle].back += along > 0.0f ? seen_against : seen_along;
@@ -232,8 +257,7 @@ const std::vector<SkyShare>& SkyOcclusion::compute(const std::vector<Vector3d>& 
   for (const Vector3f& direction : directions_) {
     project(direction);
     sort();
-    std::fill(hidden_along_.begin(), hidden_along_.end(), 0);
-    std::fill(hidden_against_.begin(), hidden_against_.end(), 0);
+    std::fill(hidden_.begin(), hidden_.end(), 0);
     if (instruction_set_ == InstructionSet::kAvx2) {
       coverWithAvx2();
     } else {

@@ -22,9 +22,8 @@ class Btf {
   /// Of the stored matrix.
   static constexpr int columnOf(int view, int light) { return 3 * (kDirections * view + light); }
 
-  /// @param indirect row per texel: radiance by light from other texels, 1/sr, for an irradiance of
-  /// 1
-  ///   on the plane of the fabric
+  /// @param indirect row per texel: radiance by light from other texels, 1/sr, for an irradiance
+  ///   of 1 on the plane of the fabric
   /// @throws std::invalid_argument what Reflectance() throws, and if there is not a row for each
   ///   texel and a column for each pair and channel
   Btf(ReliefSurface surface, const material::Look& look, CompressedRows indirect);
@@ -74,6 +73,9 @@ struct BtfSize {
 
 /// @throws std::invalid_argument what ReliefSurface(), Reflectance() and compressRows() throw
 Btf makeBtf(const tactile::FaceRelief& relief, const material::Look& look, const BtfSize& size);
+/// Of light that is solved on its relief already. @throws std::invalid_argument what compressRows()
+///   throws
+Btf makeBtf(const Interreflection& light, const Compression& compression);
 
 /// What is stored, before it is compressed: rows of Btf::kColumns values for compressRows().
 class IndirectRows {

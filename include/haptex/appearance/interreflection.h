@@ -20,8 +20,6 @@ namespace haptex::appearance {
 /// can be turned round; on those between it is reflected diffusely, with the same albedo.
 class Interreflection {
  public:
-  static constexpr int kRays = 100;  ///< per texel
-
   using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   /// For lights with an irradiance of 1 perpendicular to each, row per texel.
@@ -35,6 +33,10 @@ class Interreflection {
 
   const ReliefSurface& surface() const { return surface_; }
   const Reflectance& reflectance() const { return reflectance_; }
+
+  /// From each texel: 100 while gloss is at most half of the width of the highlight, up to 400
+  /// where it is as much or more.
+  int rays() const { return static_cast<int>(rays_.size()); }
 
   /// Share of the rays of a texel that leave the relief.
   double openShare(int texel) const;

@@ -19,8 +19,7 @@ namespace haptex::appearance {
 class Reflectance {
  public:
   /// @throws std::invalid_argument naming gloss outside of 0 to 1, width of above 0 to 1, or a
-  /// colour
-  ///   outside of 0 to 1
+  ///   colour outside of 0 to 1
   explicit Reflectance(const material::Look& look);
 
   const material::Look& look() const { return look_; }

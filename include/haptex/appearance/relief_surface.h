@@ -19,12 +19,12 @@ class ReliefSurface {
   /// The whole relief, resampled: periodic cubic (Catmull-Rom) between its samples.
   /// @param columns, rows texels along weft and warp
   /// @throws std::invalid_argument what requireSound() throws for the heights, and naming columns
-  /// or
-  ///   rows out of kMinTexels to kMaxTexels, or a number of warp_on_top other than of heights
+  ///   or rows out of kMinTexels to kMaxTexels, or a number of warp_on_top other than of heights
   ReliefSurface(const tactile::FaceRelief& relief, int columns, int rows);
 
-  /// As it is stored. @param heights m, row by row, at the corner of each texel with the lowest x
-  ///   and y @param warp_on_top of each texel, in the same order
+  /// As it is stored.
+  /// @param heights m, row by row, at the corner of each texel with the lowest x and y
+  /// @param warp_on_top of each texel, in the same order
   /// @throws std::invalid_argument as above, and naming a size, height or number of heights
   ReliefSurface(int columns, int rows, const Eigen::Vector2d& size, std::vector<float> heights,
                 std::vector<bool> warp_on_top);

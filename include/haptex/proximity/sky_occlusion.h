@@ -45,6 +45,9 @@ class SkyOcclusion {
 
  private:
   using Numbers = std::vector<float>;
+  struct Place {
+    float x, y, z, unused;  // m: across a direction, and along it
+  };
 
   void readPositions(const std::vector<Eigen::Vector3d>& positions);
   void sumNormals();
@@ -60,16 +63,16 @@ class SkyOcclusion {
   std::vector<std::array<int, 3>> triangles_;
   std::vector<Eigen::Vector3f> directions_;
   std::vector<Eigen::Vector3f> points_, normals_;  // by particle: m, and of length 1 or 0
-  int side_;                                       // cells along a side of the grid
+  int columns_, rows_;                             // cells of the grid along x and y
 
-  // Along one direction. By particle: across it, and along it, m.
-  Numbers x_, y_, z_;
+  // Along one direction. By particle:
+  std::vector<Place> places_;
   float left_, low_, columns_per_metre_, rows_per_metre_;
-  std::vector<int> column_, row_;  // of its cell
+  std::vector<int> cell_;
   // By place in the order of cells, which are row by row: with some more that are nowhere.
   std::vector<int> begin_, order_;
   Numbers sorted_x_, sorted_y_, sorted_z_;
-  std::vector<int> hidden_along_, hidden_against_;  // 0: not
+  std::vector<int> hidden_;  // 1: along the direction, 2: against it
 
   std::vector<float> total_;  // by particle, cosines of all directions
   std::vector<SkyShare> sums_, shares_;
