@@ -10,6 +10,7 @@ from bag_report.bags import Refused
 
 ROWS, COLUMNS = 128, 256  # of a computed map, and at most of one that light is gathered from
 SUN_ELEVATION, SUN_AZIMUTH = np.radians([42.0, -42.0])
+SUN_WIDTH = 0.04  # of its distance: softens shadows as a thin haze does
 SUN_SHARE = 0.66  # of the light of a computed sky on what faces the sun
 SUN_COLOUR = np.array([1.0, 0.93, 0.82])
 ZENITH, HORIZON = np.array([0.52, 0.66, 0.90]), np.array([0.92, 0.96, 1.0])
@@ -132,12 +133,16 @@ def averaged(radiance, rows):
     return radiance.reshape(shape).mean(axis=(1, 3))
 
 
+def panorama(radiance):
+    """A map as a picture, or such a picture as a map: that turns to the right, azimuth to the left, and its middle is
+    what one looks at."""
+    return np.roll(radiance[:, ::-1], radiance.shape[1] // 2, axis=1)
+
+
 def environment_of(path):
     """What a picture shows all around, its middle column where +x is. What of it is as bright as the sun becomes
     one. @throws Refused, see read_hdr(), and if it is black"""
-    radiance = averaged(read_hdr(path), 2 * ROWS)
-    # A panorama turns to the right, azimuth to the left, and its middle is what one looks at.
-    radiance = np.roll(radiance[:, ::-1], radiance.shape[1] // 2, axis=1)
+    radiance = panorama(averaged(read_hdr(path), 2 * ROWS))
     vectors, angles = directions(*radiance.shape[:2])
     brightness = radiance.mean(axis=2)
     mean = float((brightness * angles).sum() / (4.0 * np.pi))

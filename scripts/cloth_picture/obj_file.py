@@ -12,6 +12,16 @@ class Surface:
         self.triangles = triangles  # particles, (triangle, 3)
         self.rest = rest  # m, (triangle, corner, 2) along weft and warp, or none
 
+    def normals(self):
+        """Of every particle: the mean of its triangles' by area."""
+        corners = self.positions[self.triangles]
+        areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals = np.zeros_like(self.positions)
+        for corner in range(3):
+            np.add.at(normals, self.triangles[:, corner], areas)
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        return np.where(lengths > 0.0, normals / np.maximum(lengths, 1e-30), [0.0, 0.0, 1.0])
+
 
 def numbers_of(words, count, what):
     if len(words) < count:

@@ -6,10 +6,9 @@ import numpy as np
 
 from bag_report.bags import Refused
 
-from . import povray
 from .camera import framing
-from .looks import FLOOR
-from .weave import Weave
+from .solids import floor
+from .weave import Cloth, Weave
 
 BELOW = 0.2  # of its height, is the floor below cloth that hangs alone
 NEAREST = 10.0  # %: so much of the cloth may be nearer than where it is as fine as the pixels
@@ -46,34 +45,13 @@ class Scene:
         return lowest if self.obstacles else lowest - BELOW * float(np.ptp(self.surface.positions[:, 2]))
 
 
-class Cloth:
-    """How the triangles of a scene are drawn: text, and files that it names."""
-
-    def __init__(self, scene, weaves):
-        self.declarations, self.files = '', {}
-        surface = scene.surface
-        texture_of, textures = np.empty(len(surface.triangles), dtype=int), []
-        for number, weave in enumerate(weaves):
-            mine = np.flatnonzero(scene.fabric_of == number)
-            if weave.relief is None or surface.rest is None:
-                texture_of[mine] = len(textures)
-                textures.append(weave.plain())
-                continue
-            name = f'Fabric_{number}'
-            self.declarations += weave.declaration(name)
-            self.files.update(weave.files(name))
-            texture_of[mine] = len(textures) + np.arange(len(mine))
-            textures += weave.textures(name, surface.positions[surface.triangles[mine]], surface.rest[mine])
-        self.text = self.declarations + povray.mesh(surface, textures, texture_of)
-
-
-def draw(scene, reliefs, camera, ground, size, environment, output):
-    """@param reliefs of the scene's fabrics, see relief_of() @param size pixels @param output path of a PNG"""
+def draw(renderer, scene, reliefs, camera, ground, size, environment, output):
+    """@param renderer the module povray or cycles @param reliefs of the scene's fabrics, see relief_of()
+    @param size pixels @param output path of a PNG"""
     pixel = float(np.percentile(camera.pixel(scene.surface.positions, size[0]), NEAREST))
-    cloth = Cloth(scene, [Weave(fabric, relief, pixel) for fabric, relief in zip(scene.fabrics, reliefs)])
-    objects = [cloth.text, povray.floor(ground, FLOOR),
-               *(solid.text() for solid in [*scene.obstacles, *scene.hand])]
-    povray.draw(camera, size, environment, objects, cloth.files, output)
+    cloth = Cloth(scene.surface, scene.fabric_of,
+                  [Weave(fabric, relief, pixel) for fabric, relief in zip(scene.fabrics, reliefs)])
+    renderer.draw(camera, size, environment, [cloth, floor(ground), *scene.obstacles, *scene.hand], output)
 
 
 def camera_for(scenes, size):

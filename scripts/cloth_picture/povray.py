@@ -2,17 +2,14 @@
 light is jittered, and one thread draws, as what radiosity gathers depends on which of several comes first."""
 import os
 import pathlib
-import shutil
-import subprocess
 import tempfile
 
 import numpy as np
 
-from bag_report.bags import Refused
+from . import programs
+from .environment import SUN_WIDTH, write_hdr
+from .weave import Cloth
 
-from .environment import write_hdr
-
-SUN_WIDTH = 0.04  # of its distance: softens shadows as a thin haze does
 SUN_SIDE = 4  # lights along a side of the sun, where a shadow's edge asks for all
 
 HEADER = '''#version 3.7;
@@ -49,28 +46,12 @@ def plain_texture(look):
     return f'texture {{ pigment {{ rgb {vector(look.warp)} }} {finish_of(look)} }}'
 
 
-def normals_of(surface):
-    """Of every particle: the mean of its triangles' by area."""
-    corners = surface.positions[surface.triangles]
-    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.zeros_like(surface.positions)
-    for corner in range(3):
-        np.add.at(normals, surface.triangles[:, corner], areas)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.where(lengths > 0.0, normals / np.maximum(lengths, 1e-30), [0.0, 0.0, 1.0])
-
-
 def mesh(surface, textures, texture_of):
     """@param textures texts @param texture_of triangles, which of them"""
-    normals = normals_of(surface)
     faces = [f'{vector(triangle)},{number}' for triangle, number in zip(surface.triangles, texture_of)]
     return ('mesh2 {\n' + items('vertex_vectors', [vector(row) for row in surface.positions])
-            + items('normal_vectors', [vector(row) for row in normals])
+            + items('normal_vectors', [vector(row) for row in surface.normals()])
             + items('texture_list', textures) + items('face_indices', faces) + '}\n')
-
-
-def body(surface, look):
-    return mesh(surface, [plain_texture(look)], np.zeros(len(surface.triangles), dtype=int))
 
 
 def matrix_of(rows):
@@ -78,25 +59,78 @@ def matrix_of(rows):
     return f'matrix <{",".join(f"{value:.8g}" for value in np.ravel(rows))}>'
 
 
-def shape(kind, sizes, pose, look):
-    """@param kind sphere (radius), box (whole edge lengths) or capsule and cylinder (radius, length), in its
-    own axes, along z @param pose 4 x 4, from these into the world"""
-    if kind == 'box':
+def netpbm(samples):
+    """A picture of 16 bits without gamma. @param samples 0 to 1, with or without colours"""
+    kind = b'P6' if samples.ndim == 3 else b'P5'
+    return kind + b'\n%d %d\n65535\n' % samples.shape[1::-1] + np.round(65535.0 * samples).astype('>u2').tobytes()
+
+
+def weave_files(weave, name):
+    """Pictures by the names that weave_declaration() uses."""
+    heights = weave.relief.heights
+    lifted = (heights - heights.min()) / max(np.ptp(heights), 1e-12)
+    return {f'{name}.pgm': netpbm(lifted), f'{name}.ppm': netpbm(weave.colours())}
+
+
+def weave_declaration(weave, name):
+    """A texture in whose plane z = 0 the piece is the unit square. A step of the picture is 1 / samples there, a
+    unit along z the geometric mean of the piece's sides: weave_textures()."""
+    relief = weave.relief
+    bump = np.ptp(relief.heights) * len(relief.heights) / np.sqrt(relief.size.prod())
+    return (f'#declare {name} = texture {{ pigment {{ image_map {{ ppm "{name}.ppm" gamma 1.0 interpolate 2 }} }} '
+            f'normal {{ bump_map {{ pgm "{name}.pgm" gamma 1.0 interpolate 2 bump_size {bump:.6g} }} }} '
+            f'{finish_of(weave.look)} }}\n')
+
+
+def weave_textures(cloth, number, name):
+    """Of every triangle of the weave: the declared texture where its rest coordinates are."""
+    mine = cloth.weave_of == number
+    axes, size = cloth.axes(mine), cloth.weaves[number].relief.size
+    origins = cloth.surface.positions[cloth.surface.triangles[mine, 0]] \
+        - np.einsum('tr,trx->tx', cloth.surface.rest[mine, 0], axes)
+    # POV-Ray's bumps are right as seen from the negative side of z, from where its pictures are not mirrored.
+    normals = np.cross(axes[:, 1], axes[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+    rows = np.stack([size[0] * axes[:, 0], size[1] * axes[:, 1], np.sqrt(size.prod()) * normals, origins], axis=1)
+    return [f'texture {{ {name} {matrix_of(row)} }}' for row in rows]
+
+
+def cloth_text(cloth):
+    """@returns text, and contents by name of the files that it refers to"""
+    surface, text, files = cloth.surface, '', {}
+    texture_of, textures = np.empty(len(surface.triangles), dtype=int), []
+    for number, weave in enumerate(cloth.weaves):
+        mine = np.flatnonzero(cloth.weave_of == number)
+        if not cloth.has_yarns(number):
+            texture_of[mine] = len(textures)
+            textures.append(plain_texture(weave.even))
+            continue
+        name = f'Fabric_{number}'
+        text += weave_declaration(weave, name)
+        files.update(weave_files(weave, name))
+        texture_of[mine] = len(textures) + np.arange(len(mine))
+        textures += weave_textures(cloth, number, name)
+    return text + mesh(surface, textures, texture_of), files
+
+
+def solid_text(solid):
+    sizes, texture = solid.sizes, plain_texture(solid.look)
+    if solid.surface is not None:
+        return mesh(solid.surface, [texture], np.zeros(len(solid.surface.triangles), dtype=int))
+    if solid.kind == 'plane':
+        return f'plane {{ z,{solid.pose[2, 3]:.7g} {texture} }}\n'
+    if solid.kind == 'box':
         half = 0.5 * np.array(sizes)
         text = f'box {{ {vector(-half)},{vector(half)}'
-    elif kind == 'sphere':
+    elif solid.kind == 'sphere':
         text = f'sphere {{ 0,{sizes[0]:.7g}'
     else:
         radius, end = sizes[0], 0.5 * sizes[1]
         text = f'cylinder {{ <0,0,{-end:.7g}>,<0,0,{end:.7g}>,{radius:.7g}'
-        if kind == 'capsule':
+        if solid.kind == 'capsule':
             text = (f'union {{ {text} }} sphere {{ <0,0,{-end:.7g}>,{radius:.7g} }} '
                     f'sphere {{ <0,0,{end:.7g}>,{radius:.7g} }}')
-    return f'{text} {plain_texture(look)} {matrix_of(pose[:3].T)} }}\n'
-
-
-def floor(height, look):
-    return f'plane {{ z,{height:.7g} {plain_texture(look)} }}\n'
+    return f'{text} {texture} {matrix_of(solid.pose[:3].T)} }}\n'
 
 
 def lights(environment, file_name):
@@ -118,46 +152,32 @@ def camera_text(camera, size):
             f'{-size[0] / size[1]:.7g}*x angle {np.degrees(camera.angle):.6g} look_at {vector(camera.target)} }}\n')
 
 
-def require_povray():
-    if shutil.which('povray') is None:
-        raise Refused('povray is not installed: apt-get install povray')
+def require():
+    programs.require('povray')
 
 
-def error_in(said):
-    """Of all that POV-Ray says, on one line."""
-    lines = [line.strip() for line in said.splitlines() if 'error' in line.lower()]
-    return '; '.join(lines) or ' '.join(said.split())[-400:]
+def at_once():
+    """Pictures of a film that are drawn at a time: each is drawn by one thread."""
+    return len(os.sched_getaffinity(0))
 
 
-def without_time(png):
-    """The chunks that make the picture, without when and by what it was drawn."""
-    kept, place = png[:8], 8
-    while place < len(png):
-        end = place + 12 + int.from_bytes(png[place:place + 4], 'big')
-        if png[place + 4:place + 8] in (b'IHDR', b'gAMA', b'sRGB', b'IDAT', b'IEND'):
-            kept += png[place:end]
-        place = end
-    return kept
-
-
-def draw(camera, size, environment, objects, files, output):
-    """@param size pixels, width and height @param objects texts @param files contents by name, which
-    the objects refer to @param output path of a PNG @throws Refused with what POV-Ray says"""
-    require_povray()
+def draw(camera, size, environment, things, output):
+    """@param size pixels, width and height @param things a Cloth, or several, and Solids
+    @param output path of a PNG @throws Refused with what POV-Ray says"""
+    require()
     with tempfile.TemporaryDirectory(prefix='haptex_render_') as name:
         folder = pathlib.Path(name)
         # POV-Ray's pictures on a sphere turn to the right, as seen from within; azimuth turns to the left.
         write_hdr(environment.radiance[:, ::-1], folder / 'sky.hdr')
-        for file_name, content in files.items():
-            (folder / file_name).write_bytes(content)
-        (folder / 'scene.pov').write_text(HEADER.format() + camera_text(camera, size)
-                                          + lights(environment, 'sky.hdr') + ''.join(objects))
-        run = subprocess.run(
-            ['povray', '+Iscene.pov', '+Opicture.png', f'+W{size[0]}', f'+H{size[1]}', '+FN8', '-D', '-GA',
-             '+WT1', '+A0.3', '+AM2', '+R2', '-J', 'File_Gamma=sRGB', '+GF'],
-            cwd=folder, capture_output=True, text=True, errors='replace',
-            env={**os.environ, 'HOME': name})
-        picture = folder / 'picture.png'
-        if run.returncode != 0 or not picture.exists():
-            raise Refused(f'povray could not draw it: {error_in(run.stderr)}')
-        pathlib.Path(output).write_bytes(without_time(picture.read_bytes()))
+        text = HEADER.format() + camera_text(camera, size) + lights(environment, 'sky.hdr')
+        for thing in things:
+            if isinstance(thing, Cloth):
+                cloth, files = cloth_text(thing)
+                text += cloth
+                for file_name, content in files.items():
+                    (folder / file_name).write_bytes(content)
+            else:
+                text += solid_text(thing)
+        (folder / 'scene.pov').write_text(text)
+        programs.draw(['povray', '+Iscene.pov', f'+O{programs.PICTURE}', f'+W{size[0]}', f'+H{size[1]}', '+FN8', '-D',
+                       '-GA', '+WT1', '+A0.3', '+AM2', '+R2', '-J', 'File_Gamma=sRGB', '+GF'], folder, output)

@@ -12,7 +12,7 @@ import yaml
 
 from bag_report.bags import Refused
 
-from . import picture
+from . import picture, povray
 from .camera import Camera
 from .looks import FIGURE, fabric_called, package_fabrics
 from .obj_file import Surface, read_obj
@@ -87,7 +87,7 @@ def draw_fabric(name, folder, environment):
     paths = [folder / f'{name}_{which}.png' for which in ('far', 'near')]
     relief = relief_of(fabric)
     for path, camera, size in zip(paths, (VIEW, CLOSE_VIEW), (PANEL, CLOSE)):
-        picture.draw(scene, [relief], camera, 0.0, size, environment, path)
+        picture.draw(povray, scene, [relief], camera, 0.0, size, environment, path)
     return paths
 
 

@@ -9,8 +9,7 @@ import yaml
 from bag_report.bags import Refused
 from tf.transformations import euler_matrix, quaternion_matrix, rotation_matrix
 
-from . import povray
-from .looks import FIGURE, Look
+from .looks import FIGURE, FLOOR, Look
 from .obj_file import Surface, read_obj
 
 SKIN_GLOSS = 0.03, 0.45
@@ -32,7 +31,8 @@ def floats(text):
 
 
 class Solid:
-    """A shape of POV-Ray, or a surface, and how low and how wide it is."""
+    """A sphere (sizes: radius), a box (whole edge lengths), a capsule or a cylinder (radius, length, along z), a level
+    plane, or a surface. pose is 4 x 4, from its own axes into the world."""
 
     def __init__(self, kind, sizes, pose, look, surface=None):
         self.kind, self.sizes, self.pose, self.look = kind, sizes, pose, look
@@ -48,10 +48,10 @@ class Solid:
         signs = np.array(np.meshgrid(*3 * [(-1.0, 1.0)])).reshape(3, -1).T
         return signs * half @ self.pose[:3, :3].T + self.pose[:3, 3]
 
-    def text(self):
-        if self.surface is not None:
-            return povray.body(self.surface, self.look)
-        return povray.shape(self.kind, self.sizes, self.pose, self.look)
+
+def floor(height):
+    """@param height m"""
+    return Solid('plane', [], pose_of(np.eye(4), [0.0, 0.0, height]), FLOOR)
 
 
 class Obstacles:

@@ -1,4 +1,5 @@
-"""The yarns of a fabric as textures: what fabric_relief says of its surface, in the colours of its look."""
+"""The yarns of a fabric as textures: what fabric_relief says of its surface, in the colours of its look; and cloth
+that has them."""
 import pathlib
 import re
 import subprocess
@@ -11,7 +12,6 @@ from matplotlib.image import imread
 from bag_report.bags import Refused
 
 from .looks import Look
-from .povray import finish_of, matrix_of, plain_texture
 
 SIDE = 256  # samples along the pictures of a piece, whatever its size
 BLUR = 0.75  # times the width of a pixel: standard deviation of what a pixel sees
@@ -73,54 +73,36 @@ def relief_of(fabric):
     return Relief(said['height'] * heights, warp, (columns * said['weft_spacing'], rows * said['warp_spacing']))
 
 
-def netpbm(samples):
-    """A picture of 16 bits without gamma. @param samples 0 to 1, with or without colours"""
-    kind = b'P6' if samples.ndim == 3 else b'P5'
-    return kind + b'\n%d %d\n65535\n' % samples.shape[1::-1] + np.round(65535.0 * samples).astype('>u2').tobytes()
-
-
 class Weave:
     """How a fabric looks from some distance."""
 
     def __init__(self, fabric, relief, pixel):
         """@param pixel m, how wide one is on the cloth"""
-        self.look = fabric.look
+        look = fabric.look
         seen = None if relief is None else relief.seen(pixel)
         share = 0.5 if relief is None else float(relief.warp.mean())
-        self.colour = share * self.look.warp + (1.0 - share) * self.look.weft
-        spread = 0.0 if seen is None else float(seen.warp.std()) * np.abs(self.look.warp - self.look.weft).max()
+        spread = 0.0 if seen is None else float(seen.warp.std()) * np.abs(look.warp - look.weft).max()
+        self.look = look  # of its yarns
+        self.even = Look(share * look.warp + (1.0 - share) * look.weft, look.gloss, look.width)  # where none is seen
         self.relief = seen if seen is not None and (seen.slopes() > LEAST_SLOPE or spread > LEAST_COLOUR) else None
 
-    def plain(self):
-        return plain_texture(Look(self.colour, self.look.gloss, self.look.width))
+    def colours(self):
+        """(row, column, 3), linear, of the piece's samples."""
+        warp = self.relief.warp[..., None]
+        return warp * self.look.warp + (1.0 - warp) * self.look.weft
 
-    def files(self, name):
-        """Pictures that declaration() names."""
-        if self.relief is None:
-            return {}
-        heights, warp = self.relief.heights, self.relief.warp[..., None]
-        lifted = (heights - heights.min()) / max(np.ptp(heights), 1e-12)
-        colours = warp * self.look.warp + (1.0 - warp) * self.look.weft
-        return {f'{name}.pgm': netpbm(lifted), f'{name}.ppm': netpbm(colours)}
 
-    def declaration(self, name):
-        """A texture in whose plane z = 0 the piece is the unit square. A step of the picture is 1 / SIDE there, a
-        unit along z the geometric mean of the piece's sides: texture_of()."""
-        bump = np.ptp(self.relief.heights) * SIDE / np.sqrt(self.relief.size.prod())
-        return (f'#declare {name} = texture {{ pigment {{ image_map {{ ppm "{name}.ppm" gamma 1.0 interpolate 2 }} }} '
-                f'normal {{ bump_map {{ pgm "{name}.pgm" gamma 1.0 interpolate 2 bump_size {bump:.6g} }} }} '
-                f'{finish_of(self.look)} }}\n')
+class Cloth:
+    """surface, which of the weaves each triangle is of, and these."""
 
-    def textures(self, name, positions, rest):
-        """Of every triangle: the declared texture where its rest coordinates are.
-        @param positions, rest m, (triangle, corner, 3) and (triangle, corner, 2)"""
-        sides, flat = positions[:, 1:] - positions[:, :1], rest[:, 1:] - rest[:, :1]
-        # Rows of a triangle's axes: images of the unit vectors along weft and warp.
-        axes = np.linalg.solve(flat, sides)
-        origins = positions[:, 0] - np.einsum('tr,trx->tx', rest[:, 0], axes)
-        # POV-Ray's bumps are right as seen from the negative side of z, from where its pictures are not mirrored.
-        normals = np.cross(axes[:, 1], axes[:, 0])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
-        size = self.relief.size
-        rows = np.stack([size[0] * axes[:, 0], size[1] * axes[:, 1], np.sqrt(size.prod()) * normals, origins], axis=1)
-        return [f'texture {{ {name} {matrix_of(row)} }}' for row in rows]
+    def __init__(self, surface, weave_of, weaves):
+        self.surface, self.weave_of, self.weaves = surface, weave_of, weaves
+
+    def has_yarns(self, number):
+        """Of the weave's triangles: whether their yarns are seen, and where they lie is known."""
+        return self.weaves[number].relief is not None and self.surface.rest is not None
+
+    def axes(self, mine):
+        """Of these triangles, (triangle, 2, 3): images of the unit vectors along weft and warp."""
+        places, rest = self.surface.positions[self.surface.triangles[mine]], self.surface.rest[mine]
+        return np.linalg.solve(rest[:, 1:] - rest[:, :1], places[:, 1:] - places[:, :1])

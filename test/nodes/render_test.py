@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Pictures of cloth: what is read of OBJ files, bags and panoramas, where the camera stands, and that the same
-input is the same picture. Pixels are looked at where POV-Ray is installed."""
+input is the same picture. Pixels are looked at where POV-Ray or Blender is installed."""
 import importlib.machinery
 import importlib.util
 import io
+import os
 import pathlib
 import shutil
 import sys
@@ -26,7 +27,7 @@ from unit_fixtures import Folder, suite_of
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'scripts'))
 from bag_report.bags import Refused, open_bag  # noqa: E402
-from cloth_picture import camera, environment, looks, povray, recorded, solids  # noqa: E402
+from cloth_picture import camera, cycles, environment, looks, povray, recorded, solids  # noqa: E402
 from cloth_picture.obj_file import read_obj  # noqa: E402
 
 CLOTH = 'v 0 0 0\nv 0 0.2 0\nv 0 0 0.2\nvt 0 0\nvt 0.2 0\nvt 0 0.2\nf 1/1 2/2 3/3\n'
@@ -291,25 +292,36 @@ class Programs(Runs):
                 (['--time', 'two'], [bag, self.picture, '--time', '1', '2']),
                 (['--time', 'two times'], [bag, self.picture, '--film', '5', '--time', '2', '1']),
                 (['--film 0'], [bag, self.picture, '--film', '0'])):
-            with self.subTest(arguments=arguments), mock.patch.object(povray, 'require_povray'):
+            with self.subTest(arguments=arguments), mock.patch.object(povray, 'require'):
                 self.assert_refused(words, *arguments)
 
     def test_say_how_to_install_what_is_missing(self):
-        with mock.patch.object(shutil, 'which', return_value=None):
+        with mock.patch.dict(os.environ, PATH=str(self.folder)):
             self.assert_refused(['apt-get install povray'], self.obj, self.picture)
+            self.assert_refused(['apt-get install blender'], self.obj, self.picture, '--renderer', 'cycles')
+
+    def test_say_what_a_program_says_that_cannot_draw(self):
+        path = self.folder / 'blender'
+        path.write_text('#!/bin/sh\necho "some\nError: no kernel\nmore" >&2\nexit 1\n')
+        path.chmod(0o755)
+        with mock.patch.dict(os.environ, PATH=f'{self.folder}:{os.environ["PATH"]}'):
+            self.assert_refused(['blender could not draw it: Error: no kernel'], self.obj, self.picture, '--renderer',
+                                'cycles')
 
 
-@unittest.skipUnless(shutil.which('povray'), 'POV-Ray is not installed')
-class Pictures(Runs):
+class Drawn:
+    """What pictures show, whatever draws them."""
+
     SIZE = 160, 90
 
     def draw(self, *arguments):
-        self.run_render(*arguments, '--size', 'x'.join(map(str, self.SIZE)))
+        self.run_render(*arguments, '--renderer', self.RENDERER, '--size', 'x'.join(map(str, self.SIZE)))
 
     def test_of_the_same_bag_are_the_same_to_the_last_byte(self):
         bag, other = self.bag(), self.folder / 'other.png'
-        for path in (self.picture, other):
-            self.draw(bag, path, '--time', 3.0)
+        self.draw(bag, self.picture, '--time', 3.0)
+        with mock.patch.object(os, 'sched_getaffinity', return_value={0}):  # by one thread
+            self.draw(bag, other, '--time', 3.0)
         self.assertEqual(self.picture.read_bytes(), other.read_bytes())
         self.draw(bag, other, '--time', 1.0)
         self.assertNotEqual(self.picture.read_bytes(), other.read_bytes())
@@ -324,26 +336,34 @@ class Pictures(Runs):
         self.assertTrue(0.15 < green.mean() < 0.5, green.mean())
         self.assertFalse(green[:, 0].any() or green[:, -1].any())
 
-    def test_of_a_film_are_numbered(self):
-        if shutil.which('ffmpeg') is None:
-            said = 'ffmpeg is not installed'
-        else:
-            said = 'picture.mp4'
-        out = self.run_render(self.bag(), self.picture, '--film', 2, '--time', 1, 2, '--size', '64x36')
-        self.assertIn(said, out)
-        self.assertEqual(sorted(path.name for path in self.folder.glob('*.png')),
-                         [f'picture_{number:04}.png' for number in (1, 2, 3)])
-
     def test_have_every_part_of_the_sky_where_its_map_says(self):
         colours = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], dtype=float)
         radiance = np.repeat(np.repeat(colours[None], 32, axis=0), 16, axis=1)  # quarters by azimuth from +x
         radiance[:8] = [1.0, 1.0, 0.0]
         sky = environment.Environment(radiance, None, None)
-        ground = povray.floor(-10.0, looks.FLOOR)
         for target, colour in (*zip(((1, 1, 0.3), (-1, 1, 0.3), (-1, -1, 0.3), (1, -1, 0.3)), colours),
                                ((0.1, 0.1, 1), (1, 1, 0)), ((0.2, 1, 0.3), (1, 0, 0)), ((-0.2, 1, 0.3), (0, 1, 0))):
-            povray.draw(camera.Camera((0, 0, 0), target, 0.1), (32, 18), sky, [ground], {}, self.picture)
+            self.MODULE.draw(camera.Camera((0, 0, 0), target, 0.1), (32, 18), sky, [solids.floor(-10.0)], self.picture)
             np.testing.assert_allclose(imread(self.picture)[9, 16, :3], colour, atol=0.06, err_msg=str(target))
+
+    def test_show_every_solid_where_it_is(self):
+        """Against a ray through every pixel, seen from +x before a black sky."""
+        dark = environment.Environment(np.zeros((8, 16, 3)), np.array([1.0, 0.0, 0.0]), np.ones(3))
+        turned = solids.pose_of(solids.euler_matrix(0.5 * np.pi, 0.0, 0.0), [0.0, 0.0, 0.02])  # z to -y
+        y, z = np.meshgrid((2.0 * (np.arange(160) + 0.5) / 160 - 1.0) * np.tan(0.08) * 100.0,
+                           (1.0 - 2.0 * (np.arange(90) + 0.5) / 90) * np.tan(0.08) * 100.0 * 90 / 160)
+        z -= 0.02
+        edge = 0.2  # m, two pixels
+        for kind, sizes, outside in (  # how far, in m
+                ('sphere', [2.0], np.hypot(y, z) - 2.0),
+                ('box', [1.0, 2.0, 6.0], np.maximum(np.abs(y) - 3.0, np.abs(z) - 1.0)),
+                ('cylinder', [1.0, 6.0], np.maximum(np.abs(y) - 3.0, np.abs(z) - 1.0)),
+                ('capsule', [1.0, 6.0], np.hypot(np.maximum(np.abs(y) - 3.0, 0.0), z) - 1.0)):
+            solid = solids.Solid(kind, sizes, turned, looks.FIGURE)
+            self.MODULE.draw(camera.Camera((100, 0, 0), (0, 0, 0), 0.16), self.SIZE, dark, [solid], self.picture)
+            drawn = imread(self.picture)[..., 0]
+            self.assertGreater(drawn[outside < -edge].min(), 0.1, kind)
+            self.assertEqual(drawn[outside > edge].max(), 0.0, kind)
 
     def test_are_lit_by_a_panorama(self):
         red = np.ones((16, 32, 3)) * [1.0, 0.05, 0.05]
@@ -352,8 +372,26 @@ class Pictures(Runs):
         drawn = imread(self.picture)[..., :3]
         self.assertGreater((drawn[..., 0] - drawn[..., 1]).mean(), 0.2)
 
+    def test_of_a_film_are_numbered(self):
+        said = 'picture.mp4' if shutil.which('ffmpeg') else 'ffmpeg is not installed'
+        out = self.run_render(self.bag(), self.picture, '--renderer', self.RENDERER, '--film', 2, '--time', 1, 2,
+                              '--size', '64x36')
+        self.assertIn(said, out)
+        self.assertEqual(sorted(path.name for path in self.folder.glob('*.png')),
+                         [f'picture_{number:04}.png' for number in (1, 2, 3)])
 
-Tests = suite_of(ObjFiles, Environments, Cameras, Solids, Looks, Bags, Programs, Pictures)
+
+@unittest.skipUnless(shutil.which('povray'), 'POV-Ray is not installed')
+class PovrayPictures(Drawn, Runs):
+    RENDERER, MODULE = 'povray', povray
+
+
+@unittest.skipUnless(shutil.which('blender'), 'Blender is not installed')
+class CyclesPictures(Drawn, Runs):
+    RENDERER, MODULE = 'cycles', cycles
+
+
+Tests = suite_of(ObjFiles, Environments, Cameras, Solids, Looks, Bags, Programs, PovrayPictures, CyclesPictures)
 
 
 if __name__ == '__main__':
