@@ -1,8 +1,9 @@
 // What does a factorisation cost in iterations of conjugate gradients? The constants behind
-// LinearSolver's automatic choice are the ratios kept_number_over_block, of the triangular solves,
-// and fitted_operation_over_block and fitted_factor_number_over_block, which together give the time
-// of the factorisation in single precision at the smallest and the largest size; how supernodes are
-// merged (elimination.cpp) was chosen by the factorisation times printed here. The systems are
+// KeptFactor's costs are the ratios kept_number_over_block, of the triangular solves,
+// fitted_operation_over_block and fitted_factor_number_over_block, which together give the time
+// of the factorisation in single precision at the smallest and the largest size, and
+// analysed_number_over_block, of what is made anew for a matrix with new couplings; how supernodes
+// are merged (elimination.cpp) was chosen by the factorisation times printed here. The systems are
 // those of a swinging sheet of the linear reference at 12.5 ms. The patch cases are the parts of a
 // 1 ms step of a sheet as small as the one that follows a fingertip, of wool with viscosity, with
 // and without the matrix blocks that bending needs. cholmod is CHOLMOD's supernodal factorisation
@@ -13,6 +14,7 @@
 
 #include "cholmod.h"
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/linear/ordering.h"
 #include "haptex/material/fabric_file.h"
 #include "tab_lines.h"
 
@@ -104,6 +106,17 @@ void keptSolve(benchmark::State& run, int cells) {
   for (auto _ : run) {
     x = system.rhs;
     factor.solve(x);
+  }
+}
+
+/// A pattern, its order and the factor's structure and memory, without numbers.
+void analysis(benchmark::State& run, int cells) {
+  const System system = makeSystem(cells);
+  for (auto _ : run) {
+    const linear::SymmetricBlockMatrix pattern = system.matrix.wholePattern();
+    const linear::BasicBlockCholesky<float> factor(
+        pattern, linear::analyse(pattern, linear::minimumDegreeOrder(pattern)), nullptr);
+    benchmark::DoNotOptimize(factor.numbers());
   }
 }
 
@@ -208,6 +221,8 @@ int main(int argc, char** argv) {
     benchmark::RegisterBenchmark(("linear_solver/kept_solve/" + triangles).c_str(), keptSolve,
                                  count)
         ->Iterations(kRuns);
+    benchmark::RegisterBenchmark(("linear_solver/analyse/" + triangles).c_str(), analysis, count)
+        ->Iterations(kRuns);
     benchmark::RegisterBenchmark(("linear_solver/50_iterations/" + triangles).c_str(), iterations,
                                  count)
         ->Iterations(kRuns);
@@ -248,6 +263,10 @@ int main(int argc, char** argv) {
     bench::printLine(
         "linear_solver/kept_number_over_block/" + triangles,
         reporter.time("linear_solver/kept_solve/" + triangles) / cholesky.numbers() / per_block,
+        "ratio");
+    bench::printLine(
+        "linear_solver/analysed_number_over_block/" + triangles,
+        reporter.time("linear_solver/analyse/" + triangles) / cholesky.numbers() / per_block,
         "ratio");
     const int row = count == cells[0] ? 0 : 1;  // the last stays
     work.row(row) << cholesky.cost(), cholesky.numbers();

@@ -117,6 +117,39 @@ void SymmetricBlockMatrix::forEachCoupling(const Function& function) const {
   }
 }
 
+SymmetricBlockMatrix SymmetricBlockMatrix::wholePattern() const {
+  std::vector<std::array<int, 2>> pairs;
+  pairs.reserve(columns_.size() + couplings_.size());
+  for (int i = 0; i < size(); ++i) {
+    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) pairs.push_back({i, columns_[s]});
+  }
+  for (const Coupling& coupling : couplings_) pairs.push_back({coupling.row, coupling.column});
+  return {size(), {}, pairs};
+}
+
+bool SymmetricBlockMatrix::takeValues(const SymmetricBlockMatrix& other) {
+  if (other.size() != size()) return false;
+  clearCouplings();
+  diagonal_ = other.diagonal_;
+  for (int i = 0; i < size(); ++i) {
+    int from = other.row_begin_[i];
+    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) {
+      const bool has = from < other.row_begin_[i + 1] && other.columns_[from] == columns_[s];
+      if (has)
+        lower_[s] = other.lower_[from++];
+      else
+        lower_[s].setZero();
+    }
+    if (from < other.row_begin_[i + 1]) return false;
+  }
+  for (const Coupling& coupling : other.couplings_) {
+    const int slot = find(coupling.row, coupling.column);
+    if (slot < 0) return false;
+    lower_[slot] += coupling.block;
+  }
+  return true;
+}
+
 void SymmetricBlockMatrix::setZero() {
   std::fill(diagonal_.begin(), diagonal_.end(), Eigen::Matrix3d::Zero());
   std::fill(lower_.begin(), lower_.end(), Eigen::Matrix3d::Zero());

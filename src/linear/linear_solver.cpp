@@ -6,28 +6,18 @@
 namespace haptex::linear {
 namespace {
 
-// Times over that of one 3x3 block of a conjugate gradient iteration, which scripts/bench
-// linear_solver prints: of one multiply-add of the factorisation in single precision, of what it
-// does besides for one number of the factor (to load, to scatter, narrow panels), and of one number
-// in the two triangular solves. The first two give the time of a factorisation of 2048 to 100352
-// triangles within a quarter.
-constexpr double kOperationOverBlock = 0.006;
-constexpr double kFactorNumberOverBlock = 0.6;
-constexpr double kNumberOverBlock = 0.2;
-// What a factor is expected to need before one has been made.
-constexpr double kExpectedSolves = 8.0;
-constexpr double kExpectedIterations = 3.0;
 constexpr int kMaxFreshIterations = 60;
 // A coupling's block, of rank 3, and its transpose add up to 6 eigenvalues to those that conjugate
 // gradients have to find.
 constexpr int kMaxIterationsOfCoupling = 6;
-constexpr int kFirstFreshSolves = 4;
-constexpr int kMaxFreshSolves = 64;
 constexpr int kFirstDirectSolves = 8;
 constexpr int kMaxDirectSolves = 512;
+constexpr int kFirstWholeSolves = 8;
+constexpr int kMaxWholeSolves = 512;
 constexpr int kMaxRefinements = 3;
 constexpr int kMaxLastIterations = 100;
-// Patterns of up to this many rows hold a factor in double precision from the start.
+// Patterns of up to this many rows hold a factor in double precision from the start, and have none
+// of whole matrices: they never allocate.
 constexpr int kSmallPattern = 500;
 
 }  // namespace
@@ -38,8 +28,8 @@ LinearSolver::LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMeth
       pool_(pool),
       conjugate_gradient_(pattern.size()),
       block_iteration_cost_(pattern.size() + 2.0 * pattern.lowerCount()),
-      fresh_solves_next_(kFirstFreshSolves),
-      direct_solves_next_(kFirstDirectSolves) {
+      direct_solves_next_(kFirstDirectSolves),
+      whole_solves_next_(kFirstWholeSolves) {
   const bool small = pattern.size() <= kSmallPattern;
   if (method == LinearSolverMethod::kCholesky ||
       (method == LinearSolverMethod::kAutomatic && small)) {
@@ -48,16 +38,18 @@ LinearSolver::LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMeth
     product_.resize(3, pattern.size());
   }
   if (method != LinearSolverMethod::kAutomatic) return;
-  factor_ = std::make_unique<BasicBlockCholesky<float>>(pattern, pool);
-  factorisation_cost_ =
-      kOperationOverBlock * factor_->cost() + kFactorNumberOverBlock * factor_->numbers();
-  factor_iteration_cost_ = kNumberOverBlock * factor_->numbers() + block_iteration_cost_;
-  mean_cost_ = factorisation_cost_ / kExpectedSolves + kExpectedIterations * factor_iteration_cost_;
+  factor_ = std::make_unique<KeptFactor>(pattern, pool);
+  if (!small) whole_factor_ = factor_->ofWholeMatrices();
+}
+
+long LinearSolver::factorisations() const {
+  return factorisations_ + (factor_ ? factor_->factorisations() : 0) +
+         (whole_factor_ ? whole_factor_->factorisations() : 0);
 }
 
 int LinearSolver::iterationBudget() const {
   if (!factor_) return 0;
-  return std::max(1, static_cast<int>(mean_cost_ / block_iteration_cost_));
+  return std::max(1, static_cast<int>(factor_->meanCost() / block_iteration_cost_));
 }
 
 int LinearSolver::lastTry() const { return std::max(iterationBudget(), kMaxLastIterations); }
@@ -75,7 +67,12 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
     return solveIteratively(matrix, rhs, tolerance, mostIterations(matrix), x);
   }
   if (method_ == LinearSolverMethod::kAutomatic) {
-    if (direct_solves_left_ == 0) {
+    const bool by_whole = matrix.couplingCount() > 0 && whole_solves_left_ > 0;
+    if (by_whole) {
+      --whole_solves_left_;
+    } else if (direct_solves_left_ > 0) {
+      --direct_solves_left_;
+    } else {
       const SolveResult result = solveIteratively(matrix, rhs, tolerance, iterationBudget(), x);
       if (result.converged) {
         direct_solves_next_ = kFirstDirectSolves;
@@ -83,10 +80,9 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
       }
       direct_solves_left_ = direct_solves_next_;
       direct_solves_next_ = std::min(2 * direct_solves_next_, kMaxDirectSolves);
-    } else {
-      --direct_solves_left_;
     }
-    const SolveResult result = solveByKeptFactor(matrix, rhs, tolerance, x);
+    const SolveResult result = by_whole ? solveByWholeFactor(matrix, rhs, tolerance, x)
+                                        : solveByKeptFactor(matrix, rhs, tolerance, x);
     if (result.converged) return result;
     if (result.indefinite && !worth_more) return result;
     if (result.indefinite) return solveIteratively(matrix, rhs, tolerance, lastTry(), x);
@@ -104,51 +100,36 @@ SolveResult LinearSolver::solveIteratively(const SymmetricBlockMatrix& matrix,
   return conjugate_gradient_.solve(matrix, rhs, tolerance, max_iterations, x);
 }
 
-bool LinearSolver::makeFactor(const SymmetricBlockMatrix& matrix) {
-  ++factorisations_;
-  factor_kept_ = factor_->factorise(matrix);
-  solves_with_factor_ = 0;
-  cost_with_factor_ = factorisation_cost_;
-  return factor_kept_;
-}
-
-/// With an old factor the iterations are given up when they have cost what a new one and its
-/// iterations cost, and go on with that from where they are.
 SolveResult LinearSolver::solveByKeptFactor(const SymmetricBlockMatrix& matrix,
                                             const BlockVector& rhs, double tolerance,
                                             BlockVector& x) {
   last_method_ = LinearSolverMethod::kCholesky;
-  SolveResult result;
-  int spent = 0;
-  const auto iterate = [&](int most) {
-    result = conjugate_gradient_.solve(matrix, *factor_, rhs, tolerance, most, x);
-    cost_with_factor_ += factor_iteration_cost_ * result.iterations;
-    spent += result.iterations;
-  };
-  if (fresh_solves_left_ > 0) {
-    --fresh_solves_left_;
-  } else if (factor_kept_) {
-    iterate(1 + fresh_iterations_ + static_cast<int>(factorisation_cost_ / factor_iteration_cost_));
-    if (result.converged) {
-      fresh_solves_next_ = kFirstFreshSolves;
-    } else {
-      fresh_solves_left_ = fresh_solves_next_;
-      fresh_solves_next_ = std::min(2 * fresh_solves_next_, kMaxFreshSolves);
-    }
+  const int couplings = matrix.couplingCount();
+  int most = kMaxFreshIterations + kMaxIterationsOfCoupling * couplings;
+  const bool whole_may_do = whole_factor_ && couplings > 0;
+  if (whole_may_do) {
+    const double worth = whole_factor_->factorCost() / factor_->iterationCost();
+    most = std::min(most, static_cast<int>(worth) + 1);
   }
-  if (!result.converged) {
-    if (!makeFactor(matrix)) {
-      result.indefinite = false;  // double precision decides
-      return result;
-    }
-    iterate(kMaxFreshIterations + kMaxIterationsOfCoupling * matrix.couplingCount());
-    fresh_iterations_ = result.iterations;
+  const auto [result, has_factor] =
+      factor_->solve(conjugate_gradient_, matrix, rhs, tolerance, most, x);
+  const bool is_refuted = has_factor && result.indefinite;
+  if (!whole_may_do || result.converged || is_refuted) {
+    if (whole_may_do && result.converged) whole_solves_next_ = kFirstWholeSolves;
+    return has_factor ? result : SolveResult{};
   }
-  result.iterations = spent;
-  ++solves_with_factor_;
-  mean_cost_ = cost_with_factor_ / solves_with_factor_;
-  if (factor_iteration_cost_ * spent > mean_cost_) factor_kept_ = false;
-  return result;
+  whole_solves_left_ = whole_solves_next_;
+  whole_solves_next_ = std::min(2 * whole_solves_next_, kMaxWholeSolves);
+  return solveByWholeFactor(matrix, rhs, tolerance, x);
+}
+
+SolveResult LinearSolver::solveByWholeFactor(const SymmetricBlockMatrix& matrix,
+                                             const BlockVector& rhs, double tolerance,
+                                             BlockVector& x) {
+  last_method_ = LinearSolverMethod::kCholesky;
+  const auto [result, has_factor] =
+      whole_factor_->solve(conjugate_gradient_, matrix, rhs, tolerance, kMaxFreshIterations, x);
+  return has_factor ? result : SolveResult{};
 }
 
 SolveResult LinearSolver::solveDirectly(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,

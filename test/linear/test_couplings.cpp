@@ -196,6 +196,27 @@ TEST(Couplings, AreCopiedAndAssigned) {
   EXPECT_EQ(product(assigned, x), product(copy, x));
 }
 
+/// Also those of pairs of the fixed pattern.
+TEST(Couplings, AreTakenIntoAPatternThatHasThemAll) {
+  CoupledSystem system = randomlyCoupled();
+  const int row = 1, column = 0;
+  ASSERT_TRUE(system.matrix.hasInPattern(row, column));
+  const Eigen::Matrix3d block = Eigen::Matrix3d::Random();
+  system.matrix.addBeyondPattern(row, column, block);
+  SymmetricBlockMatrix whole = system.matrix.wholePattern();
+  EXPECT_EQ(whole.couplingCount(), 0);
+  EXPECT_TRUE(denseWithCouplings(whole).isZero(0.0));
+  ASSERT_TRUE(whole.takeValues(system.matrix));
+  EXPECT_EQ(denseWithCouplings(whole), denseWithCouplings(system.matrix));
+  // What is taken later takes the place of that, fewer blocks too, but no others.
+  const CoupledSystem fewer(cloth::randomDefinite(cloth::square(6), 2.0));
+  ASSERT_TRUE(whole.takeValues(fewer.matrix));
+  EXPECT_EQ(denseWithCouplings(whole), fewer.exact);
+  EXPECT_FALSE(SymmetricBlockMatrix(fewer.matrix).takeValues(system.matrix));
+  EXPECT_FALSE(whole.takeValues(cloth::randomDefinite(cloth::square(5), 2.0)));
+  EXPECT_FALSE(SymmetricBlockMatrix(fewer.matrix.size(), {}).takeValues(fewer.matrix));
+}
+
 TEST(Couplings, AreRefusedInRowsThatDoNotExistAndOnTheDiagonal) {
   SymmetricBlockMatrix matrix = cloth::randomDefinite(cloth::square(3), 1.0);
   const SymmetricBlockMatrix before = matrix;
@@ -330,6 +351,26 @@ TEST(Couplings, MayChangeWhileAFactorIsKept) {
     EXPECT_EQ(solver.lastMethod(), LinearSolverMethod::kCholesky);
   }
   EXPECT_LE(solver.factorisations(), 2);
+}
+
+/// With the factor of the fixed pattern they would take hundreds of iterations each.
+TEST(Couplings, AreFactorisedWhereTheyAreManyAndStiff) {
+  constexpr int kCells = 24, kSolves = 20;
+  LinearSolver solver(cloth::randomDefinite(cloth::square(kCells), 1.0),
+                      LinearSolverMethod::kAutomatic);
+  long iterations = 0;
+  for (unsigned i = 0; i < kSolves; ++i) {
+    SCOPED_TRACE(testing::Message() << "solve " << i);
+    const CoupledSystem system = sheetWithSprings(kCells, 1.0, 500, 1e4, i);
+    const BlockVector rhs = BlockVector::Random(3, system.matrix.size());
+    BlockVector x = BlockVector::Zero(3, system.matrix.size());
+    const SolveResult result = solver.solve(system.matrix, rhs, 1e-7, x);
+    EXPECT_TRUE(result.converged);
+    EXPECT_LE((product(system.matrix, x) - rhs).norm(), 1.01e-7 * rhs.norm());
+    EXPECT_EQ(solver.lastMethod(), LinearSolverMethod::kCholesky);
+    iterations += result.iterations;
+  }
+  EXPECT_LE(iterations, 15 * kSolves);
 }
 
 TEST(Couplings, AreSolvedInDoublePrecisionWhereSinglePrecisionFailsInALargePattern) {

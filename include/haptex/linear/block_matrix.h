@@ -82,6 +82,14 @@ class SymmetricBlockMatrix {
   /// small.
   void reserveCouplings(std::size_t count);
 
+  /// The fixed pattern and the couplings of this matrix as one fixed pattern, all blocks zero.
+  SymmetricBlockMatrix wholePattern() const;
+
+  /// Takes the values of another matrix, couplings included, into the fixed pattern. Blocks that
+  /// the other has not become zero; an outer product is left out.
+  /// @returns false, with values of no use, if the other has a block that the pattern has not
+  bool takeValues(const SymmetricBlockMatrix& other);
+
   /// Clears the couplings, too.
   void setZero();
 

@@ -6,6 +6,7 @@
 #include "haptex/linear/block_cholesky.h"
 #include "haptex/linear/block_matrix.h"
 #include "haptex/linear/conjugate_gradient.h"
+#include "haptex/linear/kept_factor.h"
 
 namespace haptex::linear {
 
@@ -21,33 +22,34 @@ enum class LinearSolverMethod {
 /// Solves the systems of successive steps to a stated relative residual.
 ///
 /// The automatic choice is between conjugate gradients with the diagonal blocks as preconditioner
-/// and conjugate gradients with a kept factor: a factor in single precision of a system that may
-/// lie several solves back. It is made anew when the last solve has cost more than the mean of all
-/// since the factor was made, its making included. An old factor that has not sufficed within the
-/// cost of a new one is not tried again for 4 solves, and for twice as many after each further
-/// failure up to 64: in cloth that turns by degrees per step every system needs its own.
+/// and conjugate gradients with a kept factor in single precision (KeptFactor).
 ///
 /// Diagonal blocks get as many iterations as cost what a solve by the kept factor costs. When they
 /// do not suffice, the factor solves this system and the next ones, at first 8 and twice as many
 /// after each further failure up to 512, before they are tried again.
 ///
 /// A system that is not positive definite to single precision, or that the factor does not solve,
-/// is factorised in double precision; in patterns of more than 500 rows the first such one, and no
-/// other solve, allocates memory. Folded cloth does not need it: what costs there is that every
-/// system needs a factor of its own.
+/// is factorised in double precision; in patterns of more than 500 rows the first such one
+/// allocates memory. Folded cloth does not need it: what costs there is that every system needs a
+/// factor of its own.
 ///
 /// A system that need not be positive definite, and is not, is given up once a factor has said so,
 /// instead of being iterated on.
 ///
-/// Factors are those of the fixed pattern. Where a matrix has couplings, they precondition
-/// conjugate gradients on the whole matrix, the one in double precision too. The fixed part has to
-/// be positive definite as well: a matrix that is so only with its couplings counts as one that is
-/// not. Springs of stiffness k > 0 along n, which put k n n^T into the diagonal blocks of two
-/// particles and -k n n^T into their coupling, keep that up: the fixed part is the rest of the
-/// matrix plus terms that are not negative. Couplings much softer than the rest take a few
-/// iterations in all. In exact arithmetic a spring takes at most two more, and any other coupling
-/// six; hundreds of springs that are ten thousand times as stiff as the rest take hundreds, about
-/// as many as with the diagonal blocks, and rounding adds to that.
+/// The factor is that of the fixed pattern, and so is the one in double precision; where a matrix
+/// has couplings they precondition conjugate gradients on the whole matrix. Springs of stiffness
+/// k > 0 along n, which put k n n^T into the diagonal blocks of two particles and -k n n^T into
+/// their coupling, leave the fixed part positive definite: it is the rest of the matrix plus terms
+/// that are not negative. Couplings much softer than the rest take a few iterations in all. In
+/// exact arithmetic a spring takes at most two more, and any other coupling six; hundreds of
+/// springs that are ten thousand times as stiff as the rest take hundreds, and rounding adds to
+/// that. So when they have cost what a factor of the whole matrix does, which knows the couplings
+/// and needs a few iterations, that solves this system and the next ones with couplings: at first
+/// 8, and twice as many after each further failure up to 512, before the fixed pattern is tried
+/// again. Only patterns of more than 500 rows have it, as it allocates memory when couplings appear
+/// that the last one had no room for; no smaller pattern ever allocates. It also solves systems
+/// that are positive definite with their couplings only. kCholesky knows none of that: there such a
+/// matrix counts as one that is not positive definite.
 ///
 /// All costs are counts of operations times the times of one that scripts/bench linear_solver
 /// measured, so that the choices depend on the systems alone and a run repeats exactly. They
@@ -74,7 +76,7 @@ class LinearSolver {
   /// Iterations with the diagonal blocks that cost as much as a solve by a factor; 0 without one.
   int iterationBudget() const;
   /// Factors made so far.
-  long factorisations() const { return factorisations_; }
+  long factorisations() const;
 
  private:
   SolveResult solveDirectly(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
@@ -83,30 +85,24 @@ class LinearSolver {
                                 double tolerance, BlockVector& x);
   SolveResult solveIteratively(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
                                double tolerance, int max_iterations, BlockVector& x);
+  SolveResult solveByWholeFactor(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                                 double tolerance, BlockVector& x);
   int lastTry() const;  // iterations
   static int mostIterations(const SymmetricBlockMatrix& matrix);
-  bool makeFactor(const SymmetricBlockMatrix& matrix);
 
   LinearSolverMethod method_;
   LinearSolverMethod last_method_ = LinearSolverMethod::kConjugateGradient;
   ThreadPool* pool_;
   ConjugateGradient conjugate_gradient_;
-  std::unique_ptr<BlockCholesky> cholesky_;            // of kCholesky, or once it is needed
-  std::unique_ptr<BasicBlockCholesky<float>> factor_;  // of kAutomatic
-  // Costs, in those of one 3x3 block in an iteration of conjugate gradients.
-  double factorisation_cost_ = 0.0;
-  double factor_iteration_cost_ = 0.0;
+  std::unique_ptr<BlockCholesky> cholesky_;   // of kCholesky, or once it is needed
+  std::unique_ptr<KeptFactor> factor_;        // of kAutomatic, as the next one
+  std::unique_ptr<KeptFactor> whole_factor_;  // of large patterns
   double block_iteration_cost_;
-  bool factor_kept_ = false;
-  int fresh_solves_left_ = 0;  // before an old factor is tried again
-  int fresh_solves_next_;
-  int fresh_iterations_ = 0;  // of the last solve by a new factor
-  int solves_with_factor_ = 0;
-  double cost_with_factor_ = 0.0;
-  double mean_cost_ = 0.0;  // of the last factor's solves
-  long factorisations_ = 0;
+  long factorisations_ = 0;  // in double precision
   int direct_solves_left_ = 0;
   int direct_solves_next_;
+  int whole_solves_left_ = 0;
+  int whole_solves_next_;
   BlockVector residual_;  // of solves in double precision
   BlockVector product_;
 };
