@@ -21,16 +21,13 @@ constexpr double kExpectedSolves = 8.0;
 constexpr double kExpectedIterations = 3.0;
 // Couplings are expected to make so much more of a factor.
 constexpr double kExpectedGrowth = 2.0;
-constexpr int kFirstFreshSolves = 4;
-constexpr int kMaxFreshSolves = 64;
 
 }  // namespace
 
 KeptFactor::KeptFactor(const SymmetricBlockMatrix& pattern, ThreadPool* pool)
     : pool_(pool),
       factor_(std::make_unique<BasicBlockCholesky<float>>(pattern, pool)),
-      block_iteration_cost_(pattern.size() + 2.0 * pattern.lowerCount()),
-      fresh_solves_next_(kFirstFreshSolves) {
+      block_iteration_cost_(pattern.size() + 2.0 * pattern.lowerCount()) {
   setCosts(factor_->cost(), factor_->numbers());
   mean_cost_ = factor_cost_ / kExpectedSolves + kExpectedIterations * iteration_cost_;
 }
@@ -40,8 +37,7 @@ KeptFactor::KeptFactor(ThreadPool* pool, double block_iteration_cost, double ope
     : pool_(pool),
       knows_couplings_(true),
       block_iteration_cost_(block_iteration_cost),
-      analysis_cost_(kAnalysedNumberOverBlock * numbers),
-      fresh_solves_next_(kFirstFreshSolves) {
+      analysis_cost_(kAnalysedNumberOverBlock * numbers) {
   setCosts(operations, numbers);
 }
 
@@ -80,9 +76,9 @@ bool KeptFactor::makeFactor(const SymmetricBlockMatrix& matrix) {
 
 /// With an old factor the iterations are given up when they have cost what a new one and its
 /// iterations cost, and go on with that from where they are.
-KeptFactor::Solution KeptFactor::solve(ConjugateGradient& conjugate_gradient,
-                                       const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
-                                       double tolerance, int most_iterations, BlockVector& x) {
+SolveResult KeptFactor::solve(ConjugateGradient& conjugate_gradient,
+                              const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                              double tolerance, int most_iterations, BlockVector& x) {
   SolveResult result;
   int spent = 0;
   const auto iterate = [&](int most) {
@@ -92,19 +88,18 @@ KeptFactor::Solution KeptFactor::solve(ConjugateGradient& conjugate_gradient,
   };
   // Where couplings need another way, what they cost in this one says nothing of the others.
   const auto given_up = [&] { return !result.converged && matrix.couplingCount() > 0; };
-  if (fresh_solves_left_ > 0) {
-    --fresh_solves_left_;
+  if (old_factor_.holds()) {
+    old_factor_.pass();
   } else if (is_kept_) {
     iterate(1 + fresh_iterations_ + static_cast<int>(factor_cost_ / iteration_cost_));
     if (result.converged) {
-      fresh_solves_next_ = kFirstFreshSolves;
+      old_factor_.succeeded();
     } else {
-      fresh_solves_left_ = fresh_solves_next_;
-      fresh_solves_next_ = std::min(2 * fresh_solves_next_, kMaxFreshSolves);
+      old_factor_.failed();
     }
   }
   if (!result.converged) {
-    if (!makeFactor(matrix)) return {result, false};
+    if (!makeFactor(matrix)) return {};
     iterate(most_iterations);
     if (!given_up()) fresh_iterations_ = result.iterations;
   }
@@ -112,7 +107,7 @@ KeptFactor::Solution KeptFactor::solve(ConjugateGradient& conjugate_gradient,
   ++solves_;
   if (!given_up()) mean_cost_ = cost_ / solves_;
   if (iteration_cost_ * spent > mean_cost_) is_kept_ = false;
-  return {result, true};
+  return result;
 }
 
 }  // namespace haptex::linear

@@ -10,10 +10,6 @@ constexpr int kMaxFreshIterations = 60;
 // A coupling's block, of rank 3, and its transpose add up to 6 eigenvalues to those that conjugate
 // gradients have to find.
 constexpr int kMaxIterationsOfCoupling = 6;
-constexpr int kFirstDirectSolves = 8;
-constexpr int kMaxDirectSolves = 512;
-constexpr int kFirstWholeSolves = 8;
-constexpr int kMaxWholeSolves = 512;
 constexpr int kMaxRefinements = 3;
 constexpr int kMaxLastIterations = 100;
 // Patterns of up to this many rows hold a factor in double precision from the start, and have none
@@ -24,12 +20,7 @@ constexpr int kSmallPattern = 500;
 
 LinearSolver::LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMethod method,
                            ThreadPool* pool)
-    : method_(method),
-      pool_(pool),
-      conjugate_gradient_(pattern.size()),
-      block_iteration_cost_(pattern.size() + 2.0 * pattern.lowerCount()),
-      direct_solves_next_(kFirstDirectSolves),
-      whole_solves_next_(kFirstWholeSolves) {
+    : method_(method), pool_(pool), conjugate_gradient_(pattern.size()) {
   const bool small = pattern.size() <= kSmallPattern;
   if (method == LinearSolverMethod::kCholesky ||
       (method == LinearSolverMethod::kAutomatic && small)) {
@@ -49,7 +40,7 @@ long LinearSolver::factorisations() const {
 
 int LinearSolver::iterationBudget() const {
   if (!factor_) return 0;
-  return std::max(1, static_cast<int>(factor_->meanCost() / block_iteration_cost_));
+  return std::max(1, static_cast<int>(factor_->meanCost() / factor_->blockIterationCost()));
 }
 
 int LinearSolver::lastTry() const { return std::max(iterationBudget(), kMaxLastIterations); }
@@ -67,19 +58,18 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
     return solveIteratively(matrix, rhs, tolerance, mostIterations(matrix), x);
   }
   if (method_ == LinearSolverMethod::kAutomatic) {
-    const bool by_whole = matrix.couplingCount() > 0 && whole_solves_left_ > 0;
+    const bool by_whole = matrix.couplingCount() > 0 && fixed_pattern_.holds();
     if (by_whole) {
-      --whole_solves_left_;
-    } else if (direct_solves_left_ > 0) {
-      --direct_solves_left_;
+      fixed_pattern_.pass();
+    } else if (iterations_.holds()) {
+      iterations_.pass();
     } else {
       const SolveResult result = solveIteratively(matrix, rhs, tolerance, iterationBudget(), x);
       if (result.converged) {
-        direct_solves_next_ = kFirstDirectSolves;
+        iterations_.succeeded();
         return result;
       }
-      direct_solves_left_ = direct_solves_next_;
-      direct_solves_next_ = std::min(2 * direct_solves_next_, kMaxDirectSolves);
+      iterations_.failed();
     }
     const SolveResult result = by_whole ? solveByWholeFactor(matrix, rhs, tolerance, x)
                                         : solveByKeptFactor(matrix, rhs, tolerance, x);
@@ -111,15 +101,12 @@ SolveResult LinearSolver::solveByKeptFactor(const SymmetricBlockMatrix& matrix,
     const double worth = whole_factor_->factorCost() / factor_->iterationCost();
     most = std::min(most, static_cast<int>(worth) + 1);
   }
-  const auto [result, has_factor] =
-      factor_->solve(conjugate_gradient_, matrix, rhs, tolerance, most, x);
-  const bool is_refuted = has_factor && result.indefinite;
-  if (!whole_may_do || result.converged || is_refuted) {
-    if (whole_may_do && result.converged) whole_solves_next_ = kFirstWholeSolves;
-    return has_factor ? result : SolveResult{};
+  const SolveResult result = factor_->solve(conjugate_gradient_, matrix, rhs, tolerance, most, x);
+  if (!whole_may_do || result.converged || result.indefinite) {
+    if (whole_may_do && result.converged) fixed_pattern_.succeeded();
+    return result;
   }
-  whole_solves_left_ = whole_solves_next_;
-  whole_solves_next_ = std::min(2 * whole_solves_next_, kMaxWholeSolves);
+  fixed_pattern_.failed();
   return solveByWholeFactor(matrix, rhs, tolerance, x);
 }
 
@@ -127,9 +114,7 @@ SolveResult LinearSolver::solveByWholeFactor(const SymmetricBlockMatrix& matrix,
                                              const BlockVector& rhs, double tolerance,
                                              BlockVector& x) {
   last_method_ = LinearSolverMethod::kCholesky;
-  const auto [result, has_factor] =
-      whole_factor_->solve(conjugate_gradient_, matrix, rhs, tolerance, kMaxFreshIterations, x);
-  return has_factor ? result : SolveResult{};
+  return whole_factor_->solve(conjugate_gradient_, matrix, rhs, tolerance, kMaxFreshIterations, x);
 }
 
 SolveResult LinearSolver::solveDirectly(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "haptex/linear/backoff.h"
 #include "haptex/linear/block_cholesky.h"
 #include "haptex/linear/block_matrix.h"
 #include "haptex/linear/conjugate_gradient.h"
@@ -29,16 +30,12 @@ class KeptFactor {
   /// order of elimination, the structure of the factor and its memory are made anew then.
   std::unique_ptr<KeptFactor> ofWholeMatrices() const;
 
-  struct Solution {
-    SolveResult result;
-    bool has_factor;  ///< else there is no result: what is factorised is not positive definite
-  };
-
   /// Solves A x = b until |b - A x| <= tolerance |b|.
   /// @param most_iterations with a new factor; an old one gets as many as cost what a new one does
   /// @param x initial guess, overwritten by the solution
-  Solution solve(ConjugateGradient& conjugate_gradient, const SymmetricBlockMatrix& matrix,
-                 const BlockVector& rhs, double tolerance, int most_iterations, BlockVector& x);
+  /// @returns an empty result if what is factorised is not positive definite
+  SolveResult solve(ConjugateGradient& conjugate_gradient, const SymmetricBlockMatrix& matrix,
+                    const BlockVector& rhs, double tolerance, int most_iterations, BlockVector& x);
 
   /// Of a solve since the last factor was made, its making included; expected at first.
   double meanCost() const { return mean_cost_; }
@@ -46,7 +43,8 @@ class KeptFactor {
   /// To make a factor, of ofWholeMatrices() with all that is made anew; expected at first.
   double factorCost() const { return analysis_cost_ + factor_cost_; }
   long factorisations() const { return factorisations_; }
-  /// Of the fixed pattern.
+  double blockIterationCost() const { return block_iteration_cost_; }
+  /// Of the fixed pattern; not there in one of ofWholeMatrices().
   const Elimination& elimination() const { return factor_->elimination(); }
 
  private:
@@ -64,8 +62,7 @@ class KeptFactor {
   double analysis_cost_ = 0.0;
   double factor_cost_ = 0.0;
   double iteration_cost_ = 0.0;
-  int fresh_solves_left_ = 0;  // before an old factor is tried again
-  int fresh_solves_next_;
+  Backoff old_factor_{4, 64};
   int fresh_iterations_ = 0;  // of the last solve by a new factor
   int solves_ = 0;            // with the factor
   double cost_ = 0.0;         // of the factor and those

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "haptex/linear/backoff.h"
 #include "haptex/linear/block_cholesky.h"
 #include "haptex/linear/block_matrix.h"
 #include "haptex/linear/conjugate_gradient.h"
@@ -97,13 +98,10 @@ class LinearSolver {
   std::unique_ptr<BlockCholesky> cholesky_;   // of kCholesky, or once it is needed
   std::unique_ptr<KeptFactor> factor_;        // of kAutomatic, as the next one
   std::unique_ptr<KeptFactor> whole_factor_;  // of large patterns
-  double block_iteration_cost_;
-  long factorisations_ = 0;  // in double precision
-  int direct_solves_left_ = 0;
-  int direct_solves_next_;
-  int whole_solves_left_ = 0;
-  int whole_solves_next_;
-  BlockVector residual_;  // of solves in double precision
+  long factorisations_ = 0;                   // in double precision
+  Backoff iterations_{8, 512};                // with the diagonal blocks
+  Backoff fixed_pattern_{8, 512};             // with a factor of it, where there are couplings
+  BlockVector residual_;                      // of solves in double precision
   BlockVector product_;
 };
 
