@@ -196,7 +196,7 @@ void validateNet(const std::string& config_directory, const Sink& sink) {
   const double start = net.bodies()[0].kineticEnergy();
   double farthest = 0.0;
   int rejected = 0;
-  while (net.state().time < 2.0) {
+  while (net.state().time < base::unlessSanitized(2.0, 0.2)) {
     rejected += net.step() ? 0 : 1;
     farthest = std::min(farthest, net.bodies()[0].pose().translation().x());
   }
@@ -204,6 +204,7 @@ void validateNet(const std::string& config_directory, const Sink& sink) {
   sink({name + "steps_rejected", 0.0, double(rejected), double(rejected), 0.0});
   // The net is 0.15 m deep and slack.
   sink({name + "farthest_m", -0.2, farthest, std::max(0.0, -0.2 - farthest), 0.0});
+  if (base::kSanitized) return;  // it is still on its way
   const double height = net.bodies()[0].pose().translation().z();
   sink({name + "ends_in_tray_m", -0.245 + 0.0175, height, std::abs(height + 0.245 - 0.0175), 1e-6});
   const double left = net.bodies()[0].kineticEnergy() / start;
