@@ -3,8 +3,10 @@
 #include <ros/ros.h>
 #include <ros/xmlrpc_manager.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <exception>
 #include <stdexcept>
@@ -21,6 +23,7 @@ namespace haptex::nodes {
 namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(100);  // at roscpp, which may end by itself
+constexpr std::chrono::seconds kMostEnding{10};         // roslaunch kills after 15 and 2 s
 std::atomic<bool> ending{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "for use in a signal handler");
 
@@ -35,6 +38,12 @@ void askToEnd() {
 }
 
 void handleSignal(int /*number*/) { askToEnd(); }
+
+void handleAlarm(int /*number*/) {
+  constexpr char kSays[] = "Asked to end, and still at work: the process ends without it\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kSays, sizeof(kSays) - 1);
+  _exit(1);
+}
 
 /// The second parameter of shutdown(caller, reason), if the caller has sent a text: it may be
 /// anybody.
@@ -88,6 +97,11 @@ void takeFramePrefix() {
 
 bool isEnding() { return ending || !ros::ok(); }
 
+void limitEnding(std::chrono::seconds most) {
+  std::signal(SIGALRM, handleAlarm);
+  alarm(static_cast<unsigned>(most.count()));
+}
+
 int runNode(int argc, char** argv, const ProcessTraits& traits,
             const std::function<RunningNode()>& make) {
   ros::init(argc, argv, traits.name, ros::init_options::NoSigintHandler);
@@ -103,6 +117,7 @@ int runNode(int argc, char** argv, const ProcessTraits& traits,
     ros::AsyncSpinner spinner(traits.spinners);
     spinner.start();
     while (!isEnding()) endAsked().waitFor(kLook);
+    limitEnding(kMostEnding);
     running.stop();
     realtime::makeAllOrdinary();
     spinner.stop();

@@ -3,6 +3,7 @@
 
 #include <ros/node_handle.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -25,11 +26,17 @@ struct ProcessTraits {
 /// Whether this process has been asked to end. For services that wait.
 bool isEnding();
 
+/// From now on the process has so long to end. Then it ends with status 1, whatever it is at: a
+/// step of folded cloth may take longer on a busy machine than roslaunch waits before it kills.
+/// @param most s, > 0
+void limitEnding(std::chrono::seconds most);
+
 /// Everything that main() of a node does. SIGINT, SIGTERM, SIGHUP, `rosnode kill` and a node of the
 /// same name that starts end it in this order: the node stops, forces at zero first; all threads
 /// give SCHED_FIFO up; the node is destroyed; roscpp shuts down. Left to itself roscpp disables its
 /// queue of callbacks first and waits for the master, while its threads look into that queue again
-/// and again: with SCHED_FIFO these keep the processors from everybody.
+/// and again: with SCHED_FIFO these keep the processors from everybody. All of that has 10 s
+/// (limitEnding()).
 ///
 /// @param make the node; may throw what is wrong with its parameters, or that it has nothing to do.
 ///   That is said on the console. With the parameter ~stay, which launch files set for nodes that
