@@ -11,6 +11,7 @@
 #include "haptex/base/require.h"
 #include "haptex/dressing/drape.h"
 #include "haptex/dressing/lay_garment.h"
+#include "haptex/dressing/worn_scene.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/mesh/obj_writer.h"
 
@@ -20,20 +21,24 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const kUsage =
-    "usage: drape_garment GARMENT.yaml OUT.obj --body BODY.obj|BODY.yaml [--edge METRES]\n"
+    "usage: drape_garment GARMENT.yaml OUT.obj --body BODY.obj|BODY.yaml [--edge METRES] "
+    "[--scene SCENE.yaml]\n"
     "Sews a garment on a body and lets it come to rest, with edges of about METRES (0.02):\n"
     "docs/garments.md. OUT.obj has rest coordinates as texture coordinates, and panels as "
-    "groups.\n";
+    "groups.\n"
+    "SCENE.yaml is a scene in which it is worn; beside it is the surface of a BODY.yaml, as "
+    "SCENE_body.obj.\n";
 
 struct Request {
   std::string garment, out, body;
+  std::string scene;          // may be empty
   double edge_length = 0.02;  // m
 };
 
 Request parse(const std::vector<std::string>& arguments) {
-  const base::CommandLine line = base::readCommandLine(arguments, {"--body", "--edge"});
+  const base::CommandLine line = base::readCommandLine(arguments, {"--body", "--edge", "--scene"});
   base::requireTwoFiles(line, "garment");
-  Request request = {line.files[0], line.files[1], line.value("--body")};
+  Request request = {line.files[0], line.files[1], line.value("--body"), line.value("--scene")};
   if (request.body.empty()) base::refuse("a body is needed: --body BODY.obj or BODY.yaml");
   if (line.options.count("--edge") > 0) {
     const auto length = base::parseNumber<double>(line.value("--edge"));
@@ -46,17 +51,34 @@ Request parse(const std::vector<std::string>& arguments) {
   return request;
 }
 
-std::vector<material::Fabric> loadFabrics(const std::vector<std::string>& names,
-                                          const std::string& garment,
-                                          const std::string& fabric_directory) {
-  std::vector<material::Fabric> fabrics;
-  for (const std::string& name : names) {
-    fs::path path = fs::path(garment).parent_path() / ".." / "fabrics" / (name + ".yaml");
-    std::error_code error;
-    if (!fs::is_regular_file(path, error)) path = fs::path(fabric_directory) / (name + ".yaml");
-    fabrics.push_back(material::loadFabric(path.lexically_normal().string()));
+std::string fabricPath(const std::string& name, const std::string& garment,
+                       const std::string& fabric_directory) {
+  fs::path path = fs::path(garment).parent_path() / ".." / "fabrics" / (name + ".yaml");
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) path = fs::path(fabric_directory) / (name + ".yaml");
+  return path.lexically_normal().string();
+}
+
+template <typename Write>
+void writeFile(const std::string& path, const Write& write) {
+  std::ofstream file(path);
+  write(file);
+  if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
+}
+
+void writeScene(const Request& request, const garment::Pattern& pattern,
+                const mesh::ObstacleMesh& body, const std::string& fabric_directory) {
+  std::vector<std::string> fabrics;
+  for (const garment::Panel& panel : pattern.panels) {
+    fabrics.push_back(fabricPath(panel.fabric, request.garment, fabric_directory));
   }
-  return fabrics;
+  std::string surface = request.body;
+  if (fs::path(surface).extension() == ".yaml") {
+    surface = fs::path(request.scene).replace_extension().string() + "_body.obj";
+    writeFile(surface, [&](std::ostream& file) { mesh::writeObj(body, file); });
+  }
+  const WornScene scene{pattern, fabrics, request.out, surface, request.edge_length};
+  writeFile(request.scene, [&](std::ostream& file) { writeWornScene(scene, request.scene, file); });
 }
 
 void print(const DrapeOutcome& outcome, std::ostream& out) {
@@ -87,13 +109,17 @@ int drapeGarment(const std::vector<std::string>& arguments, const std::string& f
     const CoarseStart start = coarseStart(request.edge_length);
     DrapeSettings settings;
     settings.halvings = start.halvings;
-    const auto [garment, body] = layGarment(request.garment, request.body, start.edge_length);
-    const std::vector<material::Fabric> fabrics =
-        loadFabrics(garment.fabrics, request.garment, fabric_directory);
-    const DrapeOutcome outcome = drape(garment, fabrics, body, settings);
-    std::ofstream file(request.out);
-    mesh::writeObj(outcome.mesh, garment.panel_names, file);
-    if (!file.flush()) throw std::runtime_error(request.out + ": cannot be written");
+    const LaidGarment laid = layGarment(request.garment, request.body, start.edge_length);
+    std::vector<material::Fabric> fabrics;
+    for (const std::string& name : laid.garment.fabrics) {
+      fabrics.push_back(material::loadFabric(fabricPath(name, request.garment, fabric_directory)));
+    }
+    const DrapeOutcome outcome = drape(laid.garment, fabrics, laid.body, settings);
+    writeFile(request.out, [&](std::ostream& file) {
+      mesh::writeObj(outcome.mesh, laid.garment.panel_names, file);
+    });
+    if (!request.scene.empty())
+      writeScene(request, laid.garment.pattern, laid.body, fabric_directory);
     print(outcome, out);
     if (outcome.isSound()) return 0;
     err << "the garment is not at rest after " << outcome.settling_time

@@ -18,7 +18,9 @@ SolveResult solve(KeptFactor& factor, const SymmetricBlockMatrix& matrix) {
   const SolveResult result =
       factor.solve(conjugate_gradient, matrix, rhs, kTolerance, kMostIterations, x);
   matrix.multiply(x, product);
-  if (result.converged) EXPECT_LE((product - rhs).norm(), 1.01 * kTolerance * rhs.norm());
+  if (result.converged) {
+    EXPECT_LE((product - rhs).norm(), 1.01 * kTolerance * rhs.norm());
+  }
   return result;
 }
 

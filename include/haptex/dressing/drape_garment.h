@@ -7,8 +7,8 @@
 
 namespace haptex::dressing {
 
-/// @param arguments GARMENT.yaml OUT.obj --body BODY.obj|BODY.yaml [--edge METRES]; panels on
-///   carriers need the latter
+/// @param arguments GARMENT.yaml OUT.obj --body BODY.obj|BODY.yaml [--edge METRES]
+///   [--scene SCENE.yaml]; panels on carriers need a BODY.yaml
 /// @param fabric_directory where fabrics lie that are not in `fabrics` beside the garment's
 ///   directory
 /// @param out lines of a name, a value and a unit, with tabs between; `err` for refusals

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "haptex/mesh/mesh.h"
+#include "haptex/mesh/obstacle.h"
 
 namespace haptex::mesh {
 
@@ -16,5 +17,8 @@ namespace haptex::mesh {
 /// @throws std::invalid_argument if there are not as many names as panels, or one is empty or has a
 ///   blank or a control character
 void writeObj(const ClothMesh& mesh, const std::vector<std::string>& names, std::ostream& out);
+
+/// Writes a surface: its vertices ("v", m) and triangles.
+void writeObj(const ObstacleMesh& surface, std::ostream& out);
 
 }  // namespace haptex::mesh

@@ -1,5 +1,8 @@
 #include "haptex/nodes/rviz_plugin/background_subscriptions.h"
 
+#include <ros/console.h>
+#include <ros/exceptions.h>
+
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -14,14 +17,20 @@ constexpr std::chrono::milliseconds kRetryPeriod(500);
 /// roscpp holds the lock of all subscriptions of the process while it asks the master, and asks one
 /// that is gone again and again: others, and rviz's end, would wait for that lock. So there has to
 /// be a master before it is asked, and one that dies in between is asked once.
-/// @returns none if it has ended meanwhile
+/// @returns none if it has ended meanwhile; an empty one if this process has the topic as another
+///   type
 std::optional<ros::Subscriber> BackgroundSubscriptions::awaitSubscriber(
     Shared& shared, ros::NodeHandle& node, const Subscribe& subscribe) {
   ros::master::setRetryTimeout(ros::WallDuration(0, 1));  // less is without end
   while (true) {
     if (ros::master::check()) {
-      ros::Subscriber subscriber = subscribe(node);
-      if (subscriber) return subscriber;
+      try {
+        ros::Subscriber subscriber = subscribe(node);
+        if (subscriber) return subscriber;
+      } catch (const ros::ConflictingSubscriptionException& error) {
+        ROS_ERROR("Not subscribed: %s", error.what());
+        return ros::Subscriber();
+      }
     }
     std::unique_lock<std::mutex> lock(shared.mutex);
     if (shared.ended || ros::isShuttingDown()) return std::nullopt;

@@ -107,6 +107,7 @@ void ClothDisplay::receive(const haptex::ClothMeshConstPtr& mesh) {
         std::to_string(mesh->triangles.size() / 3) + " triangles of " + mesh->fabrics.front());
     restyle();
   } catch (const std::exception& error) {
+    if (!object_) forget();  // or the surface before would be drawn into none
     refuse("Mesh", error.what());
   }
 }

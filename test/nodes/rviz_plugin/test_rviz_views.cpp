@@ -6,6 +6,7 @@
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/status_property.h>
 #include <rviz/render_panel.h>
+#include <std_msgs/Header.h>
 #include <std_srvs/Trigger.h>
 
 #include <QDockWidget>
@@ -75,6 +76,21 @@ TEST_F(ViewTest, DisplaysAreSwitchedOffAndOnAndReset) {
     if (cycle % 3 == 0) cloth->reset();
     run(0.01);
   }
+  EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); }));
+}
+
+TEST_F(ViewTest, ATopicThatIsThereAsAnotherTypeIsLeftOut) {
+  ros::NodeHandle node;
+  const boost::function<void(const std_msgs::HeaderConstPtr&)> nothing =
+      [](const std_msgs::HeaderConstPtr& /*message*/) {};
+  const ros::Subscriber other = node.subscribe<std_msgs::Header>("/elsewhere/mesh", 1, nothing);
+  const haptex::ClothMesh mesh = sheetMesh(16, 4, fabric_file_);
+  publish(mesh, 0.0);
+  rviz::Display* cloth = manager().createDisplay("haptex/Cloth", "Cloth", true);
+  const QVariant topics = cloth->subProp("Topics")->getValue();
+  cloth->subProp("Topics")->setValue("/elsewhere");
+  run(1.0);
+  cloth->subProp("Topics")->setValue(topics);
   EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); }));
 }
 
