@@ -8,8 +8,12 @@ import numpy as np
 
 from . import programs
 from .environment import SUN_WIDTH, write_hdr
+from .looks import Look
 from .weave import Cloth
 
+SHINING_SHARE = 0.5  # of the sun's light, on what shows how much reaches it: white would be cut off
+SHINING = (f'texture {{ pigment {{ rgb <{SHINING_SHARE},0,1> }} '
+           'finish { ambient 0 diffuse 1 emission rgb <0,0,1> } }')
 SUN_SIDE = 4  # lights along a side of the sun, where a shadow's edge asks for all
 
 HEADER = '''#version 3.7;
@@ -113,8 +117,8 @@ def cloth_text(cloth):
     return text + mesh(surface, textures, texture_of), files
 
 
-def solid_text(solid):
-    sizes, texture = solid.sizes, plain_texture(solid.look)
+def solid_text(solid, texture=None):
+    sizes, texture = solid.sizes, texture or plain_texture(solid.look)
     if solid.surface is not None:
         return mesh(solid.surface, [texture], np.zeros(len(solid.surface.triangles), dtype=int))
     if solid.kind == 'plane':
@@ -133,17 +137,18 @@ def solid_text(solid):
     return f'{text} {texture} {matrix_of(solid.pose[:3].T)} }}\n'
 
 
-def lights(environment, file_name):
-    """All around by radiosity, and the sun."""
+def sky_text(file_name):
+    """All around, by radiosity."""
     # A map of POV-Ray begins at +x and stands about +y; about z after the turn.
-    text = (f'sky_sphere {{ pigment {{ image_map {{ hdr "{file_name}" gamma 1.0 map_type 1 interpolate 2 }} }} '
+    return (f'sky_sphere {{ pigment {{ image_map {{ hdr "{file_name}" gamma 1.0 map_type 1 interpolate 2 }} }} '
             'rotate 90*x }\n')
-    if environment.sun is not None:
-        side = SUN_WIDTH * 1000.0
-        text += (f'light_source {{ {vector(1000.0 * environment.sun)}, rgb {vector(environment.sunlight)} '
-                 f'parallel point_at 0 area_light {side}*x,{side}*y,{SUN_SIDE},{SUN_SIDE} adaptive 0 circular '
-                 'orient }\n')
-    return text
+
+
+def sun_text(sun, light):
+    side = SUN_WIDTH * 1000.0
+    return (f'light_source {{ {vector(1000.0 * np.asarray(sun))}, rgb {vector(light)} '
+            f'parallel point_at 0 area_light {side}*x,{side}*y,{SUN_SIDE},{SUN_SIDE} adaptive 0 circular '
+            'orient }\n')
 
 
 def camera_text(camera, size):
@@ -161,23 +166,69 @@ def at_once():
     return len(os.sched_getaffinity(0))
 
 
+def options(size, more):
+    return ['povray', '+Iscene.pov', f'+W{size[0]}', f'+H{size[1]}', '-D', '-GA', '+WT1', '+A0.3', '+AM2', '+R2', '-J',
+            '+GF', *more]
+
+
+def write_scene(folder, text, things):
+    for thing in things:
+        if isinstance(thing, Cloth):
+            cloth, files = cloth_text(thing)
+            text += cloth
+            for file_name, content in files.items():
+                (folder / file_name).write_bytes(content)
+        else:
+            text += solid_text(thing)
+    (folder / 'scene.pov').write_text(text)
+
+
+def write_lit(folder, camera, size, environment, things):
+    # POV-Ray's pictures on a sphere turn to the right, as seen from within; azimuth turns to the left.
+    write_hdr(environment.radiance[:, ::-1], folder / 'sky.hdr')
+    text = HEADER.format() + camera_text(camera, size) + sky_text('sky.hdr')
+    if environment.sun is not None:
+        text += sun_text(environment.sun, environment.sunlight)
+    write_scene(folder, text, things)
+
+
 def draw(camera, size, environment, things, output):
     """@param size pixels, width and height @param things a Cloth, or several, and Solids
     @param output path of a PNG @throws Refused with what POV-Ray says"""
     require()
     with tempfile.TemporaryDirectory(prefix='haptex_render_') as name:
         folder = pathlib.Path(name)
-        # POV-Ray's pictures on a sphere turn to the right, as seen from within; azimuth turns to the left.
-        write_hdr(environment.radiance[:, ::-1], folder / 'sky.hdr')
-        text = HEADER.format() + camera_text(camera, size) + lights(environment, 'sky.hdr')
-        for thing in things:
-            if isinstance(thing, Cloth):
-                cloth, files = cloth_text(thing)
-                text += cloth
-                for file_name, content in files.items():
-                    (folder / file_name).write_bytes(content)
-            else:
-                text += solid_text(thing)
+        write_lit(folder, camera, size, environment, things)
+        programs.draw(options(size, ['+FN8', 'File_Gamma=sRGB', f'+O{programs.PICTURE}']), folder, output)
+
+
+def linear(folder, size):
+    """(row, column, 3): what POV-Ray draws of the scene in the folder, up to 1."""
+    path = folder / 'picture.ppm'
+    programs.run(options(size, ['+FP16', 'File_Gamma=1.0', f'+O{path.name}']), folder, path)
+    data = path.read_bytes()
+    return np.frombuffer(data, '>u2', 3 * size[0] * size[1], len(data) - 6 * size[0] * size[1]).reshape(
+        size[1], size[0], 3) / 65535.0
+
+
+def draw_light(camera, size, environment, things, look):
+    """@param look of all cloth, without yarns
+    @returns linear pictures: (row, column, 3) of all; (row, column) of what reaches the cloth of a sun that shows as 1 on
+      a white surface that faces it; and (row, column) shares of the pixels that are cloth"""
+    require()
+    plain = [Cloth.plain(thing.surface, look) if isinstance(thing, Cloth) else thing for thing in things]
+    with tempfile.TemporaryDirectory(prefix='haptex_render_') as name:
+        folder = pathlib.Path(name)
+        write_lit(folder, camera, size, environment, plain)
+        lit = linear(folder, size)
+        # Cloth shines blue, and is red in the red light of the sun; all else is black.
+        text = '#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n' + camera_text(camera, size)
+        if environment.sun is not None:
+            text += sun_text(environment.sun, (1.0, 0.0, 0.0))
+        black = plain_texture(Look((0.0, 0.0, 0.0)))
+        for thing in plain:
+            text += mesh(thing.surface, [SHINING], np.zeros(len(thing.surface.triangles), dtype=int)) \
+                if isinstance(thing, Cloth) else solid_text(thing, black)
         (folder / 'scene.pov').write_text(text)
-        programs.draw(['povray', '+Iscene.pov', f'+O{programs.PICTURE}', f'+W{size[0]}', f'+H{size[1]}', '+FN8', '-D',
-                       '-GA', '+WT1', '+A0.3', '+AM2', '+R2', '-J', 'File_Gamma=sRGB', '+GF'], folder, output)
+        red, _, blue = np.moveaxis(linear(folder, size), 2, 0)
+    return lit, red / SHINING_SHARE, blue

@@ -32,12 +32,17 @@ def without_time(png):
     return kept
 
 
+def run(command, folder, picture):
+    """@param command a program and its arguments, that writes the picture in the folder, where it runs
+    @param picture its path @throws Refused with what the program says"""
+    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors='replace',
+                           stdin=subprocess.DEVNULL, env={**os.environ, 'HOME': str(folder)})
+    if ended.returncode != 0 or not picture.exists():
+        raise Refused(f'{command[0]} could not draw it: {error_in(ended.stderr)}')
+
+
 def draw(command, folder, output):
-    """@param command a program and its arguments, that writes PICTURE in the folder, where it runs
-    @param output path of a PNG @throws Refused with what the program says"""
-    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors='replace',
-                         stdin=subprocess.DEVNULL, env={**os.environ, 'HOME': str(folder)})
+    """As run(), of a program that writes PICTURE. @param output path of a PNG"""
     picture = pathlib.Path(folder, PICTURE)
-    if run.returncode != 0 or not picture.exists():
-        raise Refused(f'{command[0]} could not draw it: {error_in(run.stderr)}')
+    run(command, folder, picture)
     pathlib.Path(output).write_bytes(without_time(picture.read_bytes()))

@@ -92,11 +92,24 @@ class Weave:
         return warp * self.look.warp + (1.0 - warp) * self.look.weft
 
 
+class Plain:
+    """A fabric without yarns."""
+
+    def __init__(self, look):
+        self.look = self.even = look
+        self.relief = None
+
+
 class Cloth:
     """surface, which of the weaves each triangle is of, and these."""
 
     def __init__(self, surface, weave_of, weaves):
         self.surface, self.weave_of, self.weaves = surface, weave_of, weaves
+
+    @classmethod
+    def plain(cls, surface, look):
+        """In one look, without yarns."""
+        return cls(surface, np.zeros(len(surface.triangles), dtype=int), [Plain(look)])
 
     def has_yarns(self, number):
         """Of the weave's triangles: whether their yarns are seen, and where they lie is known."""

@@ -391,7 +391,70 @@ class CyclesPictures(Drawn, Runs):
     RENDERER, MODULE = 'cycles', cycles
 
 
-Tests = suite_of(ObjFiles, Environments, Cameras, Solids, Looks, Bags, Programs, PovrayPictures, CyclesPictures)
+COLOUR = 0.3, 0.5, 0.2
+
+
+def btf_of_even_fabric():
+    """A file as docs/appearance.md describes it: flat and matt, so that no light goes between its texels."""
+    texels, columns = 16, 81 * 81 * 3
+    text = b'HAPTBTF1' + np.array([4, 4, 1, 1, 1], '<u4').tobytes()
+    text += np.array([0.01, 0.01, *COLOUR, *COLOUR, 0.0, 1.0], '<f8').tobytes()
+    text += np.zeros(texels, '<f4').tobytes() + bytes([1] * texels)  # heights, and all is warp
+    text += np.zeros(2 * columns + 3, '<f4').tobytes()  # mean, one component, offset, axis and scale of one cluster
+    text += bytes(texels) + np.zeros(texels, '<i2').tobytes()
+    total = 0xcbf29ce484222325
+    for byte in text:
+        total = (total ^ byte) * 0x100000001b3 % 2 ** 64
+    return text + total.to_bytes(8, 'little')
+
+
+@unittest.skipUnless(shutil.which('povray'), 'POV-Ray is not installed')
+class BtfPictures(Runs):
+    def setUp(self):
+        super().setUp()
+        self.btf, self.fabric = self.folder / 'even.btf', self.folder / 'even.yaml'
+        self.btf.write_bytes(btf_of_even_fabric())
+        self.fabric.write_text(f'look: {{warp: {list(COLOUR)}, weft: {list(COLOUR)}, gloss: 0, width: 1}}')
+
+    def test_of_an_even_matt_fabric_are_those_of_povray(self):
+        """From in front, from behind, from the side of the sun's shadow, and with a body that hides a part."""
+        body = self.folder / 'body.obj'
+        body.write_text('v 0.05 0.02 0\nv 0.05 0.06 0\nv 0.05 0.04 0.1\nf 1 2 3\n')
+        for view in ([], ['--eye', -0.6, 0.3, 0.3, '--at', 0, 0.07, 0.07], ['--eye', 0.5, 0.6, 0.2, '--at', 0, 0.07, 0.07],
+                     ['--body', body]):
+            with self.subTest(view=view):
+                pictures = []
+                for how in ([], ['--renderer', 'btf', '--btf', self.btf]):
+                    self.run_render(self.obj, self.picture, '--fabric', self.fabric, '--size', '160x90', *view, *how)
+                    pictures.append(255.0 * imread(self.picture)[..., :3])
+                off = np.abs(pictures[1] - pictures[0]).max(axis=2)
+                is_cloth = pictures[0][..., 1] > pictures[0][..., 0] + 20.0
+                self.assertGreater(is_cloth.mean(), 0.05)
+                self.assertLess(off[is_cloth].mean(), 2.0)
+                self.assertLess(np.percentile(off, 99.0), 6.0)
+
+    def test_are_the_same_to_the_last_byte(self):
+        drawn = []
+        for _ in range(2):
+            self.run_render(self.obj, self.picture, '--renderer', 'btf', '--btf', self.btf, '--size', '64x36')
+            drawn.append(self.picture.read_bytes())
+        self.assertEqual(drawn[0], drawn[1])
+
+    def test_need_a_file_and_cloth_that_has_it(self):
+        (self.folder / 'bare.obj').write_text('v 0 0 0\nv 0 0.2 0\nv 0 0 0.2\nf 1 2 3\n')
+        self.btf.write_bytes(self.btf.read_bytes()[:-1])
+        for words, arguments in (
+                (['--btf FABRIC.btf'], [self.obj, self.picture, '--renderer', 'btf']),
+                (['none.btf: there is no such file'], [self.obj, self.picture, '--renderer', 'btf', '--btf', 'none.btf']),
+                (['--btf is of --renderer btf'], [self.obj, self.picture, '--btf', self.btf]),
+                (['rest coordinates'], [self.folder / 'bare.obj', self.picture, '--renderer', 'btf', '--btf', self.btf]),
+                (['even.btf', 'bytes'], [self.obj, self.picture, '--renderer', 'btf', '--btf', self.btf, '--size', '32x18'])):
+            with self.subTest(arguments=arguments):
+                self.assert_refused(words, *arguments)
+
+
+Tests = suite_of(ObjFiles, Environments, Cameras, Solids, Looks, Bags, Programs, PovrayPictures, CyclesPictures,
+                 BtfPictures)
 
 
 if __name__ == '__main__':
