@@ -122,7 +122,7 @@ HapticLoopSettings dividedSheet(const Fabric& first, const Fabric& second, doubl
                                 double plate_friction) {
   TableSettings table;
   table.fabric = first;
-  table.cells = base::unlessSanitized(40, 20);
+  table.cells = 40;
   table.refinement = base::unlessSanitized(2, 1);
   table.plate_friction = plate_friction;
   HapticLoopSettings settings = sheetOnPlate(table);
