@@ -22,12 +22,12 @@ FLATTEST = 0.02  # of views, over the cloth: flatter ones are those of facets th
 SPREAD = 3  # pixels, how far light is taken from beside an edge
 
 
-def frames_of(cloth, seen, eye):
+def frames_of(cloth, seen, places, eye):
     """Of places that are seen: axes along weft, along warp and out of the face towards the eye (place, 3, 3), and
-    the direction to the eye in these (place, 3). Both sides of cloth have the same yarns."""
+    the direction to the eye in these (place, 3). Both sides of cloth have the same yarns.
+    @param places in space"""
     surface = cloth.surface
     corners = surface.triangles[seen.triangle]
-    places = seen.mean(surface.positions[corners])
     to_eye = eye - places
     to_eye /= np.linalg.norm(to_eye, axis=1, keepdims=True)
     normals = seen.mean(surface.normals()[corners])
@@ -54,38 +54,46 @@ class Function:
             raise Refused('the program btf_radiance is not built, or not found by rosrun')
         self.program = found[0]
 
-    def radiance(self, views, lights, places, widths):
-        """1/sr, red, green and blue, for an irradiance of 1 perpendicular to each light."""
+    def radiance(self, *requests):
+        """1/sr, red, green and blue, for an irradiance of 1 perpendicular to each light. One start of the program,
+        which reads the whole file. @param requests (place, 9): see requests_of() @returns an array for each"""
         with tempfile.TemporaryDirectory(prefix='haptex_btf_') as name:
-            requests, values = pathlib.Path(name, 'requests'), pathlib.Path(name, 'values')
-            np.hstack([views, lights, places, widths[:, None]]).astype(np.float32).tofile(requests)
-            run = subprocess.run([self.program, self.path, requests, values], capture_output=True, text=True)
+            asked, values = pathlib.Path(name, 'requests'), pathlib.Path(name, 'values')
+            np.vstack(requests).astype(np.float32).tofile(asked)
+            run = subprocess.run([self.program, self.path, asked, values], capture_output=True, text=True)
             if run.returncode != 0:
                 raise Refused(run.stderr.strip())
-            return np.fromfile(values, np.float32).reshape(-1, 3).astype(float)
+            radiance = np.fromfile(values, np.float32).reshape(-1, 3).astype(float)
+            return np.split(radiance, np.cumsum([len(part) for part in requests])[:-1])
 
 
-def by_sun(function, frames, views, places, widths, environment):
-    """Radiance by the sun where nothing hides it, and the cosine of its light."""
-    lights = frames @ environment.sun
-    lit = lights[:, 2] > 0.0
-    radiance = np.zeros((len(views), 3))
-    radiance[lit] = function.radiance(views[lit], lights[lit], places[lit], widths[lit])
-    return np.pi * environment.sunlight * radiance, np.maximum(lights[:, 2], 0.0)
+def requests_of(views, lights, places, widths):
+    return np.hstack([views, lights, places, widths[:, None]])
 
 
-def by_all_around(function, views, places, widths):
-    """Radiance where the same comes from everywhere, by its part of what a white surface would show."""
+def lights_around(count):
+    """AROUND arrays (count, 3) of directions by the cosine, each in its part of the circle below."""
     random = np.random.default_rng(1)
-    total = np.zeros((len(views), 3))
+    lights = []
     for part in range(AROUND):
-        # By the cosine: in parts of the circle below, as many as there are directions.
-        turn = 2.0 * np.pi * (part + random.random(len(views))) / AROUND
-        across = np.sqrt(random.random(len(views)))
+        turn = 2.0 * np.pi * (part + random.random(count)) / AROUND
+        across = np.sqrt(random.random(count))
         up = np.sqrt(np.maximum(1.0 - across ** 2, 1e-6))
-        lights = np.column_stack([across * np.cos(turn), across * np.sin(turn), up])
-        total += np.pi * function.radiance(views, lights, places, widths) / up[:, None]
-    return total / AROUND
+        lights.append(np.column_stack([across * np.cos(turn), across * np.sin(turn), up]))
+    return lights
+
+
+def by_both(function, views, places, widths, to_sun):
+    """@param to_sun (place, 3), 0 without a sun
+    @returns radiance by the sun where nothing hides it, for an irradiance of pi perpendicular to it, and radiance
+      where the same comes from everywhere, by its part of what a white surface would show"""
+    lit = to_sun[:, 2] > 0.0
+    around = lights_around(len(views))
+    of_lit, *of_around = function.radiance(requests_of(views[lit], to_sun[lit], places[lit], widths[lit]),
+                                           *(requests_of(views, lights, places, widths) for lights in around))
+    by_sun = np.zeros((len(views), 3))
+    by_sun[lit] = np.pi * of_lit
+    return by_sun, sum(np.pi * values / lights[:, 2:] for values, lights in zip(of_around, around)) / AROUND
 
 
 def spread(field, known):
@@ -134,29 +142,28 @@ class Renderer:
         matt = Look(cloth.weaves[0].even.warp)
         with_light, sunlit, share = povray.draw_light(camera, size, environment, things, matt)
         seen = raster.seen(cloth.surface, camera, size, SIDE)
-        function = Function(self.path)
-        frames, views = frames_of(cloth, seen, camera.eye)
-        places = seen.mean(cloth.surface.rest[seen.triangle])
         in_space = seen.mean(cloth.surface.positions[cloth.surface.triangles[seen.triangle]])
+        frames, views = frames_of(cloth, seen, in_space, camera.eye)
+        places = seen.mean(cloth.surface.rest[seen.triangle])
         # As wide as a pixel, so that places of neighbours overlap, and yarns as fine as pixels make no patterns.
         widths = camera.pixel(in_space, size[0]) / np.sqrt(views[:, 2])
-        shape = size[1], size[0], 3
-        sun, bare = np.zeros(shape), np.zeros(shape)  # of cloth; of what is white, by the sun
+        to_sun, strength = np.zeros((len(views), 3)), np.zeros(3)
         if environment.sun is not None:
-            of_places, cosines = by_sun(function, frames, views, places, widths, environment)
-            # What hides the sun is known by pixel.
-            cosine = seen.by_pixel(cosines[:, None])[..., 0] * share
-            visible = np.clip(sunlit / np.maximum(cosine, 1e-6), 0.0, 1.0)
-            sun = visible[..., None] * seen.by_pixel(of_places)
-            bare = (sunlit / np.maximum(share, 1e-6))[..., None] * environment.sunlight
+            to_sun, strength = frames @ environment.sun, environment.sunlight
+        by_sun, by_all_around = by_both(Function(self.path), views, places, widths, to_sun)
+        # What hides the sun is known by pixel.
+        cosine = seen.by_pixel(np.maximum(to_sun[:, 2:], 0.0))[..., 0] * share
+        visible = np.clip(sunlit / np.maximum(cosine, 1e-6), 0.0, 1.0)
+        sun = visible[..., None] * strength * seen.by_pixel(by_sun)
+        bare = (sunlit / np.maximum(share, 1e-6))[..., None] * strength  # of what is white, by the sun
         around = np.maximum(with_light / np.maximum(matt.warp, 1e-3) - bare, 0.0)  # what a white surface would show by all else
         around = spread(around, share > 0.99)
-        drawn = sun + around * seen.by_pixel(by_all_around(function, views, places, widths))
+        drawn = sun + around * seen.by_pixel(by_all_around)
         others = with_light - share[..., None] * matt.warp * (bare + around)
         picture = np.where(share[..., None] > 0.0,
                            np.maximum(others, 0.0) * (share < 0.99)[..., None] + share[..., None] * drawn, with_light)
         with tempfile.TemporaryDirectory(prefix='haptex_render_') as name:
             path = pathlib.Path(name, programs.PICTURE)
             imsave(path, srgb(picture))
-            pathlib.Path(output).write_bytes(programs.without_time(path.read_bytes()))
+            programs.keep(path, output)
 

@@ -171,15 +171,21 @@ def options(size, more):
             '+GF', *more]
 
 
-def write_scene(folder, text, things):
+def shining_text(cloth):
+    """As cloth_text(): blue by itself, and red in the red light of the sun."""
+    return mesh(cloth.surface, [SHINING], np.zeros(len(cloth.surface.triangles), dtype=int)), {}
+
+
+def write_scene(folder, text, things, text_of_cloth=cloth_text, texture=None):
+    """@param texture of all Solids, if not that of their own looks"""
     for thing in things:
         if isinstance(thing, Cloth):
-            cloth, files = cloth_text(thing)
+            cloth, files = text_of_cloth(thing)
             text += cloth
             for file_name, content in files.items():
                 (folder / file_name).write_bytes(content)
         else:
-            text += solid_text(thing)
+            text += solid_text(thing, texture)
     (folder / 'scene.pov').write_text(text)
 
 
@@ -221,14 +227,9 @@ def draw_light(camera, size, environment, things, look):
         folder = pathlib.Path(name)
         write_lit(folder, camera, size, environment, plain)
         lit = linear(folder, size)
-        # Cloth shines blue, and is red in the red light of the sun; all else is black.
         text = '#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n' + camera_text(camera, size)
         if environment.sun is not None:
             text += sun_text(environment.sun, (1.0, 0.0, 0.0))
-        black = plain_texture(Look((0.0, 0.0, 0.0)))
-        for thing in plain:
-            text += mesh(thing.surface, [SHINING], np.zeros(len(thing.surface.triangles), dtype=int)) \
-                if isinstance(thing, Cloth) else solid_text(thing, black)
-        (folder / 'scene.pov').write_text(text)
+        write_scene(folder, text, plain, shining_text, plain_texture(Look((0.0, 0.0, 0.0))))
         red, _, blue = np.moveaxis(linear(folder, size), 2, 0)
     return lit, red / SHINING_SHARE, blue

@@ -45,4 +45,9 @@ def draw(command, folder, output):
     """As run(), of a program that writes PICTURE. @param output path of a PNG"""
     picture = pathlib.Path(folder, PICTURE)
     run(command, folder, picture)
+    keep(picture, output)
+
+
+def keep(picture, output):
+    """@param picture, output paths of PNGs"""
     pathlib.Path(output).write_bytes(without_time(picture.read_bytes()))

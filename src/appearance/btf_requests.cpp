@@ -10,6 +10,7 @@
 
 #include "haptex/appearance/btf_measures.h"
 #include "haptex/base/require.h"
+#include "haptex/base/whole_file.h"
 
 namespace haptex::appearance {
 namespace {
@@ -100,10 +101,8 @@ std::vector<BtfRequest> readRequests(const std::string& path) {
 }
 
 void writeRadiance(const std::vector<Radiance>& values, const std::string& path) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(values.data()),
-             static_cast<std::streamsize>(values.size() * sizeof(Radiance)));
-  if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
+  base::writeWholeFile(
+      path, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Radiance)});
 }
 
 }  // namespace haptex::appearance

@@ -1,14 +1,14 @@
 #include "haptex/dressing/drape_garment.h"
 
 #include <filesystem>
-#include <fstream>
 #include <ostream>
-#include <stdexcept>
+#include <sstream>
 
 #include "haptex/base/command_line.h"
 #include "haptex/base/parse_number.h"
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
+#include "haptex/base/whole_file.h"
 #include "haptex/dressing/drape.h"
 #include "haptex/dressing/lay_garment.h"
 #include "haptex/dressing/worn_scene.h"
@@ -59,11 +59,12 @@ std::string fabricPath(const std::string& name, const std::string& garment,
   return path.lexically_normal().string();
 }
 
+/// @param write takes the stream
 template <typename Write>
 void writeFile(const std::string& path, const Write& write) {
-  std::ofstream file(path);
-  write(file);
-  if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
+  std::ostringstream text;
+  write(text);
+  base::writeWholeFile(path, text.str());
 }
 
 void writeScene(const Request& request, const garment::Pattern& pattern,
