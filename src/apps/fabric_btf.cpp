@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "haptex/appearance/brdf.h"
 #include "haptex/appearance/btf_file.h"
 #include "haptex/appearance/btf_measures.h"
 #include "haptex/base/command_line.h"
@@ -45,6 +46,9 @@ void make(const std::string& name, const std::string& path) {
   std::cout << "error: " << error.of_mean << " of the mean radiance, " << error.of_root_square
             << " of its root mean square" << std::endl;
   std::cout << "reciprocity: " << appearance::reciprocityError(btf, {192, 32, 1, 1, kSeed})
+            << std::endl;
+  std::cout << "mean over the repeat between sampled directions: "
+            << appearance::meanError(btf, appearance::meanOverRepeat(btf), {48, 64, 1, 1, kSeed})
             << std::endl;
   material::Look white = *fabric.look;
   white.warp = white.weft = {1.0, 1.0, 1.0};

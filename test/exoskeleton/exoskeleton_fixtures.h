@@ -1,15 +1,12 @@
 // Devices at the other end of a real pseudo-terminal.
 #pragma once
 
-#include <stdlib.h>
-
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <stdexcept>
 #include <string>
 
 #include "../exoskeleton/shipped_urdf.h"
+#include "../temporary_directory.h"
 #include "haptex/exoskeleton/emulator/emulated_device.h"
 #include "haptex/exoskeleton/protocol/firmware_model.h"
 #include "haptex/realtime/periodic_thread.h"
@@ -17,25 +14,7 @@
 
 namespace haptex::exoskeleton {
 
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "haptexXXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no directory " + name);
-    path_ = name;
-  }
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
+using test::TemporaryDirectory;
 
 /// The firmware's end of a pseudo-terminal: one period of its life.
 class DeviceOnALine {

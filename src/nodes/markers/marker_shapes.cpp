@@ -15,10 +15,9 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr int kMeridians = 24;
 constexpr int kParallels = 16;  // of both caps together, about
 
-// Towards the light, from the viewer's side, above and left, so that a hanging cloth is neither
-// the brightest nor the darkest orientation and waves show both ways.
-const Eigen::Vector3d kLight = Eigen::Vector3d(0.62, -0.52, 0.58).normalized();
-constexpr double kAmbient = 0.35;
+// From the viewer's side, above and left, so that a hanging cloth is neither the brightest nor the
+// darkest orientation and waves show both ways.
+const Eigen::Vector3d kTowardsSun = Eigen::Vector3d(0.62, -0.52, 0.58).normalized();
 
 /// A circle around the axis of a surface of revolution.
 struct Ring {
@@ -77,8 +76,10 @@ std_msgs::ColorRGBA colourMessage(const Eigen::Vector3f& colour, float opacity) 
   return message;
 }
 
+Eigen::Vector3d towardsSun() { return kTowardsSun; }
+
 float shade(const Eigen::Vector3d& normal) {
-  return static_cast<float>(kAmbient + (1.0 - kAmbient) * std::abs(normal.dot(kLight)));
+  return static_cast<float>(kAmbient + (1.0 - kAmbient) * std::abs(normal.dot(kTowardsSun)));
 }
 
 void shadeTriangles(visualization_msgs::Marker& marker, const Eigen::Vector3f& colour,

@@ -14,6 +14,9 @@
 
 #include <cmath>
 #include <exception>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace haptex::nodes {
 namespace {
@@ -35,6 +38,11 @@ void ClothDisplay::addProperties() {
   colour_by_->addOption("Contact force", static_cast<int>(ColourBy::kContactForce));
   colour_by_->addOption("Fabric", static_cast<int>(ColourBy::kFabric));
   colour_by_->addOption("Panel", static_cast<int>(ColourBy::kPanel));
+  colour_by_->addOption("Look", static_cast<int>(ColourBy::kLook));
+  btf_folder_ = new rviz::StringProperty(
+      "BTF folder", "",
+      "For looks: where FABRIC.btf of each fabric is, as rosrun haptex fabric_btf writes it.",
+      this);
   full_scale_ = new rviz::FloatProperty("Full scale", 0.0F,
                                         "Value of the last colour: strain without unit, stress in "
                                         "N/m, force in N. 0: 0.01, 100 N/m, 0.1 N.",
@@ -51,6 +59,10 @@ void ClothDisplay::addProperties() {
   legend_wanted_ = new rviz::BoolProperty("Legend", true, "What the colours stand for.", this);
   connect(topics_, &rviz::Property::changed, this, [this] { subscribe(); });
   connect(colour_by_, &rviz::Property::changed, this, [this] { rebuild(); });
+  connect(btf_folder_, &rviz::Property::changed, this, [this] {
+    looks_.forget();
+    rebuild();
+  });
   for (rviz::Property* property :
        {static_cast<rviz::Property*>(full_scale_), static_cast<rviz::Property*>(wireframe_),
         static_cast<rviz::Property*>(grain_lines_), static_cast<rviz::Property*>(self_shadow_),
@@ -103,6 +115,7 @@ void ClothDisplay::receive(const haptex::ClothMeshConstPtr& mesh) {
     object_.reset();
     object_ = std::make_unique<SurfaceObject>(*scene_manager_, *scene_node_, *surface);
     surface_ = std::move(surface);
+    looks_read_ = 0;
     say("Mesh", rviz::StatusProperty::Ok,
         std::to_string(mesh->triangles.size() / 3) + " triangles of " + mesh->fabrics.front());
     restyle();
@@ -113,6 +126,7 @@ void ClothDisplay::receive(const haptex::ClothMeshConstPtr& mesh) {
 }
 
 void ClothDisplay::rebuild() {
+  if (colourBy() != ColourBy::kLook) unsay("Look");
   if (mesh_) receive(haptex::ClothMeshConstPtr(mesh_));
 }
 
@@ -127,7 +141,7 @@ void ClothDisplay::restyle() {
 }
 
 void ClothDisplay::showLegend() {
-  if (!legend_wanted_->getBool()) {
+  if (!legend_wanted_->getBool() || surface_->colourBy() == ColourBy::kLook) {
     legend_->hide();
     return;
   }
@@ -137,10 +151,47 @@ void ClothDisplay::showLegend() {
                 kLegendLeft, kLegendTop);
 }
 
-/// In the frame of the cloth; none without self-shadow.
+/// Those that have been read by now, and says what there is of them.
+void ClothDisplay::takeLooks() {
+  const std::string folder = btf_folder_->getStdString();
+  if (folder.empty()) {
+    refuse("Look", "no BTF folder is given");
+    return;
+  }
+  std::vector<std::shared_ptr<const appearance::Brdf>> brdfs;
+  std::size_t read = 0;
+  std::string open, errors;
+  for (const std::string& fabric : mesh_->fabrics) {
+    const FabricLooks::Look look = looks_.of(folder + "/" + fabric + ".btf");
+    brdfs.push_back(look.brdf);
+    if (look.brdf) {
+      ++read;
+    } else if (look.error.empty()) {
+      open += (open.empty() ? "" : ", ") + fabric;
+    } else {
+      errors += (errors.empty() ? "" : "; ") + look.error;
+    }
+  }
+  if (read != looks_read_) {
+    surface_->setLooks(std::move(brdfs));
+    looks_read_ = read;
+    state_is_new_ = true;
+  }
+  if (!errors.empty()) {
+    refuse("Look", errors);
+  } else if (!open.empty()) {
+    say("Look", rviz::StatusProperty::Warn, "being read: " + open);
+  } else {
+    say("Look", rviz::StatusProperty::Ok, "of all fabrics");
+  }
+}
+
+/// In the frame of the cloth; none where nothing depends on it.
 std::optional<Eigen::Vector3d> ClothDisplay::eye() const {
   rviz::ViewController* view = context_->getViewManager()->getCurrent();
-  if (!self_shadow_->getBool() || view == nullptr) return std::nullopt;
+  if ((!self_shadow_->getBool() && colourBy() != ColourBy::kLook) || view == nullptr) {
+    return std::nullopt;
+  }
   const Ogre::Vector3 eye =
       scene_node_->convertWorldToLocalPosition(view->getCamera()->getDerivedPosition());
   const Eigen::Vector3d place(eye.x, eye.y, eye.z);
@@ -149,8 +200,10 @@ std::optional<Eigen::Vector3d> ClothDisplay::eye() const {
 
 void ClothDisplay::refresh() {
   if (!surface_ || !state_) return;
-  // The side that is seen may be another one, of the same state.
-  const bool has_turned = self_shadow_->getBool() && eye() != eye_;
+  if (colourBy() == ColourBy::kLook) takeLooks();
+  // What is seen of the same state may be another side, or have another look.
+  const std::optional<Eigen::Vector3d> place_of_eye = eye();
+  const bool has_turned = place_of_eye && place_of_eye != eye_;
   if (surface_->knows(*state_)) {
     if (state_is_new_) {
       draw();
@@ -166,6 +219,7 @@ void ClothDisplay::draw() {
   try {
     eye_ = eye();
     surface_->setEye(eye_);
+    surface_->setSelfShadow(self_shadow_->getBool());
     surface_->take(*state_);
     object_->update(*surface_, surface_->attached(*state_));
     say("State", rviz::StatusProperty::Ok, "drawn");

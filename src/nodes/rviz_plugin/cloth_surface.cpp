@@ -19,14 +19,20 @@
 namespace haptex::nodes {
 namespace {
 
-const Eigen::Vector3f kExcludedColour(0.62F, 0.62F, 0.62F);
+const Eigen::Vector3f kNeutralColour(0.62F, 0.62F, 0.62F);
+
+// Of the direction to the eye out of the fabric's plane: flatter ones are those of facets that a
+// smooth surface has not.
+constexpr double kFlattest = 0.02;
 
 bool isQuantity(ColourBy colour_by) {
-  return colour_by != ColourBy::kFabric && colour_by != ColourBy::kPanel;
+  return colour_by == ColourBy::kStrain || colour_by == ColourBy::kStress ||
+         colour_by == ColourBy::kContactForce;
 }
 
 bool needsElements(ColourBy colour_by) {
-  return colour_by == ColourBy::kStrain || colour_by == ColourBy::kStress;
+  return colour_by == ColourBy::kStrain || colour_by == ColourBy::kStress ||
+         colour_by == ColourBy::kLook;
 }
 
 /// Rest coordinates of a triangle's corners, in its own panel.
@@ -73,6 +79,11 @@ VertexColour colourOf(const Eigen::Vector3f& colour, float brightness, double op
           byteOf(brightness * colour[2]), byteOf(opacity)};
 }
 
+/// IEC 61966-2-1. @param linear 0 to 1, and beyond
+double srgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
 /// NaN is not.
 bool isDrawable(const Eigen::Vector3d& point) {
   constexpr double kFarthest = ClothSurface::kFarthest;
@@ -89,7 +100,7 @@ void requireCount(const std::string& field, std::size_t count, std::size_t allow
 }  // namespace
 
 ClothSurface::ClothSurface(const haptex::ClothMesh& mesh, ColourBy colour_by)
-    : mesh_(mesh.mesh), colour_by_(colour_by) {
+    : mesh_(mesh.mesh), colour_by_(colour_by), fabric_count_(mesh.fabrics.size()) {
   const RestMesh rest = restMesh(mesh);
   requireFabrics(mesh);
   triangles_ = rest.triangles;
@@ -131,6 +142,13 @@ std::vector<int> ClothSurface::groupsOfTriangles(const haptex::ClothMesh& mesh,
     groups = rest.panels.empty() ? partsOf(triangles_, points_.size()) : rest.panels;
     const int count = 1 + *std::max_element(groups.begin(), groups.end());
     for (int part = 0; part < count; ++part) groups_.push_back("panel " + std::to_string(part));
+  } else if (colour_by_ == ColourBy::kLook) {
+    // A panel's yarns run elsewhere than those of its neighbour. The fabric is what is left over.
+    if (!rest.panels.empty()) groups = rest.panels;
+    for (std::size_t t = 0; t < groups.size(); ++t) {
+      groups[t] *= static_cast<int>(fabric_count_);
+      if (!triangle_fabrics_.empty()) groups[t] += triangle_fabrics_[t];
+    }
   }
   return groups;
 }
@@ -184,13 +202,22 @@ void ClothSurface::setFullScale(double full) {
 
 void ClothSurface::setOpacity(double opacity) { opacity_ = opacity; }
 
-void ClothSurface::setEye(const std::optional<Eigen::Vector3d>& eye) {
-  eye_ = eye;
-  if (eye_ && !sky_) sky_.emplace(triangles_, points_.size());
+void ClothSurface::setEye(const std::optional<Eigen::Vector3d>& eye) { eye_ = eye; }
+
+void ClothSurface::setSelfShadow(bool wanted) { self_shadow_ = wanted; }
+
+void ClothSurface::setLooks(std::vector<std::shared_ptr<const appearance::Brdf>> looks) {
+  if (looks.size() != fabric_count_) {
+    throw std::invalid_argument("there are " + std::to_string(looks.size()) + " looks of " +
+                                std::to_string(fabric_count_) + " fabrics: allowed is one each");
+  }
+  looks_ = std::move(looks);
+  wefts_.resize(particles_.size());
+  warps_.resize(particles_.size());
 }
 
 void ClothSurface::seeFrom(const Eigen::Vector3d& eye) {
-  if (sky_shares_ == nullptr) return;
+  if (!eye_) return;
   eye_ = eye;
   colourVertices();
 }
@@ -214,7 +241,10 @@ void ClothSurface::take(const haptex::ContactForces& forces) {
 void ClothSurface::take(const haptex::ClothState& state) {
   readPositions(state);
   sumTriangles();
-  sky_shares_ = eye_ ? &sky_->compute(points_) : nullptr;
+  if (!looks_.empty()) sumAxes();
+  const bool shadowed = self_shadow_ && eye_;
+  if (shadowed && !sky_) sky_.emplace(triangles_, points_.size());
+  sky_shares_ = shadowed ? &sky_->compute(points_) : nullptr;
   markExcluded(state);
   colourVertices();
 }
@@ -248,13 +278,32 @@ void ClothSurface::sumTriangles() {
     const Eigen::Vector3d second = points_[c] - points_[a];
     Eigen::Vector4f share = Eigen::Vector4f::Zero();
     share.head<3>() = first.cross(second).cast<float>();
-    if (!at_rest_.empty()) {
+    if (isQuantity(colour_by_) && !at_rest_.empty()) {
       const auto& [weft, warp, area] = at_rest_[t];
       const cloth::ElementFrame frame{weft[1] * first + weft[2] * second,
                                       warp[1] * first + warp[2] * second};
       share[3] = static_cast<float>(area * valueOf(t, cloth::greenStrain(frame)));
     }
     for (const int particle : triangles_[t]) sums_[particle] += share;
+  }
+}
+
+/// Where the yarns around each vertex run.
+void ClothSurface::sumAxes() {
+  std::fill(wefts_.begin(), wefts_.end(), Eigen::Vector3f::Zero());
+  std::fill(warps_.begin(), warps_.end(), Eigen::Vector3f::Zero());
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const auto& [a, b, c] = triangles_[t];
+    const Eigen::Vector3d first = points_[b] - points_[a], second = points_[c] - points_[a];
+    const auto& [weft, warp, area] = at_rest_[t];
+    const Eigen::Vector3f along_weft =
+        (weft[1] * first + weft[2] * second).normalized().cast<float>();
+    const Eigen::Vector3f along_warp =
+        (warp[1] * first + warp[2] * second).normalized().cast<float>();
+    for (int corner = 0; corner < 3; ++corner) {
+      wefts_[triangle_vertices_[3 * t + corner]] += along_weft;
+      warps_[triangle_vertices_[3 * t + corner]] += along_warp;
+    }
   }
 }
 
@@ -291,15 +340,43 @@ void ClothSurface::markExcluded(const haptex::ClothState& state) {
 
 void ClothSurface::colourVertices() {
   const bool by_quantity = isQuantity(colour_by_);
+  const bool by_look = colour_by_ == ColourBy::kLook;
   for (std::size_t vertex = 0; vertex < particles_.size(); ++vertex) {
     const int particle = particles_[vertex];
-    const Eigen::Vector3f colour = excluded_[particle] != 0 ? kExcludedColour
-                                   : by_quantity ? viridis(scale_.fraction(valueAt(particle)))
-                                                 : distinctColour(vertex_groups_[vertex]);
+    const bool excluded = excluded_[particle] != 0;
     const Eigen::Vector3d normal = sums_[particle].head<3>().cast<double>().normalized();
     const double sky = sky_shares_ != nullptr ? skyShareAt(particle) : 1.0;
+    if (!excluded && by_look && eye_ && !looks_.empty()) {
+      if (const auto& brdf = looks_[vertex_groups_[vertex] % static_cast<int>(fabric_count_)]) {
+        colours_[vertex] = lookOf(vertex, *brdf, normal, sky);
+        continue;
+      }
+    }
+    const Eigen::Vector3f colour = excluded || by_look ? kNeutralColour
+                                   : by_quantity       ? viridis(scale_.fraction(valueAt(particle)))
+                                                       : distinctColour(vertex_groups_[vertex]);
     colours_[vertex] = colourOf(colour, shade(normal) * static_cast<float>(sky), opacity_);
   }
+}
+
+/// @param sky share of it that is seen
+VertexColour ClothSurface::lookOf(std::size_t vertex, const appearance::Brdf& brdf,
+                                  const Eigen::Vector3d& normal, double sky) const {
+  const Eigen::Vector3d to_eye = (*eye_ - points_[particles_[vertex]]).normalized();
+  // Both sides have the same yarns.
+  Eigen::Matrix3d axes;  // rows: along weft, along warp, towards the eye
+  axes.row(2) = normal.dot(to_eye) < 0.0 ? -normal : normal;
+  const Eigen::Vector3d out = axes.row(2), weft = wefts_[vertex].cast<double>();
+  axes.row(0) = (weft - weft.dot(out) * out).normalized();
+  axes.row(1) = out.cross(Eigen::Vector3d(axes.row(0)));
+  if (axes.row(1).dot(warps_[vertex].cast<double>()) < 0.0) axes.row(1) *= -1.0;
+  Eigen::Vector3d view = axes * to_eye;
+  view.z() = std::max(view.z(), kFlattest);
+  const Eigen::Vector3f radiance =
+      static_cast<float>(M_PI * (1.0 - kAmbient)) * brdf.radiance(view, axes * towardsSun()) +
+      static_cast<float>(kAmbient * sky) * brdf.underSky(view);
+  return {byteOf(srgb(radiance[0])), byteOf(srgb(radiance[1])), byteOf(srgb(radiance[2])),
+          byteOf(opacity_)};
 }
 
 std::vector<std::uint32_t> ClothSurface::attached(const haptex::ClothState& state) const {

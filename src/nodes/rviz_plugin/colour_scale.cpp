@@ -35,9 +35,10 @@ ColourScale scaleOf(ColourBy quantity) {
       return {"force per particle, mN", 0.1, 3, 1000.0};
     case ColourBy::kFabric:
     case ColourBy::kPanel:
+    case ColourBy::kLook:
       break;
   }
-  throw std::invalid_argument("fabrics and panels have colours, but no scale");
+  throw std::invalid_argument("fabrics, panels and looks have colours, but no scale");
 }
 
 }  // namespace haptex::nodes

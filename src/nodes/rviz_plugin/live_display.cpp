@@ -60,4 +60,8 @@ void LiveDisplay::refuse(const std::string& what, const std::string& why) {
   say(what, rviz::StatusProperty::Error, why);
 }
 
+void LiveDisplay::unsay(const std::string& what) {
+  if (said_.erase(what) > 0) deleteStatusStd(what);
+}
+
 }  // namespace haptex::nodes

@@ -100,7 +100,7 @@ class RvizViews(unittest.TestCase):
 
     def test_nothing_that_people_do_to_a_view_ends_it(self):
         output = self.run_program(self.start_master(), '--gtest_filter=-*AMaster*:*AReplayedBag*')
-        self.assertIn('[  PASSED  ] 11 tests', output)
+        self.assertIn('[  PASSED  ] 12 tests', output)
         figures = re.findall(r'^(?:rviz alone|a service that ).*$', output, re.MULTILINE)
         self.assertEqual(len(figures), 2, output)
         print('\n'.join(figures))

@@ -4,11 +4,14 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "../../refusal.h"
+#include "haptex/appearance/directions.h"
 #include "haptex/nodes/markers/colour_map.h"
 #include "haptex/nodes/markers/marker_shapes.h"
 #include "haptex/nodes/rviz_plugin/cloth_surface.h"
@@ -139,6 +142,7 @@ TEST(ClothSurface, ShadowsTheSideInACornerAndNotTheOneOutside) {
   }
   surface.take(state);
   const std::vector<VertexColour> bare = surface.colours();
+  surface.setSelfShadow(true);
   surface.setEye(Eigen::Vector3d(-5.0, 0.5, 0.5));
   surface.take(state);
   EXPECT_EQ(surface.colours()[0], bare[0]);
@@ -156,6 +160,86 @@ TEST(ClothSurface, ShadowsTheSideInACornerAndNotTheOneOutside) {
   EXPECT_EQ(surface.colours(), bare);
   surface.seeFrom(Eigen::Vector3d(5.0, 0.5, 0.5));
   EXPECT_EQ(surface.colours(), bare) << "a state without shadows has none";
+}
+
+/// What a fabric reflects, the same to all sides, 1 for all light.
+appearance::Brdf::Table white() {
+  return appearance::Brdf::Table::Constant(static_cast<float>(1.0 / M_PI));
+}
+
+std::vector<std::shared_ptr<const appearance::Brdf>> looks(const appearance::Brdf::Table& table) {
+  return {std::make_shared<appearance::Brdf>(table)};
+}
+
+TEST(ClothSurface, ALookIsLitBySunAndSkyOnTheSideOfTheEye) {
+  ClothSurface surface(squareMesh(), ColourBy::kLook);
+  appearance::Brdf::Table table = white();
+  table.row(1) *= 0.5F;
+  table.row(2) *= 0.0F;
+  surface.setLooks(looks(table));
+  const haptex::ClothState state = squareState(1.0);
+  surface.take(state);
+  EXPECT_EQ(surface.colours()[0], shaded({0.62F, 0.62F, 0.62F}, Eigen::Vector3d::UnitX()))
+      << "there is no eye";
+  surface.setEye(Eigen::Vector3d(5.0, 0.5, 0.5));
+  surface.take(state);
+  const double sunny = kAmbient + (1.0 - kAmbient) * towardsSun().x();
+  const auto encoded = [](double linear) {
+    return std::lround(255.0 * (1.055 * std::pow(linear, 1.0 / 2.4) - 0.055));
+  };
+  for (const VertexColour& vertex : surface.colours()) {
+    EXPECT_NEAR(vertex[0], encoded(sunny), 1);
+    EXPECT_NEAR(vertex[1], encoded(0.5 * sunny), 1);
+    EXPECT_EQ(vertex[2], 0);
+    EXPECT_EQ(vertex[3], 255);
+  }
+  surface.seeFrom(Eigen::Vector3d(-5.0, 0.5, 0.5));
+  EXPECT_NEAR(surface.colours()[0][0], encoded(kAmbient), 1) << "the sun is on the other side";
+}
+
+/// White for eyes on the side that the weft points to, black for others.
+appearance::Brdf::Table brightAlongWeft() {
+  appearance::Brdf::Table table = white();
+  for (int view = 0; view < appearance::kDirections; ++view) {
+    if (appearance::sampledDirections()[view].x() > 0.0) continue;
+    table.middleCols<appearance::kDirections>(appearance::kDirections * view).setZero();
+  }
+  return table;
+}
+
+TEST(ClothSurface, ALookTurnsWithTheYarns) {
+  const Eigen::Vector3d along_weft(3.0, 4.5, 0.5), against_weft(3.0, -3.5, 0.5);
+  ClothSurface surface(squareMesh(), ColourBy::kLook);
+  surface.setLooks(looks(brightAlongWeft()));
+  surface.setEye(along_weft);
+  surface.take(squareState(1.0));
+  EXPECT_GT(surface.colours()[0][0], 200);
+  surface.seeFrom(against_weft);
+  EXPECT_LT(surface.colours()[0][0], 50);
+  // From behind, as the other side has the same yarns.
+  surface.seeFrom(Eigen::Vector3d(-3.0, 4.5, 0.5));
+  EXPECT_GT(surface.colours()[0][0], 100);
+  surface.seeFrom(Eigen::Vector3d(-3.0, -3.5, 0.5));
+  EXPECT_LT(surface.colours()[0][0], 50);
+
+  // Two panels, the second cut the other way round.
+  haptex::ClothMesh sewn = squareMesh();
+  sewn.corner_weft_coordinates = {0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  sewn.corner_warp_coordinates = {0.0, 0.0, 1.0, 1.0, 0.0, 0.0};
+  sewn.triangle_panels = {0, 1};
+  ClothSurface garment(sewn, ColourBy::kLook);
+  ASSERT_EQ(garment.vertexCount(), 6u);
+  garment.setLooks(looks(brightAlongWeft()));
+  garment.setEye(along_weft);
+  garment.take(squareState(1.0));
+  EXPECT_GT(garment.colours()[garment.triangles()[0]][0], 200);
+  EXPECT_LT(garment.colours()[garment.triangles()[3]][0], 50);
+}
+
+TEST(ClothSurface, RefusesAnotherNumberOfLooks) {
+  ClothSurface surface(squareMesh(), ColourBy::kLook);
+  EXPECT_EQ(test::refusalOf([&] { surface.setLooks({}); }),
+            "there are 0 looks of 1 fabrics: allowed is one each");
 }
 
 TEST(ClothSurface, FabricsMeetInASharpEdge) {

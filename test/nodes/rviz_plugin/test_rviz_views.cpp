@@ -24,6 +24,9 @@
 #include <utility>
 #include <vector>
 
+#include "../../appearance/fixtures.h"
+#include "../../temporary_directory.h"
+#include "haptex/appearance/btf_file.h"
 #include "timed_application.h"
 #include "view_fixture.h"
 
@@ -107,7 +110,7 @@ TEST_F(ViewTest, EveryColourAndStyleIsDrawn) {
   const haptex::ClothMesh mesh = sheetMesh(16, 3, fabric_file_);
   publish(mesh, 0.0);
   rviz::Display* cloth = manager().createDisplay("haptex/Cloth", "Cloth", true);
-  for (const char* colours : {"Strain", "Stress", "Contact force", "Fabric", "Panel"}) {
+  for (const char* colours : {"Strain", "Stress", "Contact force", "Fabric", "Panel", "Look"}) {
     for (const bool on : {true, false}) {
       cloth->subProp("Colour by")->setValue(colours);
       cloth->subProp("Wireframe")->setValue(on);
@@ -121,6 +124,20 @@ TEST_F(ViewTest, EveryColourAndStyleIsDrawn) {
       EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); })) << colours;
     }
   }
+}
+
+TEST_F(ViewTest, ALookIsReadWhileTheClothIsDrawn) {
+  const test::TemporaryDirectory folder;
+  const material::Look look{{0.5}, {0.5}, 0.0, 1.0};
+  appearance::writeBtf(appearance::makeBtf(appearance::flatRelief(), look, {16, 16, {4, 1, 4}}),
+                       folder.path() + "/linear.btf");
+  publish(sheetMesh(16, 5, fabric_file_), 0.0);
+  rviz::Display* cloth = manager().createDisplay("haptex/Cloth", "Cloth", true);
+  cloth->subProp("Colour by")->setValue("Look");
+  EXPECT_TRUE(run(10.0, [&] { return isWell(cloth, "State"); }));
+  EXPECT_FALSE(isWell(cloth, "Look")) << "no folder is given";
+  cloth->subProp("BTF folder")->setValue(QString::fromStdString(folder.path()));
+  EXPECT_TRUE(run(20.0, [&] { return isWell(cloth, "Look") && isWell(cloth, "State"); }));
 }
 
 /// Pixels of the view that are red, as arrows of forces are.

@@ -19,6 +19,11 @@ visualization_msgs::Marker makeMarker(const std::string& name, int id, int type)
 /// @param colour red, green and blue from 0 to 1 @param opacity from 0 to 1
 std_msgs::ColorRGBA colourMessage(const Eigen::Vector3f& colour, float opacity = 1.0F);
 
+/// The fixed light of shade(): so much of it comes evenly from all around, the rest from a sun.
+constexpr double kAmbient = 0.35;
+/// Unit length, in the frame of markers.
+Eigen::Vector3d towardsSun();
+
 /// Brightness from 0 to 1 of a surface in a fixed light by Lambert's law, the same for both sides.
 /// rviz does not light triangles that have colours of their own, and its own light leaves what lies
 /// flat in the dark.

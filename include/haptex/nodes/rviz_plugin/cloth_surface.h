@@ -8,10 +8,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "haptex/appearance/brdf.h"
 #include "haptex/cloth/forces/element_assembly.h"
 #include "haptex/material/fabric.h"
 #include "haptex/nodes/common/proximity_messages.h"
@@ -26,7 +28,8 @@ using VertexColour = std::array<std::uint8_t, 4>;
 /// The triangles of one cloth/mesh, coloured and shaded for a state. A vertex is a particle, or
 /// several where triangles of different colours (fabrics, panels) meet. The shading is that of the
 /// markers: a fixed light by Lambert's law on normals averaged around each particle, the same for
-/// both sides; it is part of the colours. Particles that are left out of the computation are grey.
+/// both sides; it is part of the colours. Looks take its place by reflectances. Particles that are
+/// left out of the computation are grey.
 class ClothSurface {
  public:
   /// Beyond it nothing is drawn: the renderer's numbers have 24 bits.
@@ -41,13 +44,22 @@ class ClothSurface {
   /// From 0 to 1.
   void setOpacity(double opacity);
 
-  /// With an eye (m, finite, in the frame of states) the next state is darkened by the share of the
-  /// sky that is seen past the cloth from the side that is towards the eye; without, nothing of
-  /// that is computed.
+  /// Where the next state is seen from (m, finite, in the frame of states), which self-shadow and
+  /// looks depend on. Without an eye there is neither.
   void setEye(const std::optional<Eigen::Vector3d>& eye);
 
-  /// The last state from another eye (as setEye()): colours() anew by the shares of the sky that
-  /// are known. Nothing changes where that state was computed without an eye.
+  /// Whether the next state is darkened by the share of the sky that is seen past the cloth from
+  /// the side that is towards the eye. If not, nothing of that is computed.
+  void setSelfShadow(bool wanted);
+
+  /// Only with ColourBy::kLook: of every fabric, or none, which is drawn grey. The
+  /// next state has colours (sRGB) by the light of shade(), an even sky and a sun whose shadows are
+  /// left out, on the side that is towards the eye.
+  /// @throws std::invalid_argument if there is not one for each fabric
+  void setLooks(std::vector<std::shared_ptr<const appearance::Brdf>> looks);
+
+  /// The last state from another eye: colours() anew by the shares of the sky that are known.
+  /// Nothing changes where that state was computed without an eye.
   void seeFrom(const Eigen::Vector3d& eye);
 
   /// Forces of another mesh are ignored. They are shown until others come.
@@ -91,28 +103,35 @@ class ClothSurface {
   void shareOutAreas();
   void readPositions(const haptex::ClothState& state);
   void sumTriangles();
+  void sumAxes();
   double valueOf(std::size_t triangle, const cloth::MembraneStrain& strain) const;
   double valueAt(int particle) const;
   double skyShareAt(int particle) const;
   void markExcluded(const haptex::ClothState& state);
   void colourVertices();
+  VertexColour lookOf(std::size_t vertex, const appearance::Brdf& brdf,
+                      const Eigen::Vector3d& normal, double sky) const;
 
   std::uint32_t mesh_;
   ColourBy colour_by_;
   ColourScale scale_;
   double opacity_ = 1.0;
   std::optional<Eigen::Vector3d> eye_;
-  std::optional<proximity::SkyOcclusion> sky_;                    // once there was an eye
+  bool self_shadow_ = false;
+  std::optional<proximity::SkyOcclusion> sky_;                    // once there was self-shadow
   const std::vector<proximity::SkyShare>* sky_shares_ = nullptr;  // of sky_, with an eye
   std::vector<Triangle> triangles_;                               // of particles
   std::vector<int> triangle_fabrics_;                             // empty: all are of the first
-  std::vector<cloth::RestTriangle> at_rest_;  // of every triangle, only for strain and stress
+  std::vector<cloth::RestTriangle> at_rest_;  // of every triangle; strain, stress and look only
   std::vector<material::Fabric> fabrics_;     // only for stress
   std::vector<std::string> groups_;
+  std::size_t fabric_count_;
+  std::vector<std::shared_ptr<const appearance::Brdf>> looks_;  // of every fabric, or empty
 
-  std::vector<int> particles_;                 // of every vertex
-  std::vector<int> vertex_groups_;             // likewise
-  std::vector<std::uint32_t> first_vertices_;  // of every particle
+  std::vector<int> particles_;                  // of every vertex
+  std::vector<int> vertex_groups_;              // likewise
+  std::vector<Eigen::Vector3f> wefts_, warps_;  // likewise, sums of unit axes; only for looks
+  std::vector<std::uint32_t> first_vertices_;   // of every particle
   std::vector<std::uint32_t> triangle_vertices_, grain_lines_;
 
   std::vector<Eigen::Vector3d> points_;  // of every particle, m

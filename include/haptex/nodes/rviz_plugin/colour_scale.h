@@ -13,6 +13,7 @@ enum class ColourBy {
   kContactForce,  ///< force of the fingertips on a particle, N
   kFabric,        ///< which of the cloth's fabrics
   kPanel,         ///< which part that no triangle joins with another
+  kLook,          ///< how it reflects light
 };
 
 /// A number beside a colour bar.
@@ -36,7 +37,7 @@ struct ColourScale {
 };
 
 /// With the full scale that shows the shipped samples well: strain 1 %, stress 100 N/m, force
-/// 0.1 N. @throws std::invalid_argument for fabric and panel, which have no scale
+/// 0.1 N. @throws std::invalid_argument for fabric, panel and look, which have no scale
 ColourScale scaleOf(ColourBy quantity);
 
 }  // namespace haptex::nodes

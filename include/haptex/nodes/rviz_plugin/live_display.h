@@ -39,6 +39,8 @@ class LiveDisplay : public rviz::Display {
   /// Only what is new: rviz makes an event of every status.
   void say(const std::string& what, rviz::StatusProperty::Level level, const std::string& text);
   void refuse(const std::string& what, const std::string& why);
+  /// There is nothing to be said of that any more.
+  void unsay(const std::string& what);
 
   BackgroundSubscriptions subscriptions_;
 
