@@ -1,4 +1,4 @@
-"""Draws cloth by the bidirectional texture function of its fabric, which fabric_btf writes. POV-Ray finds what light comes
+"""Draws cloth by the bidirectional texture functions of its fabrics, which fabric_btf writes. POV-Ray finds what light comes
 to it, with shadows and what is reflected from elsewhere, and draws all else; what cloth makes of that light the
 program btf_radiance says, for what is seen at SIDE x SIDE places of every pixel."""
 import os
@@ -13,7 +13,6 @@ from matplotlib.image import imsave
 from bag_report.bags import Refused
 
 from . import povray, programs, raster
-from .looks import Look
 from .weave import Cloth
 
 SIDE = 2  # places along a side of a pixel
@@ -48,6 +47,8 @@ class Function:
     """What a file of fabric_btf says."""
 
     def __init__(self, path):
+        if not os.path.isfile(path):
+            raise Refused(f'{path}: there is no such file')
         self.path = path
         found = roslib.packages.find_node('haptex', 'btf_radiance')
         if not found:
@@ -120,10 +121,10 @@ class Renderer:
     """As the modules povray and cycles."""
 
     def __init__(self, path):
-        """@param path of a file of fabric_btf"""
+        """@param path of a file of fabric_btf, or of a folder that has FABRIC.btf of every fabric"""
         if path is None:
-            raise Refused('--renderer btf: a file of fabric_btf is needed: --btf FABRIC.btf')
-        if not os.path.isfile(path):
+            raise Refused('--renderer btf: a file of fabric_btf is needed, or a folder of them: --btf FABRIC.btf')
+        if not os.path.exists(path):
             raise Refused(f'{path}: there is no such file')
         self.path = path
 
@@ -135,12 +136,20 @@ class Renderer:
     def at_once():
         return 1
 
+    def functions(self, cloth):
+        """Of its weaves."""
+        if os.path.isdir(self.path):
+            return [Function(pathlib.Path(self.path, f'{weave.fabric}.btf')) for weave in cloth.weaves]
+        if len(cloth.weaves) != 1:
+            raise Refused(f'--btf {self.path}: cloth of several fabrics needs a folder that has FABRIC.btf of each')
+        return [Function(self.path)]
+
     def draw(self, camera, size, environment, things, output):
         cloth = next(thing for thing in things if isinstance(thing, Cloth))
-        if len(cloth.weaves) != 1 or cloth.surface.rest is None:
-            raise Refused('--renderer btf: allowed is cloth of one fabric (--fabric) with rest coordinates')
-        matt = Look(cloth.weaves[0].even.warp)
-        with_light, sunlit, share = povray.draw_light(camera, size, environment, things, matt)
+        if cloth.surface.rest is None:
+            raise Refused('--renderer btf: allowed is cloth with rest coordinates')
+        functions = self.functions(cloth)
+        with_light, sunlit, share = povray.draw_light(camera, size, environment, things)
         seen = raster.seen(cloth.surface, camera, size, SIDE)
         in_space = seen.mean(cloth.surface.positions[cloth.surface.triangles[seen.triangle]])
         frames, views = frames_of(cloth, seen, in_space, camera.eye)
@@ -150,16 +159,21 @@ class Renderer:
         to_sun, strength = np.zeros((len(views), 3)), np.zeros(3)
         if environment.sun is not None:
             to_sun, strength = frames @ environment.sun, environment.sunlight
-        by_sun, by_all_around = by_both(Function(self.path), views, places, widths, to_sun)
+        by_sun, by_all_around = np.zeros((2, len(views), 3))
+        weaves = cloth.weave_of[seen.triangle]
+        for number, function in enumerate(functions):
+            mine = weaves == number
+            by_sun[mine], by_all_around[mine] = by_both(function, views[mine], places[mine], widths[mine], to_sun[mine])
+        matt = seen.by_pixel(np.array([weave.even.warp for weave in cloth.weaves])[weaves])
         # What hides the sun is known by pixel.
         cosine = seen.by_pixel(np.maximum(to_sun[:, 2:], 0.0))[..., 0] * share
         visible = np.clip(sunlit / np.maximum(cosine, 1e-6), 0.0, 1.0)
         sun = visible[..., None] * strength * seen.by_pixel(by_sun)
         bare = (sunlit / np.maximum(share, 1e-6))[..., None] * strength  # of what is white, by the sun
-        around = np.maximum(with_light / np.maximum(matt.warp, 1e-3) - bare, 0.0)  # what a white surface would show by all else
+        around = np.maximum(with_light / np.maximum(matt, 1e-3) - bare, 0.0)  # what a white surface would show by all else
         around = spread(around, share > 0.99)
         drawn = sun + around * seen.by_pixel(by_all_around)
-        others = with_light - share[..., None] * matt.warp * (bare + around)
+        others = with_light - share[..., None] * matt * (bare + around)
         picture = np.where(share[..., None] > 0.0,
                            np.maximum(others, 0.0) * (share < 0.99)[..., None] + share[..., None] * drawn, with_light)
         with tempfile.TemporaryDirectory(prefix='haptex_render_') as name:

@@ -217,12 +217,11 @@ def linear(folder, size):
         size[1], size[0], 3) / 65535.0
 
 
-def draw_light(camera, size, environment, things, look):
-    """@param look of all cloth, without yarns
-    @returns linear pictures: (row, column, 3) of all; (row, column) of what reaches the cloth of a sun that shows as 1 on
+def draw_light(camera, size, environment, things):
+    """@returns linear pictures, of matt cloth: (row, column, 3) of all; (row, column) of what reaches the cloth of a sun that shows as 1 on
       a white surface that faces it; and (row, column) shares of the pixels that are cloth"""
     require()
-    plain = [Cloth.plain(thing.surface, look) if isinstance(thing, Cloth) else thing for thing in things]
+    plain = [thing.matt() if isinstance(thing, Cloth) else thing for thing in things]
     with tempfile.TemporaryDirectory(prefix='haptex_render_') as name:
         folder = pathlib.Path(name)
         write_lit(folder, camera, size, environment, plain)

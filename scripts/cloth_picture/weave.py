@@ -81,6 +81,7 @@ class Weave:
         look = fabric.look
         seen = None if relief is None else relief.seen(pixel)
         share = 0.5 if relief is None else float(relief.warp.mean())
+        self.fabric = fabric.name
         spread = 0.0 if seen is None else float(seen.warp.std()) * np.abs(look.warp - look.weft).max()
         self.look = look  # of its yarns
         self.even = Look(share * look.warp + (1.0 - share) * look.weft, look.gloss, look.width)  # where none is seen
@@ -106,10 +107,9 @@ class Cloth:
     def __init__(self, surface, weave_of, weaves):
         self.surface, self.weave_of, self.weaves = surface, weave_of, weaves
 
-    @classmethod
-    def plain(cls, surface, look):
-        """In one look, without yarns."""
-        return cls(surface, np.zeros(len(surface.triangles), dtype=int), [Plain(look)])
+    def matt(self):
+        """In the mean colours of its fabrics, without yarns and gloss."""
+        return Cloth(self.surface, self.weave_of, [Plain(Look(weave.even.warp)) for weave in self.weaves])
 
     def has_yarns(self, number):
         """Of the weave's triangles: whether their yarns are seen, and where they lie is known."""

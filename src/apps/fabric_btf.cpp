@@ -54,7 +54,7 @@ void make(const std::string& name, const std::string& path) {
   white.warp = white.weft = {1.0, 1.0, 1.0};
   const appearance::Btf of_white =
       appearance::makeBtf(appearance::Interreflection(surface, white), kSize.compression);
-  std::cout << "furnace: " << appearance::furnaceError(of_white, {4, 1, 96, 6, kSeed}) << std::endl;
+  std::cout << "furnace: " << appearance::furnaceError(of_white, {8, 1, 96, 6, kSeed}) << std::endl;
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ from unit_fixtures import Folder, suite_of
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'scripts'))
 from bag_report.bags import Refused, open_bag  # noqa: E402
-from cloth_picture import camera, cycles, environment, looks, povray, recorded, solids  # noqa: E402
+from cloth_picture import btf, camera, cycles, environment, looks, picture, povray, recorded, solids, weave  # noqa: E402
 from cloth_picture.obj_file import read_obj  # noqa: E402
 
 CLOTH = 'v 0 0 0\nv 0 0.2 0\nv 0 0 0.2\nvt 0 0\nvt 0.2 0\nvt 0 0.2\nf 1/1 2/2 3/3\n'
@@ -394,11 +394,11 @@ class CyclesPictures(Drawn, Runs):
 COLOUR = 0.3, 0.5, 0.2
 
 
-def btf_of_even_fabric():
+def btf_of_even_fabric(colour=COLOUR):
     """A file as docs/appearance.md describes it: flat and matt, so that no light goes between its texels."""
     texels, columns = 16, 81 * 81 * 3
     text = b'HAPTBTF1' + np.array([4, 4, 1, 1, 1], '<u4').tobytes()
-    text += np.array([0.01, 0.01, *COLOUR, *COLOUR, 0.0, 1.0], '<f8').tobytes()
+    text += np.array([0.01, 0.01, *colour, *colour, 0.0, 1.0], '<f8').tobytes()
     text += np.zeros(texels, '<f4').tobytes() + bytes([1] * texels)  # heights, and all is warp
     text += np.zeros(2 * columns + 3, '<f4').tobytes()  # mean, one component, offset, axis and scale of one cluster
     text += bytes(texels) + np.zeros(texels, '<i2').tobytes()
@@ -432,6 +432,28 @@ class BtfPictures(Runs):
                 self.assertGreater(is_cloth.mean(), 0.05)
                 self.assertLess(off[is_cloth].mean(), 2.0)
                 self.assertLess(np.percentile(off, 99.0), 6.0)
+
+    def test_of_two_fabrics_have_the_function_of_each(self):
+        colours = {'green': COLOUR, 'red': (0.6, 0.1, 0.1)}
+        self.obj.write_text(CLOTH + 'v 0 0.2 0.2\nvt 0.2 0.2\nf 2/2 4/4 3/3\n')
+        fabrics = []
+        for name, colour in colours.items():
+            (self.folder / f'{name}.btf').write_bytes(btf_of_even_fabric(colour))
+            fabrics.append(looks.Fabric(name, f'look: {{warp: {list(colour)}, weft: {list(colour)}, gloss: 0, width: 1}}'))
+        scene = picture.Scene(read_obj(self.obj), np.array([0, 1]), fabrics)
+        drawn = []
+        for renderer in (povray, btf.Renderer(self.folder)):
+            picture.draw(renderer, scene, [None, None], camera.Camera((0.6, 0.1, 0.1), (0.0, 0.1, 0.1)), scene.ground(),
+                         (160, 90), environment.computed_sky(), self.picture)
+            drawn.append(255.0 * imread(self.picture)[..., :3])
+        off = np.abs(drawn[1] - drawn[0]).max(axis=2)
+        for mine in (drawn[0][..., 1] > drawn[0][..., 0] + 20.0, drawn[0][..., 0] > drawn[0][..., 1] + 60.0):
+            self.assertGreater(mine.mean(), 0.02)
+            self.assertLess(off[mine].mean(), 3.0)
+        (self.folder / 'red.btf').unlink()
+        with self.assertRaisesRegex(Refused, 'red.btf: there is no such file'):
+            btf.Renderer(self.folder).functions(weave.Cloth(scene.surface, scene.fabric_of, [
+                weave.Weave(fabric, None, 1e-3) for fabric in fabrics]))
 
     def test_are_the_same_to_the_last_byte(self):
         drawn = []
