@@ -36,8 +36,8 @@ std::vector<cloth::Fastener> fastened(const garment::Pattern& pattern, const mes
   for (const garment::Fastening& fastening : pattern.fastenings) {
     cloth::Fastener& fastener = fasteners.emplace_back();
     fastener.name = fastening.name;
-    for (int i : {0, 1}) {
-      fastener.places[i] = placeOn(mesh, pattern, fastening.places[i], fastening.name);
+    for (const garment::PlaceOnPanel& place : fastening.places) {
+      fastener.places.push_back(placeOn(mesh, pattern, place, fastening.name));
     }
     fastener.stiffness = stiffness;
     fastener.release_force = std::numeric_limits<double>::max();

@@ -52,9 +52,10 @@ ClothPlace readPlace(const YamlValue& value, const mesh::ClothMesh& mesh,
 }
 
 cloth::FastenerKind readKind(const YamlValue& value) {
-  const std::string kind = value.oneOf({"button", "hook", "elastic"});
+  const std::string kind = value.oneOf({"button", "hook", "elastic", "drawstring"});
   if (kind == "button") return cloth::FastenerKind::kButton;
-  return kind == "hook" ? cloth::FastenerKind::kHook : cloth::FastenerKind::kElastic;
+  if (kind == "hook") return cloth::FastenerKind::kHook;
+  return kind == "elastic" ? cloth::FastenerKind::kElastic : cloth::FastenerKind::kDrawstring;
 }
 
 cloth::Fastener readFastener(const YamlValue& value, const mesh::ClothMesh& mesh,
@@ -64,16 +65,21 @@ cloth::Fastener readFastener(const YamlValue& value, const mesh::ClothMesh& mesh
   cloth::Fastener fastener;
   fastener.name = readName(value.at("name"));
   fastener.kind = readKind(value.at("kind"));
-  const std::vector<YamlValue> places = value.at("between").items(2);
-  for (int i : {0, 1}) fastener.places[i] = readPlace(places[i], mesh, groups);
+  const bool drawstring = fastener.kind == cloth::FastenerKind::kDrawstring;
+  const YamlValue between = value.at("between");
+  for (const YamlValue& place : drawstring ? between.items() : between.items(2)) {
+    fastener.places.push_back(readPlace(place, mesh, groups));
+  }
   fastener.stiffness = readUpTo(value.at("stiffness"), kMostStiffness, "N/m");
   fastener.release_force = readUpTo(value.at("release_force"), kMostForce, "N");
-  const bool elastic = fastener.kind == cloth::FastenerKind::kElastic;
-  if (value.has("length") != elastic) {
-    value.refuseBecause(elastic ? "is elastic, and lacks the key length"
-                                : "has the key length, which is allowed of the kind elastic only");
+  const bool has_length = drawstring || fastener.kind == cloth::FastenerKind::kElastic;
+  if (value.has("length") != has_length) {
+    value.refuseBecause(has_length
+                            ? "is of a kind that has a length, and lacks the key length"
+                            : "has the key length, which is allowed of the kinds elastic and "
+                              "drawstring only");
   }
-  if (elastic) fastener.length = readSize(value.at("length"));
+  if (has_length) fastener.length = readSize(value.at("length"));
   if (value.has("fastened")) {
     fastener.fastened = value.at("fastened").oneOf({"true", "false"}) == "true";
   }

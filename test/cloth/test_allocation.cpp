@@ -29,12 +29,19 @@ TEST_P(StepAllocation, NoStepAllocatesAfterStartUp) {
     effects.air->wind.gusts = {{{1.0, 0.0, 0.0}, 1.0, 0.0}};
     effects.bending = effects.bending_hysteresis = effects.membrane_hysteresis = true;
     effects.bending_settings.rest_curvature << 5.0, -2.0;
-    effects.fasteners = {{"band",
-                          FastenerKind::kElastic,
-                          {ClothPlace{{0, -1, -1}}, ClothPlace{{16, -1, -1}}},
-                          10.0,
-                          0.01,
-                          5.0}};
+    effects.fasteners = {
+        {"band",
+         FastenerKind::kElastic,
+         {ClothPlace{{0, -1, -1}}, ClothPlace{{16, -1, -1}}},
+         10.0,
+         0.01,
+         5.0},
+        {"cord",
+         FastenerKind::kDrawstring,
+         {ClothPlace{{34, -1, -1}}, ClothPlace{{40, -1, -1}}, ClothPlace{{50, -1, -1}}},
+         10.0,
+         0.01,
+         5.0}};
     material::Fabric fabric = stiffeningFabric();
     fabric.bending = {1e-5, 2e-5};
     fabric.bending_hysteresis = {3e-4, 1e-4};

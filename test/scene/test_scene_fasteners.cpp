@@ -54,6 +54,24 @@ TEST_F(SceneFasteners, AreBetweenParticlesAndPlacesInTriangles) {
   EXPECT_LT((rest_of(waist.places[1]) - Eigen::Vector2d(0.1, 0.1)).norm(), 1e-12);
 }
 
+TEST_F(SceneFasteners, ADrawstringRunsThroughSeveralPlaces) {
+  const std::string cord =
+      "{name: cord, kind: drawstring, between: [0, [0.1, 0.1], [0.2, 0.1], 3, 0], length: 0.3, "
+      "stiffness: 20, release_force: 30}";
+  const Scene scene = load(withFasteners(cord));
+  const cloth::Fastener& fastener = scene.effects.fasteners.at(0);
+  EXPECT_EQ(fastener.kind, cloth::FastenerKind::kDrawstring);
+  EXPECT_EQ(fastener.length, 0.3);
+  ASSERT_EQ(fastener.places.size(), 5u);
+  EXPECT_EQ(fastener.places[3].particles[0], 3);
+  EXPECT_EQ(fastener.places[4].particles[0], 0);
+  expectRefused(replaced(cord, "between: [0, ", "between: [0, 0, "),
+                "two places in a row are the same");
+  expectRefused(replaced(cord, "between: [0, [0.1, 0.1], [0.2, 0.1], 3, 0]", "between: [0]"),
+                "has 1 places; allowed are 2 to 32");
+  expectRefused(replaced(cord, ", length: 0.3", ""), "lacks the key length");
+}
+
 TEST_F(SceneFasteners, ByRestCoordinatesAllowAnyCells) {
   EXPECT_FALSE(load(withFasteners(kButton)).any_cells);
   EXPECT_TRUE(load(withFasteners(replaced(kButton, "[0, ", "[[0, 0], "))).any_cells);
@@ -86,7 +104,7 @@ TEST_F(SceneFasteners, OfGarmentsAreInGroups) {
 TEST_F(SceneFasteners, RefusalsNameWhatIsWrong) {
   expectRefused(kButton + ", " + kButton, "is the name of another fastener");
   expectButtonRefused("collar", "a/b", "must be a letter");
-  expectButtonRefused("button", "zip", "button, hook, elastic");
+  expectButtonRefused("button", "zip", "button, hook, elastic, drawstring");
   expectButtonRefused("[0, ", "[99, ", "must be a particle from 0 to 11");
   expectButtonRefused("[0.05, 0.02]", "[0.05, 0.3]", "within the cloth");
   expectButtonRefused("[0.05, 0.02]", "[0.0, 0.0]", "both places are the same");
@@ -95,7 +113,8 @@ TEST_F(SceneFasteners, RefusalsNameWhatIsWrong) {
   expectButtonRefused("stiffness: 500", "stiffness: .nan", "stiffness");
   expectButtonRefused("release_force: 8", "release_force: -1", "must be > 0 and <= 10000 N");
   expectButtonRefused(", release_force: 8", "", "release_force");
-  expectButtonRefused("release_force: 8", "release_force: 8, length: 0.1", "elastic only");
+  expectButtonRefused("release_force: 8", "release_force: 8, length: 0.1",
+                      "of the kinds elastic and drawstring only");
   expectButtonRefused("button", "elastic", "lacks the key length");
   expectButtonRefused("release_force: 8", "release_force: 8, fastened: 3", "true, false");
 }

@@ -38,7 +38,10 @@ bool isAt(const ClothPlace& place, const std::vector<char>& particles) {
 std::vector<char> withFastened(const Cloth& whole, const std::vector<char>& particles) {
   std::vector<char> all = particles;
   for (const Fastener& fastener : whole.effects().fasteners) {
-    if (!isAt(fastener.places[0], particles) && !isAt(fastener.places[1], particles)) continue;
+    if (std::none_of(fastener.places.begin(), fastener.places.end(),
+                     [&](const ClothPlace& place) { return isAt(place, particles); })) {
+      continue;
+    }
     for (const ClothPlace& place : fastener.places) {
       for (int i = 0; i < 3; ++i) {
         if (place.weights[i] != 0.0) all[place.particles[i]] = 1;

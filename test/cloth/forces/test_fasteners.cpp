@@ -38,6 +38,18 @@ Fastener button(double stiffness = 1000.0, double release_force = 2.0) {
           release_force};
 }
 
+/// Through an edge of square(4), a triangle and the other edge, and back to the start if closed.
+Fastener drawstring(double length, double release_force = 10.0, bool closed = false) {
+  Fastener cord{"cord",
+                FastenerKind::kDrawstring,
+                {particle(0), {{6, 7, 12}, {0.5, 0.3, 0.2}}, particle(14), particle(24)},
+                50.0,
+                length,
+                release_force};
+  if (closed) cord.places.push_back(cord.places.front());
+  return cord;
+}
+
 Cloth twoSheets(const Fastener& fastener, const ModelledEffects& also = {}) {
   ModelledEffects effects = also;
   effects.fasteners = {fastener};
@@ -62,12 +74,20 @@ TEST(Fasteners, ForceIsTheGradientOfTheEnergyAndTheJacobianThatOfTheForce) {
     EXPECT_EQ(cloth.fasteners()->tension(0, state.positions) > 0.0, band.name != "slack");
     expectExactDerivatives(cloth, state, {0, 7, 24});
   }
+  for (const Fastener& cord :
+       {drawstring(0.5), drawstring(0.1), drawstring(0.1, 0.5), drawstring(0.1, 10.0, true)}) {
+    const Cloth cloth = oneSheet({cord});
+    const ClothState state = randomState(cloth, 0.002, 0.0);
+    EXPECT_EQ(cloth.fasteners()->tension(0, state.positions) > 0.0, cord.length < 0.5);
+    expectExactDerivatives(cloth, state, {0, 6, 7, 12, 14, 24});
+  }
   const Cloth sewn = twoSheets(button());
   expectExactDerivatives(sewn, randomState(sewn, 0.0005, 0.0), {12, 37, 38, 43});
 }
 
 TEST(Fasteners, LinearisedStageHasTheExactJacobianWhichIsDefinite) {
-  for (const Fastener& fastener : {button(), button(1000.0, 0.1)}) {
+  for (const Fastener& fastener : {button(), button(1000.0, 0.1), drawstring(0.1),
+                                   drawstring(0.1, 0.5), drawstring(0.1, 10.0, true)}) {
     const Cloth cloth = twoSheets(fastener);
     const ClothState state = randomState(cloth, 0.0005, 0.1);
     std::vector<int> all;
@@ -113,6 +133,84 @@ TEST(Fasteners, PullOpposedAtBothPlacesAndWithoutTorque) {
   EXPECT_NEAR(pull, 2.0 * cloth.fasteners()->tension(0, state.positions), 1e-12);
   EXPECT_LT(sum.norm(), 1e-12 * pull);
   EXPECT_LT(torque.norm(), 1e-12 * pull);
+}
+
+TEST(Fasteners, ADrawstringHasOneTensionFromEndToEnd) {
+  const Cloth cloth = oneSheet({drawstring(0.1)});
+  const ClothState state = randomState(cloth, 0.002, 0.0);
+  std::vector<Vector3d> forces(cloth.particleCount(), Vector3d::Zero());
+  cloth.fasteners()->addForces(state.ofForces(), forces);
+  const double tension = cloth.fasteners()->tension(0, state.positions);
+  EXPECT_GT(tension, 1.0);
+  EXPECT_NEAR(forces[0].norm(), tension, 1e-4 * tension);  // of rounding
+  EXPECT_NEAR(forces[24].norm(), tension, 1e-4 * tension);
+  const auto& at = state.positions;
+  const Vector3d before = 0.5 * at[6] + 0.3 * at[7] + 0.2 * at[12] - at[14];
+  const Vector3d expected = tension * (before.normalized() + (at[24] - at[14]).normalized());
+  EXPECT_LT((forces[14] - expected).norm(), 1e-4 * tension);
+  EXPECT_NEAR(cloth.fasteners()->distance(0, at),
+              (at[0] - 0.5 * at[6] - 0.3 * at[7] - 0.2 * at[12]).norm() + before.norm() +
+                  (at[24] - at[14]).norm(),
+              3.0 * Fasteners::kRounding);
+  Vector3d sum = Vector3d::Zero(), torque = Vector3d::Zero();
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    sum += forces[i];
+    torque += at[i].cross(forces[i]);
+  }
+  EXPECT_LT(sum.norm(), 1e-12 * tension);
+  EXPECT_LT(torque.norm(), 1e-12 * tension);
+}
+
+/// A ring on a cord slides to where both parts of it have the same angle, whatever it weighs.
+TEST(Fasteners, ADrawstringSlidesThroughItsPlaces) {
+  ModelledEffects effects;
+  effects.gravity = Vector3d(0.0, 0.0, -9.81);
+  Fastener cord{
+      "cord", FastenerKind::kDrawstring, {particle(0), particle(4), particle(3)}, 500.0, 0.25, 1e3};
+  cord.places = {particle(0), particle(4), particle(8)};
+  effects.fasteners = {cord};
+  // Three strips of two cells: the ring is a corner of the one in the middle, which hangs on it.
+  mesh::ClothMesh mesh;
+  for (int strip = 0; strip < 3; ++strip) {
+    for (const Eigen::Vector2d& rest :
+         {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.01, 0.0), Eigen::Vector2d(0.01, -0.01),
+          Eigen::Vector2d(0.0, -0.01)}) {
+      mesh.rest_coordinates.push_back(rest + Eigen::Vector2d(0.05 * strip, 0.0));
+      mesh.initial_positions.emplace_back(0.0, rest.x() + 0.1 * strip,
+                                          rest.y() - (strip == 1 ? 0.05 : 0.02 * strip));
+    }
+    mesh.triangles.push_back({4 * strip, 4 * strip + 1, 4 * strip + 2});
+    mesh.triangles.push_back({4 * strip, 4 * strip + 2, 4 * strip + 3});
+  }
+  Cloth cloth(std::move(mesh), linearFabric(), effects);
+  for (const int i : {0, 1, 2, 3, 8, 9, 10, 11}) {
+    cloth.attach(i, {cloth.mesh().initial_positions[i]});
+  }
+  ClothState state = cloth.initialState();
+  StepSettings settings;
+  settings.newton_iterations = 20;
+  Integrator integrator(cloth, settings);
+  for (int i = 0; i < 400; ++i) ASSERT_TRUE(integrator.step(cloth, state, 0.05).accepted);
+  const Vector3d left = (state.positions[0] - state.positions[4]).normalized();
+  const Vector3d right = (state.positions[8] - state.positions[4]).normalized();
+  EXPECT_NEAR(left.y(), -right.y(), 1e-5);
+  EXPECT_NEAR(left.z(), right.z(), 1e-5);
+  const double weight =
+      9.81 * (cloth.masses()[4] + cloth.masses()[5] + cloth.masses()[6] + cloth.masses()[7]);
+  EXPECT_NEAR(cloth.fasteners()->tension(0, state.positions) * (left.z() + right.z()), weight,
+              1e-5 * weight);
+  EXPECT_TRUE(Fasteners::isFastened(0, state.memory.data()));
+}
+
+/// Where places meet the pull has no direction, but keeps its size.
+TEST(Fasteners, ADrawstringBearsPlacesThatMeet) {
+  const Cloth cloth = oneSheet({drawstring(0.01)});
+  ClothState state = cloth.initialState();
+  for (Vector3d& place : state.positions) place.setZero();
+  std::vector<Vector3d> forces(cloth.particleCount(), Vector3d::Zero());
+  cloth.fasteners()->addForces(state.ofForces(), forces);
+  for (const Vector3d& force : forces) EXPECT_EQ(force, Vector3d::Zero());
+  EXPECT_EQ(cloth.fasteners()->distance(0, state.positions), 0.0);
 }
 
 TEST(Fasteners, OpenAtTheEndOfAStepThatPullsTooHardAndCarryNothingFromThenOn) {
@@ -248,6 +346,20 @@ TEST(Fasteners, RefuseWhatIsNotAllowed) {
             "fastener 'band': a weight is nan; allowed are finite numbers");
   EXPECT_EQ(refusal([](Fastener& it) { it.places[1] = particle(0); }),
             "fastener 'band': both places are the same; allowed are two that differ");
+  EXPECT_EQ(refusal([](Fastener& it) { it.places.push_back(particle(3)); }),
+            "fastener 'band' has 3 places; allowed are 2");
+  EXPECT_EQ(refusal([](Fastener& it) {
+              it.kind = FastenerKind::kDrawstring;
+              it.places.resize(1);
+            }),
+            "fastener 'band' has 1 places; allowed are 2 to 32");
+  EXPECT_EQ(
+      refusal([](Fastener& it) {
+        it.kind = FastenerKind::kDrawstring;
+        it.places.push_back(it.places.back());
+      }),
+      "fastener 'band': two places in a row are the same; allowed are places that differ from "
+      "the one before");
   EXPECT_EQ(refusalOf([] {
               Fasteners({elastic("band", 0.1), elastic("band", 0.2)}, 25, 0.0);
             }),

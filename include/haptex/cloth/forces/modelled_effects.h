@@ -37,7 +37,7 @@ struct ModelledEffects {
   bool contacts = false;                                 ///< of particles with bodies
   bool self_collision = false;                           ///< of the cloth with itself
   bool point_loads = false;                              ///< forces on points of triangles
-  std::vector<Fastener> fasteners = {};                  ///< buttons, hooks and elastic bands
+  std::vector<Fastener> fasteners = {};                  ///< buttons, bands, drawstrings
   std::optional<StuffingMass> stuffing = std::nullopt;   ///< of a closed cloth
 };
 

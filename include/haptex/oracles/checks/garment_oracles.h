@@ -30,7 +30,8 @@ void validatePreposition(const std::string& config_directory, const Sink& sink);
 void validateLinkage(const std::string& config_directory, const Sink& sink);
 
 /// Buttons, hooks and elastic bands between two pieces of cloth: the force at which one opens, of
-/// elastic bands the tension by length, and energy and momentum of what is torn apart.
+/// elastic bands the tension by length, and energy and momentum of what is torn apart. The tension
+/// of a drawstring that cloth has slid along.
 void validateFasteners(const std::string& config_directory, const Sink& sink);
 
 /// An inflated ball, whose radius and tension are those of Laplace's law; a stuffed cushion at

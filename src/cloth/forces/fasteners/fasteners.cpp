@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
@@ -38,6 +41,11 @@ void requirePlace(const Fastener& fastener, const ClothPlace& place, std::size_t
 }
 
 void requireSound(const Fastener& fastener, std::size_t particles) {
+  const std::size_t most = fastener.kind == FastenerKind::kDrawstring ? Fasteners::kMostPlaces : 2;
+  if (fastener.places.size() < 2 || fastener.places.size() > most) {
+    base::refuse(called(fastener), " has ", fastener.places.size(), " places; allowed are ",
+                 most == 2 ? "2" : "2 to " + std::to_string(most));
+  }
   for (const ClothPlace& place : fastener.places) requirePlace(fastener, place, particles);
   const auto require = [&](bool holds, const char* what, double value, const char* unit,
                            const char* allowed) {
@@ -67,30 +75,88 @@ Fasteners::Link Fasteners::linkOf(const Fastener& fastener, std::size_t particle
                                   double thickness) {
   constexpr double kNone = 1e-12;  // weights that are rounding
   requireSound(fastener, particles);
-  std::map<int, double> weights;
-  for (int side : {0, 1}) {
-    const ClothPlace& place = fastener.places[side];
-    for (int i = 0; i < 3; ++i) {
-      if (place.weights[i] == 0.0) continue;
-      weights[place.particles[i]] += (side == 0 ? -1.0 : 1.0) * place.weights[i];
+  const std::size_t segments = fastener.places.size() - 1;
+  std::map<int, Eigen::VectorXd> weights;
+  for (std::size_t s = 0; s < segments; ++s) {
+    for (int side : {0, 1}) {
+      const ClothPlace& place = fastener.places[s + side];
+      for (int i = 0; i < 3; ++i) {
+        if (place.weights[i] == 0.0) continue;
+        const auto [its, is_new] = weights.try_emplace(place.particles[i]);
+        if (is_new) its->second.setZero(static_cast<Eigen::Index>(segments));
+        its->second[static_cast<Eigen::Index>(s)] += (side == 0 ? -1.0 : 1.0) * place.weights[i];
+      }
     }
   }
   Link link;
-  link.length = std::max(fastener.length, thickness);
-  for (const auto& [particle, weight] : weights) {
-    if (std::abs(weight) <= kNone) continue;
-    link.particles[link.count] = particle;
-    link.weights[link.count++] = weight;
+  link.length = std::max(fastener.length, static_cast<double>(segments) * thickness);
+  if (fastener.kind == FastenerKind::kDrawstring) link.rounding = kRounding;
+  for (auto its = weights.begin(); its != weights.end();) {
+    its->second = (its->second.array().abs() <= kNone).select(0.0, its->second);
+    its = its->second.isZero(0.0) ? weights.erase(its) : std::next(its);
   }
-  if (link.count == 0) {
-    base::refuse(called(fastener), ": both places are the same; allowed are two that differ");
+  link.weights.resize(static_cast<Eigen::Index>(segments),
+                      static_cast<Eigen::Index>(weights.size()));
+  for (const auto& [particle, its] : weights) {
+    link.weights.col(static_cast<Eigen::Index>(link.particles.size())) = its;
+    link.particles.push_back(particle);
+  }
+  if (link.particles.empty() || (link.weights.array() == 0.0).rowwise().all().any()) {
+    base::refuse(called(fastener), segments == 1
+                                       ? ": both places are the same; allowed are two that differ"
+                                       : ": two places in a row are the same; allowed are places "
+                                         "that differ from the one before");
   }
   return link;
 }
 
-Vector3d Fasteners::extent(const Link& link, const std::vector<Vector3d>& vectors) const {
+Vector3d Fasteners::extent(const Link& link, int segment, const std::vector<Vector3d>& vectors) {
   Vector3d sum = Vector3d::Zero();
-  for (int i = 0; i < link.count; ++i) sum += link.weights[i] * vectors[link.particles[i]];
+  for (std::size_t i = 0; i < link.particles.size(); ++i) {
+    sum += link.weights(segment, static_cast<Eigen::Index>(i)) * vectors[link.particles[i]];
+  }
+  return sum;
+}
+
+Fasteners::Course Fasteners::courseOf(const Link& link, const Positions& positions) {
+  Course course;
+  const auto segments = static_cast<int>(link.weights.rows());
+  course.directions.resize(3, segments);
+  course.curvatures.resize(segments);
+  for (int s = 0; s < segments; ++s) {
+    const Vector3d its = extent(link, s, positions);
+    const double distance = std::hypot(its.norm(), link.rounding);
+    course.distance += distance - link.rounding;
+    course.curvatures[s] = distance > 0.0 ? 1.0 / distance : 0.0;
+    course.directions.col(s) = course.curvatures[s] * its;
+  }
+  return course;
+}
+
+/// Derivative of the distance by the position of a particle of the link.
+Vector3d Fasteners::directionAt(const Link& link, const Course& course, int particle) {
+  return course.directions * link.weights.col(particle);
+}
+
+/// Derivative of the pull on particle i of the link by the position of particle j. With the
+/// distance D of all segments, their weights w and the tension f(D),
+///   f' (dD/di) (dD/dj)^T + f sum over segments of w_i w_j (1 - n n^T) / r.
+Matrix3d Fasteners::stiffness(const Link& link, const Course& course, const Response& response,
+                              int i, int j) {
+  Matrix3d sum =
+      response.slope * directionAt(link, course, i) * directionAt(link, course, j).transpose();
+  for (int s = 0; s < course.curvatures.size(); ++s) {
+    const double weight = link.weights(s, i) * link.weights(s, j);
+    if (weight == 0.0) continue;
+    if (course.curvatures[s] == 0.0) {  // without length it is the same in all directions
+      sum.diagonal().array() += weight * response.slope;
+      continue;
+    }
+    const double across = weight * response.tension * course.curvatures[s];
+    const auto direction = course.directions.col(s);
+    sum -= across * direction * direction.transpose();
+    sum.diagonal().array() += across;
+  }
   return sum;
 }
 
@@ -100,7 +166,7 @@ double Fasteners::reach(std::size_t fastener) const {
 }
 
 double Fasteners::distance(std::size_t fastener, const Positions& positions) const {
-  return extent(links_[fastener], positions).norm();
+  return courseOf(links_[fastener], positions).distance;
 }
 
 double Fasteners::tension(std::size_t fastener, const Positions& positions) const {
@@ -137,8 +203,8 @@ void Fasteners::set(std::size_t fastener, bool fastened, double* memory) {
 std::vector<std::array<int, 2>> Fasteners::pairs() const {
   std::vector<std::array<int, 2>> result;
   for (const Link& link : links_) {
-    for (int i = 1; i < link.count; ++i) {
-      for (int j = 0; j < i; ++j) result.push_back({link.particles[j], link.particles[i]});
+    for (std::size_t i = 1; i < link.particles.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) result.push_back({link.particles[j], link.particles[i]});
     }
   }
   return result;
@@ -146,19 +212,18 @@ std::vector<std::array<int, 2>> Fasteners::pairs() const {
 
 void Fasteners::bind(const linear::SymmetricBlockMatrix& matrix) {
   for (Link& link : links_) {
-    auto slot = link.slots.begin();
-    for (int i = 1; i < link.count; ++i) {
-      for (int j = 0; j < i; ++j) *slot++ = matrix.slot(link.particles[i], link.particles[j]);
+    link.slots.clear();
+    for (std::size_t i = 1; i < link.particles.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        link.slots.push_back(matrix.slot(link.particles[i], link.particles[j]));
+      }
     }
   }
 }
 
 std::vector<std::vector<int>> Fasteners::memoryOwners() const {
   std::vector<std::vector<int>> owners;
-  for (const Link& link : links_) {
-    const std::vector<int> its(link.particles.begin(), link.particles.begin() + link.count);
-    owners.insert(owners.end(), 2, its);
-  }
+  for (const Link& link : links_) owners.insert(owners.end(), 2, link.particles);
   return owners;
 }
 
@@ -174,38 +239,20 @@ void Fasteners::remember(const Positions& positions, double* memory) const {
   }
 }
 
-Vector3d Fasteners::pull(std::size_t fastener, const Vector3d& extent) const {
-  const double distance = extent.norm();
-  const double tension = tensionAt(fastener, distance);
-  return tension > 0.0 ? Vector3d(tension / distance * extent) : Vector3d(Vector3d::Zero());
-}
-
-/// By the extent d of length r, with n = d / r and tension f(r), the pull f n has the derivative
-///   f' n n^T + f / r (1 - n n^T).
-Fasteners::Response Fasteners::respond(std::size_t fastener, const Vector3d& extent) const {
-  const Fastener& its = fasteners_[fastener];
-  const double length = links_[fastener].length;
-  const double distance = extent.norm();
-  Response response{pull(fastener, extent), Matrix3d::Zero()};
-  if (distance < length) return response;
-  if (distance == 0.0) {  // without length it is the same in all directions
-    response.stiffness.diagonal().setConstant(its.stiffness);
-    return response;
-  }
-  const double across = tensionAt(fastener, distance) / distance;
-  const double along = distance <= reach(fastener) ? its.stiffness : 0.0;
-  const Vector3d normal = extent / distance;
-  response.stiffness = (along - across) * normal * normal.transpose();
-  response.stiffness.diagonal().array() += across;
-  return response;
+Fasteners::Response Fasteners::respond(std::size_t fastener, double distance) const {
+  const bool elastic = distance >= links_[fastener].length && distance <= reach(fastener);
+  return {elastic ? fasteners_[fastener].stiffness : 0.0, tensionAt(fastener, distance)};
 }
 
 void Fasteners::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
   for (std::size_t f = 0; f < links_.size(); ++f) {
     if (!isFastened(f, state.memory)) continue;
     const Link& link = links_[f];
-    const Vector3d its = pull(f, extent(link, state.positions));
-    for (int i = 0; i < link.count; ++i) forces[link.particles[i]] -= link.weights[i] * its;
+    const Course course = courseOf(link, state.positions);
+    const double tension = tensionAt(f, course.distance);
+    for (std::size_t i = 0; i < link.particles.size(); ++i) {
+      forces[link.particles[i]] -= tension * directionAt(link, course, static_cast<int>(i));
+    }
   }
 }
 
@@ -225,11 +272,12 @@ void Fasteners::addJacobian(const ForceState& state, JacobianRows& rows) const {
   for (std::size_t f = 0; f < links_.size(); ++f) {
     if (!isFastened(f, state.memory)) continue;
     const Link& link = links_[f];
-    const Matrix3d stiffness = respond(f, extent(link, state.positions)).stiffness;
-    for (int i = 0; i < link.count; ++i) {
-      for (int j = 0; j < link.count; ++j) {
-        rows.add(link.particles[i], link.particles[j],
-                 -link.weights[i] * link.weights[j] * stiffness);
+    const Course course = courseOf(link, state.positions);
+    const Response response = respond(f, course.distance);
+    const auto count = static_cast<int>(link.particles.size());
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        rows.add(link.particles[i], link.particles[j], -stiffness(link, course, response, i, j));
       }
     }
   }
@@ -241,18 +289,21 @@ void Fasteners::assembleLinearised(const ForceState& state, const StageTimes& ti
   for (std::size_t f = 0; f < links_.size(); ++f) {
     if (!isFastened(f, state.memory)) continue;
     const Link& link = links_[f];
-    const Response response = respond(f, extent(link, state.positions));
-    Vector3d impulse = times.a * response.pull;
-    if (times.ahead != 0.0) {
-      impulse += times.a * times.ahead * response.stiffness * extent(link, state.velocities);
-    }
-    const Matrix3d stiffness = times.a * times.a * response.stiffness;
+    const Course course = courseOf(link, state.positions);
+    const Response response = respond(f, course.distance);
+    const auto count = static_cast<int>(link.particles.size());
     auto slot = link.slots.begin();
-    for (int i = 0; i < link.count; ++i) {
-      rhs.col(link.particles[i]) -= link.weights[i] * impulse;
-      matrix.diagonal(link.particles[i]) += link.weights[i] * link.weights[i] * stiffness;
+    for (int i = 0; i < count; ++i) {
+      const int particle = link.particles[i];
+      rhs.col(particle) -= times.a * response.tension * directionAt(link, course, i);
+      matrix.diagonal(particle) += times.a * times.a * stiffness(link, course, response, i, i);
       for (int j = 0; j < i; ++j) {
-        matrix.lower(*slot++) += link.weights[i] * link.weights[j] * stiffness;
+        matrix.lower(*slot++) += times.a * times.a * stiffness(link, course, response, i, j);
+      }
+      if (times.ahead == 0.0) continue;
+      for (int j = 0; j < count; ++j) {
+        rhs.col(particle) -= times.a * times.ahead * stiffness(link, course, response, i, j) *
+                             state.velocities[link.particles[j]];
       }
     }
   }

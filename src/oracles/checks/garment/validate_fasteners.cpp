@@ -1,5 +1,6 @@
 // Buttons, hooks and elastic bands that are pulled through cloth until they open: by the force on a
-// clamp at the cloth's edge, which knows nothing of fasteners.
+// clamp at the cloth's edge, which knows nothing of fasteners. Cloth that slides along a
+// drawstring.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -263,6 +264,54 @@ FastenedPieces drawPieces(const std::string& config_directory, FastenerKind kind
   return pieces;
 }
 
+/// N, of a drawstring between two places at the same height, 2 * half apart (m), with a weight (N)
+/// that has slid to its middle: 2 T cos(angle) is the weight, and stiffness (distance - length) is
+/// T.
+double tensionBy(double weight, double half, const Fastener& drawstring) {
+  double low = 0.0, high = 1e3 * weight;
+  for (int i = 0; i < 200; ++i) {
+    const double tension = 0.5 * (low + high);
+    const double side = 0.5 * (drawstring.length + tension / drawstring.stiffness);
+    const double height = side > half ? std::sqrt(side * side - half * half) : 0.0;
+    (2.0 * tension * height / side < weight ? low : high) = tension;
+  }
+  return 0.5 * (low + high);
+}
+
+/// A triangle of cloth hangs by its tip on a drawstring from one piece of cloth that is held to
+/// another.
+void checkDrawstring(const std::string& name, const Sink& sink) {
+  constexpr double kHalf = 0.1, kGravity = 9.81;  // m, m/s^2
+  constexpr int kTips[] = {0, 3, 6};
+  Fastener drawstring = fastenerOf(FastenerKind::kDrawstring, 200.0, 50.0);
+  drawstring.length = 0.25;
+  mesh::ClothMesh mesh;
+  for (int piece = 0; piece < 3; ++piece) {
+    const Vector3d tip(0.0, (piece - 1) * kHalf, piece == 1 ? -0.05 : 0.0);
+    for (const Eigen::Vector2d& rest :
+         {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(-0.02, -0.04), Eigen::Vector2d(0.02, -0.04)}) {
+      mesh.rest_coordinates.push_back(rest + Eigen::Vector2d(0.05 * piece, 0.0));
+      mesh.initial_positions.push_back(tip + Vector3d(0.0, rest.x(), rest.y()));
+    }
+    mesh.triangles.push_back({kTips[piece], kTips[piece] + 1, kTips[piece] + 2});
+    drawstring.places.push_back({{kTips[piece], -1, -1}});
+  }
+  scene::Scene scene;
+  scene.effects.gravity = {0.0, 0.0, -kGravity};
+  scene.effects.fasteners = {drawstring};
+  cloth::Cloth cloth(mesh, material::linearFabric(500.0), scene.effects);
+  for (const int particle : {0, 1, 2, 6, 7, 8}) {
+    cloth.attach(particle, {mesh.initial_positions[particle]});
+  }
+  cloth::ClothState state = cloth.initialState();
+  kes::Equilibrium(cloth).settle(cloth, state, 0.02);
+  const double weight = kGravity * (cloth.masses()[3] + cloth.masses()[4] + cloth.masses()[5]);
+  const double exact = tensionBy(weight, kHalf, drawstring);
+  sink(base::relativeTo(exact, name + "/tension_N", exact,
+                        cloth.fasteners()->tension(0, state.positions), 1e-4));
+  sink({name + "/aside_m", 0.0, state.positions[3].y(), std::abs(state.positions[3].y()), 1e-6});
+}
+
 }  // namespace
 
 void validateFasteners(const std::string& config_directory, const Sink& sink) {
@@ -288,6 +337,7 @@ void validateFasteners(const std::string& config_directory, const Sink& sink) {
       checkFlight(pieces, 0.3, name + nameOf(kind) + "/" + nameOf(method), sink);
     }
   }
+  checkDrawstring(name + nameOf(FastenerKind::kDrawstring), sink);
 }
 
 void randomFastener(const std::string& config_directory, Random& random, const Sink& sink) {

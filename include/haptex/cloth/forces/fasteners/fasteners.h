@@ -1,4 +1,5 @@
-// Buttons, hooks and elastic bands: springs between two places of a cloth that open under load.
+// Buttons, hooks and elastic bands, springs between two places of a cloth, and drawstrings through
+// several, all of which open under load.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +12,7 @@
 
 namespace haptex::cloth {
 
-enum class FastenerKind { kButton, kHook, kElastic };
+enum class FastenerKind { kButton, kHook, kElastic, kDrawstring };
 
 constexpr const char* nameOf(FastenerKind kind) {
   switch (kind) {
@@ -19,8 +20,10 @@ constexpr const char* nameOf(FastenerKind kind) {
       return "button";
     case FastenerKind::kHook:
       return "hook";
-    default:
+    case FastenerKind::kElastic:
       return "elastic";
+    default:
+      return "drawstring";
   }
 }
 
@@ -30,11 +33,13 @@ struct ClothPlace {
   std::array<double, 3> weights = {1.0, 0.0, 0.0};  ///< sum 1; particles of weight 0 are not read
 };
 
-/// Two places of a cloth that a spring holds together until it is pulled too hard.
+/// Places of a cloth that a spring holds together until it is pulled too hard.
 struct Fastener {
   std::string name;
   FastenerKind kind = FastenerKind::kButton;
-  std::array<ClothPlace, 2> places;
+  /// Two; a drawstring runs through 2 to Fasteners::kMostPlaces in this order, and is closed if the
+  /// last is the first.
+  std::vector<ClothPlace> places;
   double stiffness = 0.0;      ///< N/m, > 0
   double length = 0.0;         ///< m, >= 0, up to which it is slack; 0 of buttons and hooks
   double release_force = 0.0;  ///< N, > 0, the most that it carries
@@ -42,15 +47,19 @@ struct Fastener {
 };
 
 /// Fasteners pull their places towards each other and never push them apart. At the distance r of
-/// the places the tension (N) is
+/// the places, or along all those of a drawstring, which slides through them without friction, the
+/// tension (N) is
 ///   0                       for r <= length,
 ///   stiffness (r - length)  up to release_force, and
 ///   release_force           beyond,
-/// because none carries more than what it opens at. So the energy is convex in r, the tension is
-/// continuous, and no step, however long, pulls harder than the fastener holds once Newton
-/// iterations have converged. What is beyond release_force at the end of an accepted step is open
-/// from then on (remember()): what the spring held then is lost, and no other force changes, so
-/// that neither energy nor momentum is made.
+/// because none carries more than what it opens at. So the energy is convex in r, which is convex
+/// in the positions, the tension is continuous, and no step, however long, pulls harder than the
+/// fastener holds once Newton iterations have converged. What is beyond release_force at the end of
+/// an accepted step is open from then on (remember()): what the spring held then is lost, and no
+/// other force changes, so that neither energy nor momentum is made.
+///
+/// Where two places of a drawstring meet, the direction of its pull would jump: its distances d are
+/// sqrt(d^2 + kRounding^2) - kRounding, as if it went around something there.
 ///
 /// Whether each is fastened is in the memory of the state, two numbers each: 1 or 0, and the
 /// tension (N) at which it opened by itself, else 0. All pairs of their particles are in the
@@ -61,11 +70,15 @@ struct Fastener {
 /// press them together for ever.
 class Fasteners final : public Force {
  public:
+  static constexpr std::size_t kMostPlaces = 32;
+  static constexpr double kRounding = 1e-4;  ///< m
+
   /// @param particles of the cloth
-  /// @param thickness m, >= 0: no fastener is shorter
+  /// @param thickness m, >= 0: no fastener is shorter, a drawstring by so much between all places
   /// @throws std::invalid_argument naming fastener, value and what is allowed: a name that another
-  ///   has, a particle that does not exist, weights that are not finite or do not sum to 1 within
-  ///   1e-6, two places that are the same, a stiffness, length or release force out of its range
+  ///   has, another number of places, a particle that does not exist, weights that are not finite
+  ///   or do not sum to 1 within 1e-6, two places in a row that are the same, a stiffness, length
+  ///   or release force out of its range
   Fasteners(std::vector<Fastener> fasteners, std::size_t particles, double thickness);
 
   /// As they were given.
@@ -74,7 +87,7 @@ class Fasteners final : public Force {
   double slackLength(std::size_t fastener) const { return links_[fastener].length; }
   /// m, beyond which it opens.
   double reach(std::size_t fastener) const;
-  /// m, of its places.
+  /// m, of its places, along all of them.
   double distance(std::size_t fastener, const Positions& positions) const;
   /// N, that it has at these positions if it is fastened.
   double tension(std::size_t fastener, const Positions& positions) const;
@@ -107,26 +120,37 @@ class Fasteners final : public Force {
                           linear::BlockVector& rhs) const override;
 
  private:
-  /// A fastener in the particles that it acts on; what it acts by is the extent, the sum of weights
-  /// times positions: the second place less the first one.
+  /// A fastener in the particles that it acts on. A segment, from a place to the next one, acts by
+  /// its extent: the sum of weights times positions, the second place less the first one.
   struct Link {
-    int count = 0;
-    std::array<int, 6> particles{};  // ascending
-    std::array<double, 6> weights{};
-    std::array<int, 15> slots{};  // of pairs (1, 0), (2, 0), (2, 1), (3, 0), ...
-    double length = 0.0;          // m
+    std::vector<int> particles;  // ascending
+    Eigen::MatrixXd weights;     // in a segment (row) of a particle (column)
+    std::vector<int> slots;      // of pairs (1, 0), (2, 0), (2, 1), (3, 0), ...
+    double length = 0.0;         // m
+    double rounding = 0.0;       // m
   };
-  /// Of a fastened one at some positions.
+  /// At some positions.
+  struct Course {
+    double distance = 0.0;  // m, of all segments
+    // Of each, how its distance changes with its extent: n, and the 1 / r of (1 - n n^T) / r.
+    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMostPlaces> directions;
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostPlaces, 1> curvatures;
+  };
+  /// Derivative of the tension by the distance, and the tension.
   struct Response {
-    Eigen::Vector3d pull;       // N, tension along the extent
-    Eigen::Matrix3d stiffness;  // N/m, derivative of the pull by the extent
+    double slope;    // N/m
+    double tension;  // N
   };
 
   static Link linkOf(const Fastener& fastener, std::size_t particles, double thickness);
-  Eigen::Vector3d extent(const Link& link, const std::vector<Eigen::Vector3d>& vectors) const;
+  static Eigen::Vector3d extent(const Link& link, int segment,
+                                const std::vector<Eigen::Vector3d>& vectors);
+  static Course courseOf(const Link& link, const Positions& positions);
+  static Eigen::Vector3d directionAt(const Link& link, const Course& course, int particle);
+  static Eigen::Matrix3d stiffness(const Link& link, const Course& course, const Response& response,
+                                   int i, int j);
   double tensionAt(std::size_t fastener, double distance) const;
-  Eigen::Vector3d pull(std::size_t fastener, const Eigen::Vector3d& extent) const;
-  Response respond(std::size_t fastener, const Eigen::Vector3d& extent) const;
+  Response respond(std::size_t fastener, double distance) const;
 
   std::vector<Fastener> fasteners_;
   std::vector<Link> links_;  // likewise
