@@ -126,7 +126,7 @@ Fasteners::Course Fasteners::courseOf(const Link& link, const Positions& positio
   for (int s = 0; s < segments; ++s) {
     const Vector3d its = extent(link, s, positions);
     const double distance = std::hypot(its.norm(), link.rounding);
-    course.distance += distance - link.rounding;
+    course.distance += distance;
     course.curvatures[s] = distance > 0.0 ? 1.0 / distance : 0.0;
     course.directions.col(s) = course.curvatures[s] * its;
   }

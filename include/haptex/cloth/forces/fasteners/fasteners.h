@@ -59,7 +59,7 @@ struct Fastener {
 /// other force changes, so that neither energy nor momentum is made.
 ///
 /// Where two places of a drawstring meet, the direction of its pull would jump: its distances d are
-/// sqrt(d^2 + kRounding^2) - kRounding, as if it went around something there.
+/// sqrt(d^2 + kRounding^2), as if it went around something there.
 ///
 /// Whether each is fastened is in the memory of the state, two numbers each: 1 or 0, and the
 /// tension (N) at which it opened by itself, else 0. All pairs of their particles are in the
