@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <string>
@@ -133,6 +134,14 @@ void measure(const Scene& scene, int starts) {
 int main(int argc, char** argv) {
   const int starts = argc > 1 ? std::atoi(argv[1]) : kStarts;
   const std::set<std::string> only(argv + std::min(argc, 2), argv + argc);
+  for (const std::string& name : only) {
+    const auto named = [&](const Scene& scene) { return scene.garment == name; };
+    if (std::any_of(std::begin(kScenes), std::end(kScenes), named)) continue;
+    std::fprintf(stderr, "bench_garment: no garment '%s'; there are:", name.c_str());
+    for (const Scene& scene : kScenes) std::fprintf(stderr, " %s", scene.garment);
+    std::fprintf(stderr, "\n");
+    return 2;
+  }
   if (only.empty()) {
     bench::measureSoftTop();
     bench::measureCushion();

@@ -124,8 +124,6 @@ class Renderer:
         """@param path of a file of fabric_btf, or of a folder that has FABRIC.btf of every fabric"""
         if path is None:
             raise Refused('--renderer btf: a file of fabric_btf is needed, or a folder of them: --btf FABRIC.btf')
-        if not os.path.exists(path):
-            raise Refused(f'{path}: there is no such file')
         self.path = path
 
     @staticmethod

@@ -81,8 +81,8 @@ class Weave:
         look = fabric.look
         seen = None if relief is None else relief.seen(pixel)
         share = 0.5 if relief is None else float(relief.warp.mean())
-        self.fabric = fabric.name
         spread = 0.0 if seen is None else float(seen.warp.std()) * np.abs(look.warp - look.weft).max()
+        self.fabric = fabric.name
         self.look = look  # of its yarns
         self.even = Look(share * look.warp + (1.0 - share) * look.weft, look.gloss, look.width)  # where none is seen
         self.relief = seen if seen is not None and (seen.slopes() > LEAST_SLOPE or spread > LEAST_COLOUR) else None

@@ -27,7 +27,7 @@ Vector3f interpolated(const Brdf::Table& table, const DirectionWeights& views,
 Brdf::Brdf(const Table& reflectance) : reflectance_(reflectance) {
   // Lights by the cosine: evenly over the circle below them.
   constexpr int kRadii = 16, kTurns = 32;
-  under_sky_.setZero();
+  Eigen::Matrix<float, kDirections, 1> weights = Eigen::Matrix<float, kDirections, 1>::Zero();
   for (int radius = 0; radius < kRadii; ++radius) {
     const double across = std::sqrt((radius + 0.5) / kRadii);
     for (int turn = 0; turn < kTurns; ++turn) {
@@ -35,13 +35,14 @@ Brdf::Brdf(const Table& reflectance) : reflectance_(reflectance) {
       const DirectionWeights lights =
           weightsOf({across * std::cos(azimuth), across * std::sin(azimuth),
                      std::sqrt(1.0 - across * across)});
-      for (int view = 0; view < kDirections; ++view) {
-        const DirectionWeights itself{{view, view, view, view}, {1.0, 0.0, 0.0, 0.0}};
-        under_sky_.col(view) += interpolated(reflectance_, itself, lights);
+      for (int i = 0; i < 4; ++i) {
+        weights[lights.index[i]] += static_cast<float>(M_PI / (kRadii * kTurns) * lights.weight[i]);
       }
     }
   }
-  under_sky_ *= static_cast<float>(M_PI / (kRadii * kTurns));
+  for (int view = 0; view < kDirections; ++view) {
+    under_sky_.col(view) = reflectance_.middleCols<kDirections>(kDirections * view) * weights;
+  }
 }
 
 Vector3f Brdf::radiance(const Vector3d& view, const Vector3d& light) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "haptex/appearance/btf.h"
 #include "haptex/material/surface.h"
 #include "haptex/tactile/height_field.h"
 #include "haptex/tactile/relief_picture.h"
@@ -38,6 +39,12 @@ inline tactile::FaceRelief twill() {
 
 inline material::Look lookOf(double warp, double weft, double gloss, double width) {
   return {{warp, warp, warp}, {weft, weft, weft}, gloss, width};
+}
+
+constexpr Compression kSmall{12, 1, 12};
+
+inline Btf smallBtf(const tactile::FaceRelief& relief, const material::Look& look) {
+  return makeBtf(relief, look, {32, 32, kSmall});
 }
 
 }  // namespace haptex::appearance

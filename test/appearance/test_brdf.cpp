@@ -11,12 +11,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr Compression kSmall{12, 1, 12};
-
-Btf smallBtf(const tactile::FaceRelief& relief, const material::Look& look) {
-  return makeBtf(relief, look, {32, 32, kSmall});
-}
-
 TEST(Brdf, OfAMattFabricWithoutReliefIsLamberts) {
   const material::Look look{{0.2, 0.4, 0.6}, {0.5, 0.3, 0.1}, 0.0, 1.0};
   const Brdf brdf = meanOverRepeat(smallBtf(flatRelief(), look));

@@ -15,12 +15,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr Compression kSmall{12, 1, 12};
-
-Btf smallBtf(const tactile::FaceRelief& relief, const material::Look& look) {
-  return makeBtf(relief, look, {32, 32, kSmall});
-}
-
 TEST(Btf, OfAFlatFabricIsItsReflectance) {
   const material::Look look{{0.2, 0.4, 0.6}, {0.5, 0.3, 0.1}, 0.3, 0.4};
   const Btf btf = smallBtf(flatRelief(), look);

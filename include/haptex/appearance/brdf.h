@@ -8,9 +8,10 @@
 
 namespace haptex::appearance {
 
-/// The bidirectional reflectance distribution function: the mean over the repeat of a bidirectional
-/// texture function (btf.h), which 79 kB hold. Directions are as there, linear between the sampled
-/// ones, of any length.
+/// The bidirectional reflectance distribution function (Nicodemus et al., Geometrical
+/// considerations and nomenclature for reflectance, 1977): the mean over the repeat of a
+/// bidirectional texture function (btf.h), which 79 kB hold. Directions are as there, linear
+/// between the sampled ones, of any length.
 class Brdf {
  public:
   /// Column of a view and a light: their places among the directions, kDirections view + light.

@@ -189,9 +189,8 @@ void ClothDisplay::takeLooks() {
 /// In the frame of the cloth; none where nothing depends on it.
 std::optional<Eigen::Vector3d> ClothDisplay::eye() const {
   rviz::ViewController* view = context_->getViewManager()->getCurrent();
-  if ((!self_shadow_->getBool() && colourBy() != ColourBy::kLook) || view == nullptr) {
-    return std::nullopt;
-  }
+  const bool matters = self_shadow_->getBool() || surface_->colourBy() == ColourBy::kLook;
+  if (!matters || view == nullptr) return std::nullopt;
   const Ogre::Vector3 eye =
       scene_node_->convertWorldToLocalPosition(view->getCamera()->getDerivedPosition());
   const Eigen::Vector3d place(eye.x, eye.y, eye.z);
@@ -200,7 +199,7 @@ std::optional<Eigen::Vector3d> ClothDisplay::eye() const {
 
 void ClothDisplay::refresh() {
   if (!surface_ || !state_) return;
-  if (colourBy() == ColourBy::kLook) takeLooks();
+  if (surface_->colourBy() == ColourBy::kLook) takeLooks();
   // What is seen of the same state may be another side, or have another look.
   const std::optional<Eigen::Vector3d> place_of_eye = eye();
   const bool has_turned = place_of_eye && place_of_eye != eye_;

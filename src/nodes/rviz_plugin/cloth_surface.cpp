@@ -79,6 +79,13 @@ VertexColour colourOf(const Eigen::Vector3f& colour, float brightness, double op
           byteOf(brightness * colour[2]), byteOf(opacity)};
 }
 
+/// Of a triangle with these edges from its first corner.
+cloth::ElementFrame frameOf(const cloth::RestTriangle& rest, const Eigen::Vector3d& first,
+                            const Eigen::Vector3d& second) {
+  return {rest.weft_weights[1] * first + rest.weft_weights[2] * second,
+          rest.warp_weights[1] * first + rest.warp_weights[2] * second};
+}
+
 /// IEC 61966-2-1. @param linear 0 to 1, and beyond
 double srgb(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
@@ -211,6 +218,7 @@ void ClothSurface::setLooks(std::vector<std::shared_ptr<const appearance::Brdf>>
     throw std::invalid_argument("there are " + std::to_string(looks.size()) + " looks of " +
                                 std::to_string(fabric_count_) + " fabrics: allowed is one each");
   }
+  if (colour_by_ != ColourBy::kLook) throw std::invalid_argument("the colours are of no look");
   looks_ = std::move(looks);
   wefts_.resize(particles_.size());
   warps_.resize(particles_.size());
@@ -279,10 +287,8 @@ void ClothSurface::sumTriangles() {
     Eigen::Vector4f share = Eigen::Vector4f::Zero();
     share.head<3>() = first.cross(second).cast<float>();
     if (isQuantity(colour_by_) && !at_rest_.empty()) {
-      const auto& [weft, warp, area] = at_rest_[t];
-      const cloth::ElementFrame frame{weft[1] * first + weft[2] * second,
-                                      warp[1] * first + warp[2] * second};
-      share[3] = static_cast<float>(area * valueOf(t, cloth::greenStrain(frame)));
+      const double value = valueOf(t, cloth::greenStrain(frameOf(at_rest_[t], first, second)));
+      share[3] = static_cast<float>(at_rest_[t].area * value);
     }
     for (const int particle : triangles_[t]) sums_[particle] += share;
   }
@@ -294,15 +300,14 @@ void ClothSurface::sumAxes() {
   std::fill(warps_.begin(), warps_.end(), Eigen::Vector3f::Zero());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const auto& [a, b, c] = triangles_[t];
-    const Eigen::Vector3d first = points_[b] - points_[a], second = points_[c] - points_[a];
-    const auto& [weft, warp, area] = at_rest_[t];
-    const Eigen::Vector3f along_weft =
-        (weft[1] * first + weft[2] * second).normalized().cast<float>();
-    const Eigen::Vector3f along_warp =
-        (warp[1] * first + warp[2] * second).normalized().cast<float>();
+    const cloth::ElementFrame frame =
+        frameOf(at_rest_[t], points_[b] - points_[a], points_[c] - points_[a]);
+    const Eigen::Vector3f weft = frame.weft.normalized().cast<float>();
+    const Eigen::Vector3f warp = frame.warp.normalized().cast<float>();
+    if (!weft.allFinite() || !warp.allFinite()) continue;  // it has no area at rest
     for (int corner = 0; corner < 3; ++corner) {
-      wefts_[triangle_vertices_[3 * t + corner]] += along_weft;
-      warps_[triangle_vertices_[3 * t + corner]] += along_warp;
+      wefts_[triangle_vertices_[3 * t + corner]] += weft;
+      warps_[triangle_vertices_[3 * t + corner]] += warp;
     }
   }
 }

@@ -33,12 +33,13 @@ FabricLooks::~FabricLooks() {
 
 FabricLooks::Look FabricLooks::of(const std::string& path) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const auto [place, is_new] = looks_.try_emplace(path);
-  if (is_new) {
+  std::shared_ptr<Look>& look = looks_[path];
+  if (!look) {
+    look = std::make_shared<Look>();
     if (!reader_.joinable()) reader_ = std::thread([this] { read(); });
     asked_.notify_one();
   }
-  return place->second;
+  return *look;
 }
 
 void FabricLooks::forget() {
@@ -50,17 +51,16 @@ void FabricLooks::read() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!is_ending_) {
     const auto next = std::find_if(looks_.begin(), looks_.end(),
-                                   [](const auto& look) { return isOpen(look.second); });
+                                   [](const auto& look) { return isOpen(*look.second); });
     if (next == looks_.end()) {
       asked_.wait(lock);
       continue;
     }
-    const std::string path = next->first;
+    const auto [path, asked] = *next;  // which forget() may take out meanwhile
     lock.unlock();
     const Look look = lookOf(path);
     lock.lock();
-    // It may be forgotten by now.
-    if (const auto place = looks_.find(path); place != looks_.end()) place->second = look;
+    *asked = look;
   }
 }
 

@@ -165,22 +165,24 @@ TEST(Fasteners, ADrawstringHasOneTensionFromEndToEnd) {
 TEST(Fasteners, ADrawstringSlidesThroughItsPlaces) {
   ModelledEffects effects;
   effects.gravity = Vector3d(0.0, 0.0, -9.81);
-  Fastener cord{
-      "cord", FastenerKind::kDrawstring, {particle(0), particle(4), particle(3)}, 500.0, 0.25, 1e3};
-  cord.places = {particle(0), particle(4), particle(8)};
-  effects.fasteners = {cord};
-  // Three strips of two cells: the ring is a corner of the one in the middle, which hangs on it.
+  effects.fasteners = {{"cord",
+                        FastenerKind::kDrawstring,
+                        {particle(0), particle(4), particle(8)},
+                        500.0,
+                        0.25,
+                        1e3}};
+  // Three squares: the ring is a corner of the one in the middle, which hangs on it.
   mesh::ClothMesh mesh;
-  for (int strip = 0; strip < 3; ++strip) {
+  for (int square = 0; square < 3; ++square) {
     for (const Eigen::Vector2d& rest :
          {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.01, 0.0), Eigen::Vector2d(0.01, -0.01),
           Eigen::Vector2d(0.0, -0.01)}) {
-      mesh.rest_coordinates.push_back(rest + Eigen::Vector2d(0.05 * strip, 0.0));
-      mesh.initial_positions.emplace_back(0.0, rest.x() + 0.1 * strip,
-                                          rest.y() - (strip == 1 ? 0.05 : 0.02 * strip));
+      mesh.rest_coordinates.push_back(rest + Eigen::Vector2d(0.05 * square, 0.0));
+      mesh.initial_positions.emplace_back(0.0, rest.x() + 0.1 * square,
+                                          rest.y() - (square == 1 ? 0.05 : 0.02 * square));
     }
-    mesh.triangles.push_back({4 * strip, 4 * strip + 1, 4 * strip + 2});
-    mesh.triangles.push_back({4 * strip, 4 * strip + 2, 4 * strip + 3});
+    mesh.triangles.push_back({4 * square, 4 * square + 1, 4 * square + 2});
+    mesh.triangles.push_back({4 * square, 4 * square + 2, 4 * square + 3});
   }
   Cloth cloth(std::move(mesh), linearFabric(), effects);
   for (const int i : {0, 1, 2, 3, 8, 9, 10, 11}) {

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 #include <haptex/ClothMesh.h>
 #include <rosbag/bag.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "../../temporary_directory.h"
 #include "haptex/nodes/common/cloth_recording.h"
 
 namespace haptex::nodes::test_cloth_recording {
@@ -16,14 +16,7 @@ namespace fs = std::filesystem;
 /// A bag that goes with the test.
 class TestBag {
  public:
-  TestBag() {
-    std::string name = (fs::temp_directory_path() / "haptexXXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no directory " + name);
-    directory_ = name;
-  }
-  ~TestBag() { fs::remove_all(directory_); }
-
-  std::string path() const { return (directory_ / "cloth.bag").string(); }
+  std::string path() const { return directory_.path() + "/cloth.bag"; }
   template <typename Message>
   void write(const std::string& topic, const Message& message) {
     const auto mode = fs::exists(path()) ? rosbag::bagmode::Append : rosbag::bagmode::Write;
@@ -32,7 +25,7 @@ class TestBag {
   }
 
  private:
-  fs::path directory_;
+  test::TemporaryDirectory directory_;
   int messages_ = 0;
 };
 

@@ -240,6 +240,9 @@ TEST(ClothSurface, RefusesAnotherNumberOfLooks) {
   ClothSurface surface(squareMesh(), ColourBy::kLook);
   EXPECT_EQ(test::refusalOf([&] { surface.setLooks({}); }),
             "there are 0 looks of 1 fabrics: allowed is one each");
+  ClothSurface by_strain(squareMesh(), ColourBy::kStrain);
+  EXPECT_EQ(test::refusalOf([&] { by_strain.setLooks(looks(white())); }),
+            "the colours are of no look");
 }
 
 TEST(ClothSurface, FabricsMeetInASharpEdge) {
@@ -328,6 +331,11 @@ TEST(ClothSurface, TrianglesWithoutAreaHaveAColour) {
   ClothSurface surface(mesh, ColourBy::kStrain);
   surface.take(squareState(1.0));
   for (const float coordinate : surface.positions()) EXPECT_TRUE(std::isfinite(coordinate));
+  ClothSurface look(mesh, ColourBy::kLook);
+  look.setLooks(looks(white()));
+  look.setEye(Eigen::Vector3d(5.0, 0.5, 0.5));
+  look.take(squareState(1.0));
+  for (const VertexColour& vertex : look.colours()) EXPECT_GT(vertex[0], 100);
 }
 
 }  // namespace

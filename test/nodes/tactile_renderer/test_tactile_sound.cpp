@@ -3,7 +3,6 @@
 #include <rosbag/bag.h>
 #include <sndfile.h>
 #include <std_msgs/Header.h>
-#include <stdlib.h>
 
 #include <cmath>
 #include <complex>
@@ -12,6 +11,7 @@
 #include <limits>
 
 #include "../../refusal.h"
+#include "../../temporary_directory.h"
 #include "haptex/nodes/tactile_renderer/sound_request.h"
 #include "haptex/nodes/tactile_renderer/tactile_recording.h"
 
@@ -20,16 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A directory that goes with the test.
-struct Directory {
-  Directory() {
-    std::string name = (fs::temp_directory_path() / "haptexXXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no directory " + name);
-    path = name;
-  }
-  ~Directory() { fs::remove_all(path); }
-  std::string file(const char* name) const { return (path / name).string(); }
-  fs::path path;
+struct Directory : test::TemporaryDirectory {
+  std::string file(const char* name) const { return path() + "/" + name; }
 };
 
 /// Samples as displacements, m.

@@ -55,7 +55,7 @@ class ClothSurface {
   /// Only with ColourBy::kLook: of every fabric, or none, which is drawn grey. The
   /// next state has colours (sRGB) by the light of shade(), an even sky and a sun whose shadows are
   /// left out, on the side that is towards the eye.
-  /// @throws std::invalid_argument if there is not one for each fabric
+  /// @throws std::invalid_argument if there is not one for each fabric, or colours are by another
   void setLooks(std::vector<std::shared_ptr<const appearance::Brdf>> looks);
 
   /// The last state from another eye: colours() anew by the shares of the sky that are known.

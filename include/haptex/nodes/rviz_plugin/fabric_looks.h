@@ -37,7 +37,7 @@ class FabricLooks {
 
   std::mutex mutex_;  // of the next three
   std::condition_variable asked_;
-  std::map<std::string, Look> looks_;  // by path
+  std::map<std::string, std::shared_ptr<Look>> looks_;  // by path
   bool is_ending_ = false;
   std::thread reader_;  // from the first file on
 };

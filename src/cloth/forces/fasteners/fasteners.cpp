@@ -122,7 +122,6 @@ Fasteners::Course Fasteners::courseOf(const Link& link, const Positions& positio
   Course course;
   const auto segments = static_cast<int>(link.weights.rows());
   course.directions.resize(3, segments);
-  course.curvatures.resize(segments);
   for (int s = 0; s < segments; ++s) {
     const Vector3d its = extent(link, s, positions);
     const double distance = std::hypot(its.norm(), link.rounding);
@@ -133,31 +132,44 @@ Fasteners::Course Fasteners::courseOf(const Link& link, const Positions& positio
   return course;
 }
 
-/// Derivative of the distance by the position of a particle of the link.
-Vector3d Fasteners::directionAt(const Link& link, const Course& course, int particle) {
-  return course.directions * link.weights.col(particle);
+/// Derivative of the pulls of all segments by time (N/s).
+Fasteners::Segments Fasteners::pullRates(const Link& link, const Course& course,
+                                         const Response& response,
+                                         const std::vector<Vector3d>& velocities) {
+  const auto segments = static_cast<int>(course.directions.cols());
+  Segments rates(3, segments);
+  double rate = 0.0;  // m/s, of the distance
+  for (int s = 0; s < segments; ++s) {
+    rates.col(s) = extent(link, s, velocities);
+    rate += course.directions.col(s).dot(rates.col(s));
+  }
+  for (int s = 0; s < segments; ++s) {
+    const Vector3d its = response.stiffnesses[s] * rates.col(s);
+    rates.col(s) = its + response.slope * rate * course.directions.col(s);
+  }
+  return rates;
 }
 
-/// Derivative of the pull on particle i of the link by the position of particle j. With the
-/// distance D of all segments, their weights w and the tension f(D),
+/// Calls take(i, j, derivative of the pull on the link's particle i by the position of its particle
+/// j) for i and all j <= i. With the distance D of all segments, their weights w and the tension
+/// f(D), it is
 ///   f' (dD/di) (dD/dj)^T + f sum over segments of w_i w_j (1 - n n^T) / r.
-Matrix3d Fasteners::stiffness(const Link& link, const Course& course, const Response& response,
-                              int i, int j) {
-  Matrix3d sum =
-      response.slope * directionAt(link, course, i) * directionAt(link, course, j).transpose();
-  for (int s = 0; s < course.curvatures.size(); ++s) {
-    const double weight = link.weights(s, i) * link.weights(s, j);
-    if (weight == 0.0) continue;
-    if (course.curvatures[s] == 0.0) {  // without length it is the same in all directions
-      sum.diagonal().array() += weight * response.slope;
-      continue;
+template <typename Take>
+void Fasteners::forEachBlock(const Link& link, const Course& course, const Response& response,
+                             const Take& take) {
+  // dD/di of every particle.
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3 * kMostPlaces> gradients;
+  gradients = course.directions.lazyProduct(link.weights);
+  for (int i = 0; i < gradients.cols(); ++i) {
+    for (int j = 0; j <= i; ++j) {
+      Matrix3d block = response.slope * gradients.col(i) * gradients.col(j).transpose();
+      for (int s = 0; s < link.weights.rows(); ++s) {
+        const double weight = link.weights(s, i) * link.weights(s, j);
+        if (weight != 0.0) block += weight * response.stiffnesses[s];
+      }
+      take(i, j, block);
     }
-    const double across = weight * response.tension * course.curvatures[s];
-    const auto direction = course.directions.col(s);
-    sum -= across * direction * direction.transpose();
-    sum.diagonal().array() += across;
   }
-  return sum;
 }
 
 double Fasteners::reach(std::size_t fastener) const {
@@ -239,9 +251,21 @@ void Fasteners::remember(const Positions& positions, double* memory) const {
   }
 }
 
-Fasteners::Response Fasteners::respond(std::size_t fastener, double distance) const {
+Fasteners::Response Fasteners::respond(std::size_t fastener, const Course& course) const {
+  const double distance = course.distance;
   const bool elastic = distance >= links_[fastener].length && distance <= reach(fastener);
-  return {elastic ? fasteners_[fastener].stiffness : 0.0, tensionAt(fastener, distance)};
+  Response response;
+  response.tension = tensionAt(fastener, distance);
+  response.slope = elastic ? fasteners_[fastener].stiffness : 0.0;
+  for (int s = 0; s < course.directions.cols(); ++s) {
+    const auto direction = course.directions.col(s);
+    const double across = response.tension * course.curvatures[s];
+    Matrix3d& stiffness = response.stiffnesses[s];
+    stiffness = -across * direction * direction.transpose();
+    // Without length it is the same in all directions.
+    stiffness.diagonal().array() += course.curvatures[s] == 0.0 ? response.slope : across;
+  }
+  return response;
 }
 
 void Fasteners::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
@@ -251,7 +275,8 @@ void Fasteners::addForces(const ForceState& state, std::vector<Vector3d>& forces
     const Course course = courseOf(link, state.positions);
     const double tension = tensionAt(f, course.distance);
     for (std::size_t i = 0; i < link.particles.size(); ++i) {
-      forces[link.particles[i]] -= tension * directionAt(link, course, static_cast<int>(i));
+      forces[link.particles[i]] -=
+          tension * (course.directions * link.weights.col(static_cast<Eigen::Index>(i)));
     }
   }
 }
@@ -273,13 +298,10 @@ void Fasteners::addJacobian(const ForceState& state, JacobianRows& rows) const {
     if (!isFastened(f, state.memory)) continue;
     const Link& link = links_[f];
     const Course course = courseOf(link, state.positions);
-    const Response response = respond(f, course.distance);
-    const auto count = static_cast<int>(link.particles.size());
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) {
-        rows.add(link.particles[i], link.particles[j], -stiffness(link, course, response, i, j));
-      }
-    }
+    forEachBlock(link, course, respond(f, course), [&](int i, int j, const Matrix3d& block) {
+      rows.add(link.particles[i], link.particles[j], -block);
+      if (i != j) rows.add(link.particles[j], link.particles[i], -block.transpose());
+    });
   }
 }
 
@@ -290,22 +312,22 @@ void Fasteners::assembleLinearised(const ForceState& state, const StageTimes& ti
     if (!isFastened(f, state.memory)) continue;
     const Link& link = links_[f];
     const Course course = courseOf(link, state.positions);
-    const Response response = respond(f, course.distance);
-    const auto count = static_cast<int>(link.particles.size());
-    auto slot = link.slots.begin();
-    for (int i = 0; i < count; ++i) {
-      const int particle = link.particles[i];
-      rhs.col(particle) -= times.a * response.tension * directionAt(link, course, i);
-      matrix.diagonal(particle) += times.a * times.a * stiffness(link, course, response, i, i);
-      for (int j = 0; j < i; ++j) {
-        matrix.lower(*slot++) += times.a * times.a * stiffness(link, course, response, i, j);
-      }
-      if (times.ahead == 0.0) continue;
-      for (int j = 0; j < count; ++j) {
-        rhs.col(particle) -= times.a * times.ahead * stiffness(link, course, response, i, j) *
-                             state.velocities[link.particles[j]];
-      }
+    const Response response = respond(f, course);
+    Segments impulses = times.a * response.tension * course.directions;
+    if (times.ahead != 0.0) {
+      impulses += times.a * times.ahead * pullRates(link, course, response, state.velocities);
     }
+    for (std::size_t i = 0; i < link.particles.size(); ++i) {
+      rhs.col(link.particles[i]) -= impulses * link.weights.col(static_cast<Eigen::Index>(i));
+    }
+    auto slot = link.slots.begin();
+    forEachBlock(link, course, response, [&](int i, int j, const Matrix3d& block) {
+      if (i == j) {
+        matrix.diagonal(link.particles[i]) += times.a * times.a * block;
+      } else {
+        matrix.lower(*slot++) += times.a * times.a * block;
+      }
+    });
   }
 }
 

@@ -129,28 +129,32 @@ class Fasteners final : public Force {
     double length = 0.0;         // m
     double rounding = 0.0;       // m
   };
+  /// A vector for every segment.
+  using Segments = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMostPlaces>;
   /// At some positions.
   struct Course {
     double distance = 0.0;  // m, of all segments
-    // Of each, how its distance changes with its extent: n, and the 1 / r of (1 - n n^T) / r.
-    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMostPlaces> directions;
-    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostPlaces, 1> curvatures;
+    Segments directions;    // n: derivative of a segment's distance by its extent, no unit
+    std::array<double, kMostPlaces> curvatures;  // 1/m, the 1 / r of (1 - n n^T) / r, likewise
   };
-  /// Derivative of the tension by the distance, and the tension.
+  /// By the extents, of a fastened one at some positions.
   struct Response {
-    double slope;    // N/m
-    double tension;  // N
+    double tension;                                        // N
+    double slope;                                          // N/m, of the tension by the distance
+    std::array<Eigen::Matrix3d, kMostPlaces> stiffnesses;  // N/m, of a segment at one tension
   };
 
   static Link linkOf(const Fastener& fastener, std::size_t particles, double thickness);
   static Eigen::Vector3d extent(const Link& link, int segment,
                                 const std::vector<Eigen::Vector3d>& vectors);
   static Course courseOf(const Link& link, const Positions& positions);
-  static Eigen::Vector3d directionAt(const Link& link, const Course& course, int particle);
-  static Eigen::Matrix3d stiffness(const Link& link, const Course& course, const Response& response,
-                                   int i, int j);
+  static Segments pullRates(const Link& link, const Course& course, const Response& response,
+                            const std::vector<Eigen::Vector3d>& velocities);
+  template <typename Take>
+  static void forEachBlock(const Link& link, const Course& course, const Response& response,
+                           const Take& take);
   double tensionAt(std::size_t fastener, double distance) const;
-  Response respond(std::size_t fastener, double distance) const;
+  Response respond(std::size_t fastener, const Course& course) const;
 
   std::vector<Fastener> fasteners_;
   std::vector<Link> links_;  // likewise
