@@ -21,17 +21,16 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptex/cloth/dynamics/cloth.h"
-#include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric_file.h"
+#include "held_sheet.h"
 #include "tab_lines.h"
 
 namespace {
 
 using namespace haptex;
+using bench::HeldSheet;
 
 constexpr double kTimeStep = 0.0125;  // s
-constexpr double kFreeMotion = 2.0;   // s, then the sheet starts again
 constexpr double kTolerance = 1e-6;
 constexpr int kStepsPerCase = 320;
 
@@ -39,56 +38,6 @@ std::size_t allocatedBytes() {
   const struct mallinfo2 info = mallinfo2();
   return info.uordblks + info.hblkhd;
 }
-
-mesh::ClothMesh horizontalSheet(int cells) {
-  mesh::ClothMesh mesh =
-      mesh::makeRectangle(0.5, 0.5, cells, cells, mesh::Triangulation::kAlternating);
-  for (Eigen::Vector3d& position : mesh.initial_positions) {
-    position = {position.z(), position.y(), 0.0};
-  }
-  return mesh;
-}
-
-/// Released where it lies flat, held along one edge.
-class HeldSheet {
- public:
-  HeldSheet(const material::Fabric& fabric, int cells, const cloth::StepSettings& settings)
-      : cloth_(horizontalSheet(cells), fabric, effectsOf(fabric)),
-        start_(cloth_.initialState()),
-        state_(start_),
-        integrator_(cloth_, settings) {
-    for (int particle : sideParticles(cloth_.mesh(), mesh::Side::kTop)) {
-      cloth::AttachmentPath place;
-      place.start = state_.positions[particle];
-      cloth_.attach(particle, place);
-    }
-  }
-
-  std::size_t triangleCount() const { return cloth_.mesh().triangles.size(); }
-
-  /// @throws std::runtime_error if it did not reach its tolerance
-  cloth::StepReport step(double time_step) {
-    if (state_.time >= kFreeMotion) state_ = start_;
-    const cloth::StepReport report = integrator_.step(cloth_, state_, time_step);
-    if (!report.accepted || !report.linear_converged) {
-      throw std::runtime_error("a step did not reach its tolerance");
-    }
-    return report;
-  }
-
- private:
-  static cloth::ModelledEffects effectsOf(const material::Fabric& fabric) {
-    cloth::ModelledEffects effects;
-    effects.viscosity = !fabric.weft.viscous.isZero();
-    effects.gravity = {0.0, 0.0, -9.80665};
-    return effects;
-  }
-
-  cloth::Cloth cloth_;
-  cloth::ClothState start_;
-  cloth::ClothState state_;
-  cloth::Integrator integrator_;
-};
 
 cloth::StepSettings settingsOf(double tolerance, int solves = 1, int threads = 1) {
   cloth::StepSettings settings;
@@ -150,18 +99,11 @@ struct Target {
 
 constexpr double kTargetTolerance = 1e-4;
 
-material::Fabric fabricOf(const Target& target, material::Fabric fabric) {
-  using material::StrainStressCurve;
-  fabric.weft.elastic = fabric.warp.elastic = StrainStressCurve::linear(target.stiffness);
-  fabric.shear.elastic = StrainStressCurve::linear(0.5 * target.stiffness);
-  return fabric;
-}
-
 /// Mean time of a step (ms), in the fastest of the runs.
 double measureTarget(const Target& target, const material::Fabric& linear) {
   double fastest = std::numeric_limits<double>::infinity();
   for (int run = 0; run < target.runs; ++run) {
-    HeldSheet sheet(fabricOf(target, linear), target.cells,
+    HeldSheet sheet(bench::withStiffness(linear, target.stiffness), target.cells,
                     settingsOf(kTargetTolerance, 1, target.threads));
     double total = 0.0;
     for (int step = 0; step < target.steps; ++step) {

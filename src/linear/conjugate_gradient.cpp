@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include "haptex/linear/multigrid.h"
+
 namespace haptex::linear {
 
 namespace {
@@ -28,10 +30,10 @@ SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, const B
   return iterate(matrix, precondition, rhs, tolerance, max_iterations, x);
 }
 
-template <typename T>
-SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix,
-                                     BasicBlockCholesky<T>& factor, const BlockVector& rhs,
-                                     double tolerance, int max_iterations, BlockVector& x) {
+template <typename Factor>
+SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix& matrix, Factor& factor,
+                                     const BlockVector& rhs, double tolerance, int max_iterations,
+                                     BlockVector& x) {
   const auto precondition = [&] {
     preconditioned_ = residual_;
     factor.solve(preconditioned_);
@@ -109,5 +111,7 @@ template SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix&,
 template SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix&,
                                               BasicBlockCholesky<double>&, const BlockVector&,
                                               double, int, BlockVector&);
+template SolveResult ConjugateGradient::solve(const SymmetricBlockMatrix&, Multigrid&,
+                                              const BlockVector&, double, int, BlockVector&);
 
 }  // namespace haptex::linear

@@ -15,11 +15,15 @@ constexpr int kMaxLastIterations = 100;
 // Patterns of up to this many rows hold a factor in double precision from the start, and have none
 // of whole matrices: they never allocate.
 constexpr int kSmallPattern = 500;
+// Of patterns beyond kMostFactoredRows: a solve by multigrid takes as long as some 15 iterations
+// with the diagonal blocks at least.
+constexpr int kIterationsBeforeMultigrid = 10;
+constexpr int kMostCycles = 100;
 
 }  // namespace
 
 LinearSolver::LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMethod method,
-                           ThreadPool* pool)
+                           ThreadPool* pool, int most_factored_rows)
     : method_(method), pool_(pool), conjugate_gradient_(pattern.size()) {
   const bool small = pattern.size() <= kSmallPattern;
   if (method == LinearSolverMethod::kCholesky ||
@@ -29,6 +33,8 @@ LinearSolver::LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMeth
     product_.resize(3, pattern.size());
   }
   if (method != LinearSolverMethod::kAutomatic) return;
+  is_large_ = pattern.size() > most_factored_rows;
+  if (is_large_) return;
   factor_ = std::make_unique<KeptFactor>(pattern, pool);
   if (!small) whole_factor_ = factor_->ofWholeMatrices();
 }
@@ -39,6 +45,7 @@ long LinearSolver::factorisations() const {
 }
 
 int LinearSolver::iterationBudget() const {
+  if (is_large_) return kIterationsBeforeMultigrid;
   if (!factor_) return 0;
   return std::max(1, static_cast<int>(factor_->meanCost() / factor_->blockIterationCost()));
 }
@@ -57,6 +64,7 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
   if (method_ == LinearSolverMethod::kConjugateGradient) {
     return solveIteratively(matrix, rhs, tolerance, mostIterations(matrix), x);
   }
+  if (is_large_) return solveLarge(matrix, rhs, tolerance, x, worth_more);
   if (method_ == LinearSolverMethod::kAutomatic) {
     const bool by_whole = matrix.couplingCount() > 0 && fixed_pattern_.holds();
     if (by_whole) {
@@ -81,6 +89,34 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
   if (result.converged || !worth_more) return result;
   // Not positive definite to rounding: a last try that costs a few factorisations at most.
   return solveIteratively(matrix, rhs, tolerance, lastTry(), x);
+}
+
+SolveResult LinearSolver::solveLarge(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                                     double tolerance, BlockVector& x, bool worth_more) {
+  if (iterations_.holds()) {
+    iterations_.pass();
+  } else {
+    const SolveResult result = solveIteratively(matrix, rhs, tolerance, iterationBudget(), x);
+    if (result.converged) {
+      iterations_.succeeded();
+      return result;
+    }
+    iterations_.failed();
+  }
+  last_method_ = LinearSolverMethod::kConjugateGradient;
+  SolveResult result;
+  const auto solveByCycles = [&] {
+    const int spent = result.iterations;
+    result = conjugate_gradient_.solve(matrix, *multigrid_, rhs, tolerance, kMostCycles, x);
+    result.iterations += spent;
+  };
+  if (multigrid_ && multigrid_->takeValues(matrix)) solveByCycles();
+  if (!result.converged) {
+    multigrid_ = std::make_unique<Multigrid>(matrix, pool_);
+    if (multigrid_->takeValues(matrix)) solveByCycles();
+  }
+  if (result.converged) return result;
+  return worth_more ? solveIteratively(matrix, rhs, tolerance, lastTry(), x) : result;
 }
 
 SolveResult LinearSolver::solveIteratively(const SymmetricBlockMatrix& matrix,

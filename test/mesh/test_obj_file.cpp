@@ -82,11 +82,11 @@ std::string refusalOf(const TemporaryObj& file) {
   return "accepted";
 }
 
-TEST(ObjFile, OfAMillionTrianglesIsRefusedAtTheFirstTooMany) {
+TEST(ObjFile, OfTooManyTrianglesIsRefusedAtTheFirstTooMany) {
   std::string text = kPoints;
-  for (std::size_t i = 0; i < 1'000'000; ++i) text += "f 1/1 2/2 3/3\n";
+  for (std::size_t i = 0; i < 2'100'000; ++i) text += "f 1/1 2/2 3/3\n";
   // Twelve lines come before the first.
-  EXPECT_EQ(refusalOf(TemporaryObj(text)), ": line 200014: more than 200000 triangles");
+  EXPECT_EQ(refusalOf(TemporaryObj(text)), ": line 2000014: more than 2000000 triangles");
 }
 
 TEST(ObjFile, OfTooManyPositionsOrTextureCoordinatesIsRefusedAtTheFirstTooMany) {
@@ -95,9 +95,9 @@ TEST(ObjFile, OfTooManyPositionsOrTextureCoordinatesIsRefusedAtTheFirstTooMany) 
     positions += "v 0 0 0\n";
     textures += "vt 0 0\n";
   }
-  EXPECT_EQ(refusalOf(TemporaryObj(positions)), ": line 600001: more than 600000 positions");
+  EXPECT_EQ(refusalOf(TemporaryObj(positions)), ": line 6000001: more than 6000000 positions");
   EXPECT_EQ(refusalOf(TemporaryObj(textures)),
-            ": line 600001: more than 600000 texture coordinates");
+            ": line 6000001: more than 6000000 texture coordinates");
 }
 
 TEST(ObjFile, TooLargeIsRefusedUnread) {

@@ -94,7 +94,7 @@ class ClothChanges(AnswersTest):
                 ([0.2, 200.0], [0, 0], '', 'size[1] = 200 m'),
                 ([0.0, 0.0], [8, 0], '', 'cells[1] = 0'),
                 ([0.0, 0.0], [4000000000, 8], '', 'cells = 4000000000'),
-                ([0.0, 0.0], [1000, 1000], '', '200000'),
+                ([0.0, 0.0], [1001, 1000], '', 'at most 2000000'),
                 ([0.0, 0.0], [0, 0], 'round', "diagonals is 'round'")):
             self.refused(self.set_sheet(size, cells, diagonals), says)
         self.assertEqual(self.mesh().mesh, mesh)

@@ -17,9 +17,9 @@ struct SolveResult {
   bool indefinite = false;  ///< a direction d with d . A d <= 0 was met, or not a number
 };
 
-/// Conjugate gradients (Hestenes and Stiefel 1952), preconditioned by the inverse diagonal blocks
-/// or by the factor of a matrix that is near. All buffers are made by the constructor; solve()
-/// allocates nothing.
+/// Conjugate gradients (Hestenes and Stiefel 1952), preconditioned by the inverse diagonal blocks,
+/// by the factor of a matrix that is near or by multigrid. All buffers are made by the constructor;
+/// solve() allocates nothing.
 class ConjugateGradient {
  public:
   /// @param size number of block rows of the matrices to come
@@ -31,11 +31,11 @@ class ConjugateGradient {
   /// @param x the initial guess, dropped if zero is a better one; overwritten by the solution
   SolveResult solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs, double tolerance,
                     int max_iterations, BlockVector& x);
-  /// The same with a factor as preconditioner, in double precision but for the factor.
-  /// @tparam T float or double
-  template <typename T>
-  SolveResult solve(const SymmetricBlockMatrix& matrix, BasicBlockCholesky<T>& factor,
-                    const BlockVector& rhs, double tolerance, int max_iterations, BlockVector& x);
+  /// The same with another preconditioner, in double precision but for that.
+  /// @tparam Factor BasicBlockCholesky<float> or <double>, or Multigrid
+  template <typename Factor>
+  SolveResult solve(const SymmetricBlockMatrix& matrix, Factor& factor, const BlockVector& rhs,
+                    double tolerance, int max_iterations, BlockVector& x);
 
  private:
   template <typename Precondition>

@@ -8,6 +8,7 @@
 #include "haptex/linear/block_matrix.h"
 #include "haptex/linear/conjugate_gradient.h"
 #include "haptex/linear/kept_factor.h"
+#include "haptex/linear/multigrid.h"
 
 namespace haptex::linear {
 
@@ -23,7 +24,13 @@ enum class LinearSolverMethod {
 /// Solves the systems of successive steps to a stated relative residual.
 ///
 /// The automatic choice is between conjugate gradients with the diagonal blocks as preconditioner
-/// and conjugate gradients with a kept factor in single precision (KeptFactor).
+/// and conjugate gradients with a kept factor in single precision (KeptFactor), or, in patterns of
+/// more than kMostFactoredRows, with a multigrid cycle (Multigrid).
+///
+/// Of large patterns: what ten iterations with the diagonal blocks do not solve is solved by
+/// multigrid, and so are the next systems, at first 8 and twice as many after each further failure
+/// up to 512. The hierarchy is made for the first such system, and anew for one that it does not
+/// solve within 100 iterations. All that follows is of the others.
 ///
 /// Diagonal blocks get as many iterations as cost what a solve by the kept factor costs. When they
 /// do not suffice, the factor solves this system and the next ones, at first 8 and twice as many
@@ -57,9 +64,14 @@ enum class LinearSolverMethod {
 /// leave out what couplings add to a product.
 class LinearSolver {
  public:
-  /// @param pool shares the work of a factor if it is given; has to outlive this
+  /// About 1.2 million triangles: beyond, a factor takes more than 1.5 kB per triangle. Up to there
+  /// it is faster, too, where it serves some systems (scripts/bench scale).
+  static constexpr int kMostFactoredRows = 600'000;
+
+  /// @param pool shares the work of a factor and of multigrid if it is given; has to outlive this
+  /// @param most_factored_rows of a pattern that kAutomatic has factors of
   LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMethod method,
-               ThreadPool* pool = nullptr);
+               ThreadPool* pool = nullptr, int most_factored_rows = kMostFactoredRows);
 
   /// What is known of a system. Matters for kAutomatic and kCholesky.
   enum class Definiteness {
@@ -72,9 +84,11 @@ class LinearSolver {
   SolveResult solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs, double tolerance,
                     BlockVector& x, Definiteness definiteness = Definiteness::kPositive);
 
-  /// What gave the last solution: kConjugateGradient, or kCholesky for any factor.
+  /// What gave the last solution: kConjugateGradient, also with multigrid, or kCholesky for any
+  /// factor.
   LinearSolverMethod lastMethod() const { return last_method_; }
-  /// Iterations with the diagonal blocks that cost as much as a solve by a factor; 0 without one.
+  /// Iterations with the diagonal blocks that are tried first: as many as cost what a solve by a
+  /// factor costs; 0 where nothing else would follow.
   int iterationBudget() const;
   /// Factors made so far.
   long factorisations() const;
@@ -88,6 +102,8 @@ class LinearSolver {
                                double tolerance, int max_iterations, BlockVector& x);
   SolveResult solveByWholeFactor(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
                                  double tolerance, BlockVector& x);
+  SolveResult solveLarge(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                         double tolerance, BlockVector& x, bool worth_more);
   int lastTry() const;  // iterations
   static int mostIterations(const SymmetricBlockMatrix& matrix);
 
@@ -97,7 +113,9 @@ class LinearSolver {
   ConjugateGradient conjugate_gradient_;
   std::unique_ptr<BlockCholesky> cholesky_;   // of kCholesky, or once it is needed
   std::unique_ptr<KeptFactor> factor_;        // of kAutomatic, as the next one
-  std::unique_ptr<KeptFactor> whole_factor_;  // of large patterns
+  std::unique_ptr<KeptFactor> whole_factor_;  // of those of more than 500 rows
+  bool is_large_ = false;                     // of kAutomatic, beyond what is factorised
+  std::unique_ptr<Multigrid> multigrid_;      // of a large one, once it is needed
   long factorisations_ = 0;                   // in double precision
   Backoff iterations_{8, 512};                // with the diagonal blocks
   Backoff fixed_pattern_{8, 512};             // with a factor of it, where there are couplings

@@ -13,8 +13,8 @@ namespace haptex::mesh {
 
 /// What a mesh may have at most: bytes of its file and triangles; and of positions and of texture
 /// coordinates three times as many.
-constexpr std::size_t kLargestObj = std::size_t{64} << 20;
-constexpr std::size_t kMostTriangles = 200'000;
+constexpr std::size_t kLargestObj = std::size_t{256} << 20;
+constexpr std::size_t kMostTriangles = 2'000'000;
 
 /// Reads triangles ("f"), positions ("v", metres, world frame) and texture coordinates ("vt"),
 /// which are the rest coordinates (u weft, v warp) in metres, of every corner of a face. Where a

@@ -1,0 +1,153 @@
+// How does the time of a step grow with the size of the cloth? The sheet that is held along an edge
+// (held_sheet.h) swings for a quarter of a second, of fabric of 1000 N/m ("linear") and of wool, at
+// 12.5 ms, solved once to a relative residual of 1e-4 by whichever solver the automatic choice
+// takes, on two threads. Printed are the mean times of a step, what the linear solver takes of it
+// ("_solve") and its iterations.
+//
+// "exponent" is that with which the time of linear grows from the smallest sheet to the largest,
+// "memory" what the largest holds.
+//
+// The system of the last state is solved from zero to 1e-4 by multigrid, values made anew
+// ("multigrid"), and by CHOLMOD's supernodal factorisation, its pattern analysed already, with
+// OpenBLAS on two threads, up to 100352 triangles ("cholmod"); "difference" is that of the two
+// solutions where multigrid goes to a residual of 1e-9.
+#include <malloc.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include "cholmod.h"
+#include "haptex/linear/multigrid.h"
+#include "haptex/material/fabric_file.h"
+#include "held_sheet.h"
+#include "tab_lines.h"
+
+namespace {
+
+using namespace haptex;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kTimeStep = 0.0125;  // s
+constexpr double kTolerance = 1e-4;
+constexpr double kTight = 1e-9;
+constexpr int kThreads = 2;
+constexpr int kFirstSteps = 4;  // memory is allocated, hierarchies are made
+constexpr int kSteps = 16;
+constexpr int kMostIterations = 2000;
+constexpr double kStiffness = 1000.0;                   // N/m
+constexpr int kCells[] = {32, 71, 126, 224, 398, 707};  // 2048 to 999698 triangles
+constexpr int kMostCellsOfCholmod = 224;
+
+double milliseconds(Clock::time_point since) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
+}
+
+double allocatedBytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+struct System {
+  linear::SymmetricBlockMatrix matrix;
+  linear::BlockVector rhs;
+};
+
+/// The first one of the step that follows, without what a solve before it changed.
+System systemOf(const bench::HeldSheet& sheet) {
+  const cloth::Cloth& cloth = sheet.cloth();
+  const auto size = static_cast<int>(cloth.particleCount());
+  System system{cloth.pattern(), linear::BlockVector::Zero(3, size)};
+  for (int i = 0; i < size; ++i) {
+    const double mass = cloth.masses()[i];
+    system.matrix.diagonal(i).diagonal().setConstant(mass);
+    system.rhs.col(i) = kTimeStep * mass * Eigen::Vector3d(0.0, 0.0, -9.80665);
+  }
+  cloth.forces().assembleLinearised(sheet.state().ofForces(), {kTimeStep, kTimeStep}, system.matrix,
+                                    system.rhs);
+  std::vector<char> held(size, 0);
+  for (const int particle : mesh::sideParticles(cloth.mesh(), mesh::Side::kTop)) held[particle] = 1;
+  system.matrix.eliminate(held, linear::BlockVector::Zero(3, size), system.rhs);
+  return system;
+}
+
+void compareSolvers(const std::string& triangles, const System& system, bool with_cholmod) {
+  linear::ThreadPool pool(kThreads);
+  linear::Multigrid multigrid(system.matrix, &pool);
+  linear::ConjugateGradient conjugate_gradient(system.matrix.size());
+  linear::BlockVector x(3, system.matrix.size());
+  const auto solve = [&](double tolerance) {
+    x.setZero();
+    multigrid.takeValues(system.matrix);
+    const linear::SolveResult result = conjugate_gradient.solve(
+        system.matrix, multigrid, system.rhs, tolerance, kMostIterations, x);
+    if (!result.converged) throw std::runtime_error("multigrid did not reach its tolerance");
+  };
+  const Clock::time_point start = Clock::now();
+  solve(kTolerance);
+  bench::printLine("scale/multigrid/" + triangles, milliseconds(start), "ms");
+  if (!with_cholmod) return;
+  bench::Cholmod cholmod(system.matrix);
+  const Eigen::SparseMatrix<double> scalars = bench::Cholmod::scalars(system.matrix);
+  const Clock::time_point start_of_cholmod = Clock::now();
+  if (!cholmod.factorise(scalars)) throw std::runtime_error("not positive definite");
+  const Eigen::VectorXd exact = cholmod.solve(system.rhs);
+  bench::printLine("scale/cholmod/" + triangles, milliseconds(start_of_cholmod), "ms");
+  solve(kTight);
+  const Eigen::Map<const Eigen::VectorXd> ours(x.data(), x.size());
+  bench::printLine("scale/difference/" + triangles, (ours - exact).norm() / exact.norm(), "ratio");
+}
+
+/// @returns ms, of a step
+double measure(const std::string& name, const material::Fabric& fabric, int cells, bool compared) {
+  const double before = allocatedBytes();
+  cloth::StepSettings settings;
+  settings.tolerance = kTolerance;
+  settings.newton_iterations = 1;
+  settings.threads = kThreads;
+  bench::HeldSheet sheet(fabric, cells, settings);
+  const std::string triangles = std::to_string(sheet.triangleCount());
+  double total = 0.0, solve = 0.0, iterations = 0.0;
+  for (int step = 0; step < kFirstSteps; ++step) sheet.step(kTimeStep);
+  for (int step = 0; step < kSteps; ++step) {
+    const cloth::StepReport report = sheet.step(kTimeStep);
+    total += 1e3 * report.total_seconds / kSteps;
+    solve += 1e3 * report.solve_seconds / kSteps;
+    iterations += static_cast<double>(report.linear_iterations) / kSteps;
+  }
+  bench::printLine("scale/" + name + "/" + triangles, total, "ms");
+  bench::printLine("scale/" + name + "_solve/" + triangles, solve, "ms");
+  bench::printLine("scale/" + name + "_iterations/" + triangles, iterations, "per_step");
+  if (compared && cells == kCells[std::size(kCells) - 1]) {
+    const double bytes = allocatedBytes() - before;
+    bench::printLine("scale/memory", bytes / sheet.triangleCount() / 1e3, "kB_per_triangle");
+  }
+  if (compared) compareSolvers(triangles, systemOf(sheet), cells <= kMostCellsOfCholmod);
+  return total;
+}
+
+}  // namespace
+
+int main() {
+  try {
+    const std::string fabrics = HAPTEX_CONFIG_DIRECTORY "/fabrics/";
+    const material::Fabric linear =
+        bench::withStiffness(material::loadFabric(fabrics + "linear.yaml"), kStiffness);
+    const material::Fabric wool = material::loadFabric(fabrics + "wool.yaml");
+    double first = 0.0, last = 0.0;
+    for (const int cells : kCells) {
+      last = measure("linear", linear, cells, true);
+      if (first == 0.0) first = last;
+    }
+    const double growth = static_cast<double>(kCells[std::size(kCells) - 1]) / kCells[0];
+    bench::printLine("scale/exponent", std::log(last / first) / (2.0 * std::log(growth)),
+                     "exponent");
+    for (const int cells : kCells) measure("wool", wool, cells, false);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_scale: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
