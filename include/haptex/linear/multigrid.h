@@ -47,8 +47,7 @@ class Multigrid {
     BlockRows rows;
     float damping = 1.0f;  // of Jacobi's method
     PaddedVector residual, next;
-    PaddedVector rhs, x,
-        correction;  // of what the next finer level asks for; first of all, of solve()
+    PaddedVector rhs, x, correction;  // what the next finer level, or solve(), asks for
     // To the next coarser level, if there is one.
     Interpolation interpolation;
     Interpolation restriction;
