@@ -7,19 +7,28 @@
 // "exponent" is that with which the time of linear grows from the smallest sheet to the largest,
 // "memory" what the largest holds.
 //
-// The system of the last state is solved from zero to 1e-4 by multigrid, values made anew
-// ("multigrid"), and by CHOLMOD's supernodal factorisation, its pattern analysed already, with
-// OpenBLAS on two threads, up to 100352 triangles ("cholmod"); "difference" is that of the two
-// solutions where multigrid goes to a residual of 1e-9.
+// The system of the last state is solved from zero to 1e-4 by multigrid and by a new factor, their
+// patterns set up already ("multigrid", "factor"; of wool "wool_multigrid", "wool_factor"), and by
+// CHOLMOD's supernodal factorisation, its pattern analysed already, with OpenBLAS on two threads,
+// up to 100352 triangles ("cholmod"); "difference" is that of the two solutions where multigrid
+// goes to a residual of 1e-9.
+//
+// Where PETSc was found when this was built, it solves the same systems by one process and by two
+// ("gamg", "hypre", "mumps", "gamg_2" ...; petsc_solve.cpp).
 #include <malloc.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
 #include "cholmod.h"
+#include "dumped_system.h"
+#include "haptex/linear/kept_factor.h"
 #include "haptex/linear/multigrid.h"
 #include "haptex/material/fabric_file.h"
 #include "held_sheet.h"
@@ -73,7 +82,56 @@ System systemOf(const bench::HeldSheet& sheet) {
   return system;
 }
 
-void compareSolvers(const std::string& triangles, const System& system, bool with_cholmod) {
+bench::DumpedSystem rowsOf(const System& system, const cloth::Positions& positions) {
+  const linear::SymmetricBlockMatrix& matrix = system.matrix;
+  const int size = matrix.size();
+  std::vector<std::vector<std::pair<int, Eigen::Matrix3d>>> rows(size);
+  for (int i = 0; i < size; ++i) {
+    rows[i].emplace_back(i, matrix.diagonal(i));
+    for (int s = matrix.rowBegin(i); s < matrix.rowBegin(i + 1); ++s) {
+      rows[i].emplace_back(matrix.column(s), matrix.lower(s));
+      rows[matrix.column(s)].emplace_back(i, matrix.lower(s).transpose());
+    }
+  }
+  bench::DumpedSystem dumped;
+  dumped.begin.push_back(0);
+  for (int i = 0; i < size; ++i) {
+    for (const auto& [column, block] : rows[i]) {
+      dumped.columns.push_back(column);
+      for (int k = 0; k < 9; ++k) dumped.blocks.push_back(block(k / 3, k % 3));
+    }
+    dumped.begin.push_back(static_cast<int>(dumped.columns.size()));
+    for (int c = 0; c < 3; ++c) {
+      dumped.rhs.push_back(system.rhs(c, i));
+      dumped.positions.push_back(positions[i][c]);
+    }
+  }
+  return dumped;
+}
+
+/// By a program beside this one, which is there if PETSc is. Its lines are printed.
+void solveByPetsc(const std::filesystem::path& directory, const std::string& triangles,
+                  const bench::DumpedSystem& system) {
+  const std::filesystem::path program = directory / "petsc_solve";
+  if (!std::filesystem::exists(program)) return;
+  std::string file = (std::filesystem::temp_directory_path() / "haptexXXXXXX").string();
+  const int descriptor = mkstemp(file.data());
+  if (descriptor < 0) throw std::runtime_error("no file " + file);
+  close(descriptor);
+  bench::writeSystem(system, file);
+  const std::string alone = program.string() + " " + file + " " + triangles;
+  for (const std::string& command : {alone, "mpirun --oversubscribe -n 2 " + alone}) {
+    // Open MPI wants to be told that root may.
+    const std::string whole =
+        "OPENBLAS_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " +
+        command;
+    if (std::system(whole.c_str()) != 0) std::fprintf(stderr, "failed: %s\n", command.c_str());
+  }
+  std::filesystem::remove(file);
+}
+
+void compareSolvers(const std::string& fabric, const std::string& triangles, const System& system,
+                    bool with_cholmod) {
   linear::ThreadPool pool(kThreads);
   linear::Multigrid multigrid(system.matrix, &pool);
   linear::ConjugateGradient conjugate_gradient(system.matrix.size());
@@ -87,7 +145,16 @@ void compareSolvers(const std::string& triangles, const System& system, bool wit
   };
   const Clock::time_point start = Clock::now();
   solve(kTolerance);
-  bench::printLine("scale/multigrid/" + triangles, milliseconds(start), "ms");
+  const std::string prefix = fabric == "linear" ? "scale/" : "scale/" + fabric + "_";
+  bench::printLine(prefix + "multigrid/" + triangles, milliseconds(start), "ms");
+  linear::KeptFactor factor(system.matrix, &pool);
+  x.setZero();
+  const Clock::time_point start_of_factor = Clock::now();
+  if (!factor.solve(conjugate_gradient, system.matrix, system.rhs, kTolerance, kMostIterations, x)
+           .converged) {
+    throw std::runtime_error("the factor did not lead to the tolerance");
+  }
+  bench::printLine(prefix + "factor/" + triangles, milliseconds(start_of_factor), "ms");
   if (!with_cholmod) return;
   bench::Cholmod cholmod(system.matrix);
   const Eigen::SparseMatrix<double> scalars = bench::Cholmod::scalars(system.matrix);
@@ -101,7 +168,9 @@ void compareSolvers(const std::string& triangles, const System& system, bool wit
 }
 
 /// @returns ms, of a step
-double measure(const std::string& name, const material::Fabric& fabric, int cells, bool compared) {
+double measure(const std::string& name, const material::Fabric& fabric, int cells,
+               const std::filesystem::path& programs) {
+  const bool compared = name == "linear";
   const double before = allocatedBytes();
   cloth::StepSettings settings;
   settings.tolerance = kTolerance;
@@ -124,27 +193,30 @@ double measure(const std::string& name, const material::Fabric& fabric, int cell
     const double bytes = allocatedBytes() - before;
     bench::printLine("scale/memory", bytes / sheet.triangleCount() / 1e3, "kB_per_triangle");
   }
-  if (compared) compareSolvers(triangles, systemOf(sheet), cells <= kMostCellsOfCholmod);
+  const System system = systemOf(sheet);
+  compareSolvers(name, triangles, system, compared && cells <= kMostCellsOfCholmod);
+  if (compared) solveByPetsc(programs, triangles, rowsOf(system, sheet.state().positions));
   return total;
 }
 
 }  // namespace
 
-int main() {
+int main(int, char** argv) {
   try {
+    const std::filesystem::path programs = std::filesystem::path(argv[0]).parent_path();
     const std::string fabrics = HAPTEX_CONFIG_DIRECTORY "/fabrics/";
     const material::Fabric linear =
         bench::withStiffness(material::loadFabric(fabrics + "linear.yaml"), kStiffness);
     const material::Fabric wool = material::loadFabric(fabrics + "wool.yaml");
     double first = 0.0, last = 0.0;
     for (const int cells : kCells) {
-      last = measure("linear", linear, cells, true);
+      last = measure("linear", linear, cells, programs);
       if (first == 0.0) first = last;
     }
     const double growth = static_cast<double>(kCells[std::size(kCells) - 1]) / kCells[0];
     bench::printLine("scale/exponent", std::log(last / first) / (2.0 * std::log(growth)),
                      "exponent");
-    for (const int cells : kCells) measure("wool", wool, cells, false);
+    for (const int cells : kCells) measure("wool", wool, cells, programs);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_scale: %s\n", error.what());
     return 1;
