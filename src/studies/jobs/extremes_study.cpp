@@ -1,57 +1,21 @@
 #include "haptex/studies/jobs/extremes_study.h"
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
-#include <optional>
 #include <ostream>
 #include <stdexcept>
 
-#include "haptex/base/parse_number.h"
-#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/studies/extreme_run.h"
 #include "haptex/studies/extreme_shrink.h"
 #include "haptex/studies/extreme_tally.h"
+#include "haptex/studies/jobs/records.h"
 
 namespace haptex::studies {
 namespace {
 
+constexpr const char* kWhat = "an extreme case";
 constexpr std::size_t kFields = 10;        // of a case that did not fail
 constexpr std::size_t kFailedFields = 12;  // with message and shrunk case
-
-/// The shortest text that is read back as the same number. One text for every NaN, whose sign and
-/// bits differ by how it came about.
-std::string textOf(double number) {
-  if (std::isnan(number)) return "nan";
-  char digits[32];
-  const std::to_chars_result end = std::to_chars(digits, digits + sizeof(digits), number);
-  return {digits, end.ptr};
-}
-
-/// Of an exception, as a part of a line.
-std::string asField(const std::string& message) {
-  std::string text = base::shortened(message);  // no line breaks or tabs
-  std::replace(text.begin(), text.end(), '\t', ' ');
-  return text;
-}
-
-std::vector<std::string> fieldsOf(const std::string& record) {
-  std::vector<std::string> fields(1);
-  for (const char letter : record) {
-    if (letter == '\t') {
-      fields.emplace_back();
-    } else {
-      fields.back() += letter;
-    }
-  }
-  return fields;
-}
-
-[[noreturn]] void refuseRecord(const std::string& record) {
-  base::refuse(base::quoted(record), " is no result of an extreme case");
-}
 
 ExtremeFailure failureCalled(const std::string& name, const std::string& record) {
   constexpr ExtremeFailure kAll[] = {ExtremeFailure::kThrew,      ExtremeFailure::kNotFinite,
@@ -61,27 +25,20 @@ ExtremeFailure failureCalled(const std::string& name, const std::string& record)
   for (const ExtremeFailure failure : kAll) {
     if (name == nameOf(failure)) return failure;
   }
-  refuseRecord(record);
-}
-
-template <typename Number>
-Number numberIn(const std::string& field, const std::string& record) {
-  const std::optional<Number> number = base::parseNumber<Number>(field);
-  if (!number) refuseRecord(record);
-  return *number;
+  refuseRecord(record, kWhat);
 }
 
 ExtremeOutcome outcomeIn(const std::vector<std::string>& fields, const std::string& record) {
   ExtremeOutcome outcome;
   outcome.failure = failureCalled(fields[1], record);
-  outcome.growth = numberIn<double>(fields[2], record);
-  outcome.return_error = numberIn<double>(fields[3], record);
-  outcome.steps = numberIn<int>(fields[4], record);
-  outcome.rejected = numberIn<int>(fields[5], record);
-  outcome.settling_steps = numberIn<int>(fields[6], record);
-  outcome.slow = numberIn<int>(fields[7], record) != 0;
-  outcome.other_rest = numberIn<int>(fields[8], record) != 0;
-  outcome.unsettled = numberIn<int>(fields[9], record) != 0;
+  outcome.growth = numberIn<double>(fields[2], record, kWhat);
+  outcome.return_error = numberIn<double>(fields[3], record, kWhat);
+  outcome.steps = numberIn<int>(fields[4], record, kWhat);
+  outcome.rejected = numberIn<int>(fields[5], record, kWhat);
+  outcome.settling_steps = numberIn<int>(fields[6], record, kWhat);
+  outcome.slow = numberIn<int>(fields[7], record, kWhat) != 0;
+  outcome.other_rest = numberIn<int>(fields[8], record, kWhat) != 0;
+  outcome.unsettled = numberIn<int>(fields[9], record, kWhat) != 0;
   return outcome;
 }
 
@@ -134,7 +91,7 @@ void ExtremesStudy::summarise(const std::vector<std::string>& records, std::ostr
   ExtremeTally tally;
   for (const std::string& record : records) {
     const std::vector<std::string> fields = fieldsOf(record);
-    if (fields.size() != kFields && fields.size() != kFailedFields) refuseRecord(record);
+    if (fields.size() != kFields && fields.size() != kFailedFields) refuseRecord(record, kWhat);
     tally.add(parseExtremeCase(fields[0]), outcomeIn(fields, record));
   }
   tally.print(settings_.self_colliding ? "stability/self_colliding/" : "stability/",

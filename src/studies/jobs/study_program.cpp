@@ -12,6 +12,7 @@
 #include "haptex/base/require.h"
 #include "haptex/base/whole_file.h"
 #include "haptex/studies/jobs/extremes_study.h"
+#include "haptex/studies/jobs/garment_study.h"
 #include "haptex/studies/jobs/study_jobs.h"
 
 namespace haptex::studies {
@@ -21,8 +22,9 @@ const char* const kUsage =
     "usage: run_study STUDY [--cases N] [--seed S]\n"
     "       run_study STUDY [--cases N] [--seed S] --jobs N --job I --directory DIR\n"
     "       run_study STUDY [--cases N] [--seed S] --jobs N --merge OUT --directory DIR\n"
-    "Tells what a study has to compute, computes one of N jobs, or merges them. STUDY is extremes\n"
-    "or self_colliding: docs/studies.md.\n";
+    "Tells what a study has to compute, computes one of N jobs, or merges them. STUDY is "
+    "extremes,\n"
+    "self_colliding or garments: docs/studies.md.\n";
 
 struct Request {
   std::string directory, merge;
@@ -43,15 +45,20 @@ Number numberOf(const base::CommandLine& line, const std::string& option, Number
   return *number;
 }
 
-std::unique_ptr<Study> studyOf(const base::CommandLine& line) {
+std::unique_ptr<Study> studyOf(const base::CommandLine& line, const std::string& config) {
   if (line.files.size() != 1) {
     base::refuse(line.files.size(),
-                 " studies are named: allowed is one, extremes or self_colliding");
+                 " studies are named: allowed is one, extremes, self_colliding or garments");
   }
   const std::string& name = line.files[0];
+  if (name == "garments") {
+    return std::make_unique<GarmentStudy>(
+        GarmentSettings{numberOf<std::size_t>(line, "--cases", 20, 1),
+                        numberOf<unsigned>(line, "--seed", 1, 0), config});
+  }
   if (name != "extremes" && name != "self_colliding") {
     base::refuse("there is no study ", base::quoted(name),
-                 ": allowed are extremes and self_colliding");
+                 ": allowed are extremes, self_colliding and garments");
   }
   ExtremesSettings settings;
   settings.self_colliding = name == "self_colliding";
@@ -61,11 +68,11 @@ std::unique_ptr<Study> studyOf(const base::CommandLine& line) {
   return std::make_unique<ExtremesStudy>(settings);
 }
 
-Request parse(const std::vector<std::string>& arguments) {
+Request parse(const std::vector<std::string>& arguments, const std::string& config) {
   const base::CommandLine line = base::readCommandLine(
       arguments, {"--cases", "--seed", "--jobs", "--job", "--merge", "--directory"});
   Request request;
-  request.study = studyOf(line);
+  request.study = studyOf(line, config);
   request.jobs = numberOf<std::size_t>(line, "--jobs", 0, 1);
   request.job = numberOf<std::size_t>(line, "--job", 0, 1);
   request.merge = line.value("--merge");
@@ -116,9 +123,10 @@ void merge(const Request& request, std::ostream& out) {
 
 }  // namespace
 
-int studyProgram(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err) {
+int studyProgram(const std::vector<std::string>& arguments, const std::string& config,
+                 std::ostream& out, std::ostream& err) {
   Request request;
-  const auto read = [&] { request = parse(arguments); };
+  const auto read = [&] { request = parse(arguments, config); };
   return base::runProgram(kUsage, err, read, [&] {
     if (request.job > 0) {
       compute(request, err);

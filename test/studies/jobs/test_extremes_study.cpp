@@ -89,7 +89,7 @@ class StudyProgram : public StudyJobs {
  protected:
   int run(const std::vector<std::string>& arguments) {
     std::ostringstream out, err;
-    const int status = studyProgram(arguments, out, err);
+    const int status = studyProgram(arguments, HAPTEX_CONFIG_DIRECTORY, out, err);
     out_ = out.str();
     err_ = err.str();
     return status;
@@ -128,6 +128,7 @@ TEST_F(StudyProgram, SaysWhatIsWrongWithItsArguments) {
       {{}, "0 studies are named"},
       {{"extremes", "drape"}, "2 studies are named"},
       {{"drape"}, "there is no study 'drape'"},
+      {{"garments", "--cases", "-1"}, "--cases is '-1'"},
       {{"extremes", "--cases", "0"}, "--cases is '0': allowed are whole numbers from 1 on"},
       {{"extremes", "--cases", "1e3"}, "--cases is '1e3'"},
       {{"extremes", "--seed", "-1"}, "--seed is '-1': allowed are whole numbers from 0 on"},
