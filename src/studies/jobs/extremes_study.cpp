@@ -13,7 +13,7 @@
 namespace haptex::studies {
 namespace {
 
-constexpr const char* kWhat = "an extreme case";
+constexpr const char* kExtremeCase = "an extreme case";
 constexpr std::size_t kFields = 10;        // of a case that did not fail
 constexpr std::size_t kFailedFields = 12;  // with message and shrunk case
 
@@ -25,20 +25,20 @@ ExtremeFailure failureCalled(const std::string& name, const std::string& record)
   for (const ExtremeFailure failure : kAll) {
     if (name == nameOf(failure)) return failure;
   }
-  refuseRecord(record, kWhat);
+  refuseRecord(record, kExtremeCase);
 }
 
 ExtremeOutcome outcomeIn(const std::vector<std::string>& fields, const std::string& record) {
   ExtremeOutcome outcome;
   outcome.failure = failureCalled(fields[1], record);
-  outcome.growth = numberIn<double>(fields[2], record, kWhat);
-  outcome.return_error = numberIn<double>(fields[3], record, kWhat);
-  outcome.steps = numberIn<int>(fields[4], record, kWhat);
-  outcome.rejected = numberIn<int>(fields[5], record, kWhat);
-  outcome.settling_steps = numberIn<int>(fields[6], record, kWhat);
-  outcome.slow = numberIn<int>(fields[7], record, kWhat) != 0;
-  outcome.other_rest = numberIn<int>(fields[8], record, kWhat) != 0;
-  outcome.unsettled = numberIn<int>(fields[9], record, kWhat) != 0;
+  outcome.growth = numberIn<double>(fields[2], record, kExtremeCase);
+  outcome.return_error = numberIn<double>(fields[3], record, kExtremeCase);
+  outcome.steps = numberIn<int>(fields[4], record, kExtremeCase);
+  outcome.rejected = numberIn<int>(fields[5], record, kExtremeCase);
+  outcome.settling_steps = numberIn<int>(fields[6], record, kExtremeCase);
+  outcome.slow = numberIn<int>(fields[7], record, kExtremeCase) != 0;
+  outcome.other_rest = numberIn<int>(fields[8], record, kExtremeCase) != 0;
+  outcome.unsettled = numberIn<int>(fields[9], record, kExtremeCase) != 0;
   return outcome;
 }
 
@@ -91,7 +91,8 @@ void ExtremesStudy::summarise(const std::vector<std::string>& records, std::ostr
   ExtremeTally tally;
   for (const std::string& record : records) {
     const std::vector<std::string> fields = fieldsOf(record);
-    if (fields.size() != kFields && fields.size() != kFailedFields) refuseRecord(record, kWhat);
+    if (fields.size() != kFields && fields.size() != kFailedFields)
+      refuseRecord(record, kExtremeCase);
     tally.add(parseExtremeCase(fields[0]), outcomeIn(fields, record));
   }
   tally.print(settings_.self_colliding ? "stability/self_colliding/" : "stability/",

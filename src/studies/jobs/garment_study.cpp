@@ -15,12 +15,12 @@
 namespace haptex::studies {
 namespace {
 
-constexpr const char* kWhat = "a start of a garment";
-constexpr std::size_t kFields = 8;
-constexpr std::size_t kFieldsWithReason = 9;
+constexpr const char* kGarmentStart = "a start of a garment";
+constexpr std::size_t kStartFields = 8;
+constexpr std::size_t kStartFieldsWithReason = 9;
 
 /// Of the names and the bytes of all files below a directory.
-std::string checksumOf(const std::string& directory) {
+std::string checksumOfFolder(const std::string& directory) {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
     if (entry.is_regular_file()) paths.push_back(entry.path().string());
@@ -35,7 +35,7 @@ std::string checksumOf(const std::string& directory) {
 }
 
 /// What a record says.
-struct Result {
+struct StartResult {
   std::string garment;
   unsigned seed;
   bool is_sound;
@@ -43,17 +43,18 @@ struct Result {
   std::string why_not;
 };
 
-Result resultIn(const std::string& record) {
+StartResult startResultIn(const std::string& record) {
   const std::vector<std::string> fields = fieldsOf(record);
-  if (fields.size() != kFields && fields.size() != kFieldsWithReason) refuseRecord(record, kWhat);
+  if (fields.size() != kStartFields && fields.size() != kStartFieldsWithReason)
+    refuseRecord(record, kGarmentStart);
   const auto number = [&](std::size_t field) {
-    return numberIn<double>(fields[field], record, kWhat);
+    return numberIn<double>(fields[field], record, kGarmentStart);
   };
   const bool at_rest = number(2) != 0.0;
   const double states = number(5), pairs = number(6) + number(7);
-  Result result{fields[0], numberIn<unsigned>(fields[1], record, kWhat),
-                at_rest && states == 0.0 && pairs == 0.0, pairs, ""};
-  if (fields.size() == kFieldsWithReason) {
+  StartResult result{fields[0], numberIn<unsigned>(fields[1], record, kGarmentStart),
+                     at_rest && states == 0.0 && pairs == 0.0, pairs, ""};
+  if (fields.size() == kStartFieldsWithReason) {
     result.is_sound = false;
     result.why_not = fields[8];
   } else if (!result.is_sound) {
@@ -79,7 +80,7 @@ std::size_t GarmentStudy::unitCount() const { return settings_.starts * garmentS
 StudyInputs GarmentStudy::inputs() const {
   return {{"cases", std::to_string(settings_.starts)},
           {"seed", std::to_string(settings_.seed)},
-          {"config", checksumOf(settings_.config)}};
+          {"config", checksumOfFolder(settings_.config)}};
 }
 
 std::string GarmentStudy::run(std::size_t unit) const {
@@ -107,12 +108,12 @@ std::string GarmentStudy::run(std::size_t unit) const {
 }
 
 void GarmentStudy::summarise(const std::vector<std::string>& records, std::ostream& out) const {
-  std::vector<Result> results;
-  for (const std::string& record : records) results.push_back(resultIn(record));
+  std::vector<StartResult> results;
+  for (const std::string& record : records) results.push_back(startResultIn(record));
   for (const GarmentScene& scene : garmentScenes()) {
     int starts = 0, sound = 0;
     double most_pairs = 0.0;
-    for (const Result& result : results) {
+    for (const StartResult& result : results) {
       if (result.garment != scene.garment) continue;
       ++starts;
       sound += result.is_sound ? 1 : 0;
@@ -122,7 +123,7 @@ void GarmentStudy::summarise(const std::vector<std::string>& records, std::ostre
     out << name << "/sound\t" << sound << "\tof " << starts << '\n'
         << name << "/most_intersections\t" << most_pairs << "\tpairs\n";
   }
-  for (const Result& result : results) {
+  for (const StartResult& result : results) {
     if (result.is_sound) continue;
     out << "garment/" << result.garment << "/start_" << result.seed << '\t' << result.why_not
         << "\t\n";
