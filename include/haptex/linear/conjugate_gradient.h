@@ -32,7 +32,7 @@ class ConjugateGradient {
   SolveResult solve(const SymmetricBlockMatrix& matrix, const BlockVector& rhs, double tolerance,
                     int max_iterations, BlockVector& x);
   /// The same with another preconditioner, in double precision but for that.
-  /// @tparam Factor BasicBlockCholesky<float> or <double>, or Multigrid
+  /// @tparam Factor BasicBlockCholesky of float or double, or Multigrid
   template <typename Factor>
   SolveResult solve(const SymmetricBlockMatrix& matrix, Factor& factor, const BlockVector& rhs,
                     double tolerance, int max_iterations, BlockVector& x);
