@@ -71,7 +71,7 @@ void takeOverEnding() {
 }
 
 /// So that roscpp's own services and tf refuse an array that claims to be long instead of taking
-/// all memory for it. The largest cloth that a scene may have took 1.0 GiB. A limit of the user's
+/// all memory for it. Cloth of 2 million triangles takes 2.1 GiB. A limit of the user's
 /// that is lower stays.
 void limitMemory() {
   constexpr rlim_t kMost = rlim_t{4} << 30;  // bytes of data, without code and shared memory
