@@ -10,7 +10,6 @@
 // and with the stiffness k (N/m), the time step h (ms) and the threads in their names. Of some runs
 // of a second of the motion the fastest counts, so that other processes disturb less. "growth" is
 // the exponent with which the time grows from 2048 to 100352 triangles.
-#include <malloc.h>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +21,7 @@
 #include <string>
 
 #include "haptex/material/fabric_file.h"
+#include "haptex/simulation/step_cost.h"
 #include "held_sheet.h"
 #include "tab_lines.h"
 
@@ -34,11 +34,6 @@ constexpr double kTimeStep = 0.0125;  // s
 constexpr double kTolerance = 1e-6;
 constexpr int kStepsPerCase = 320;
 
-std::size_t allocatedBytes() {
-  const struct mallinfo2 info = mallinfo2();
-  return info.uordblks + info.hblkhd;
-}
-
 cloth::StepSettings settingsOf(double tolerance, int solves = 1, int threads = 1) {
   cloth::StepSettings settings;
   settings.tolerance = tolerance;
@@ -49,9 +44,9 @@ cloth::StepSettings settingsOf(double tolerance, int solves = 1, int threads = 1
 
 void clothStep(benchmark::State& run, const std::string& name_of_case,
                const material::Fabric& fabric, int solves, int cells) {
-  const std::size_t before = allocatedBytes();
+  const std::size_t before = simulation::allocatedBytes();
   HeldSheet sheet(fabric, cells, settingsOf(kTolerance, solves));
-  const double bytes = static_cast<double>(allocatedBytes() - before);
+  const double bytes = static_cast<double>(simulation::allocatedBytes() - before);
 
   double assembly = 0.0, solve = 0.0, total = 0.0, direct = 0.0, linear_solves = 0.0;
   for (auto _ : run) {

@@ -13,9 +13,12 @@
 // up to 100352 triangles ("cholmod"); "difference" is that of the two solutions where multigrid
 // goes to a residual of 1e-9.
 //
+// Wool that is folded in half and sags, its layers on one another (folded_sheet.h), makes the same
+// steps ("folded_wool", "folded_wool_solve"), up to 31752 triangles; "folded_wool_solves" are its
+// linear solves per step.
+//
 // Where PETSc was found when this was built, it solves the same systems of up to 316808 triangles
 // by one process and by two ("gamg", "hypre", "mumps", "gamg_2" ...; petsc_solve.cpp).
-#include <malloc.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -28,9 +31,11 @@
 
 #include "cholmod.h"
 #include "dumped_system.h"
+#include "folded_sheet.h"
 #include "haptex/linear/kept_factor.h"
 #include "haptex/linear/multigrid.h"
 #include "haptex/material/fabric_file.h"
+#include "haptex/simulation/step_cost.h"
 #include "held_sheet.h"
 #include "tab_lines.h"
 
@@ -48,16 +53,12 @@ constexpr int kSteps = 16;
 constexpr int kMostIterations = 2000;
 constexpr double kStiffness = 1000.0;                   // N/m
 constexpr int kCells[] = {32, 71, 126, 224, 398, 707};  // 2048 to 999698 triangles
+constexpr int kFoldedCells[] = {32, 71, 126};
 constexpr int kMostCellsOfCholmod = 224;
 constexpr int kMostCellsOfPetsc = 398;
 
 double milliseconds(Clock::time_point since) {
   return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
-}
-
-double allocatedBytes() {
-  const struct mallinfo2 info = mallinfo2();
-  return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
 struct System {
@@ -119,7 +120,12 @@ void solveByPetsc(const std::filesystem::path& directory, const std::string& tri
   const int descriptor = mkstemp(file.data());
   if (descriptor < 0) throw std::runtime_error("no file " + file);
   close(descriptor);
-  bench::writeSystem(system, file);
+  try {
+    bench::writeSystem(system, file);
+  } catch (const std::exception&) {
+    std::filesystem::remove(file);
+    throw;
+  }
   const std::string alone = program.string() + " " + file + " " + triangles;
   for (const std::string& command : {alone, "mpirun --oversubscribe -n 2 " + alone}) {
     // Open MPI wants to be told that root may.
@@ -135,7 +141,7 @@ void compareSolvers(const std::string& fabric, const std::string& triangles, con
                     bool with_cholmod) {
   linear::ThreadPool pool(kThreads);
   linear::Multigrid multigrid(system.matrix, &pool);
-  linear::ConjugateGradient conjugate_gradient(system.matrix.size());
+  linear::ConjugateGradient conjugate_gradient(system.matrix.size(), &pool);
   linear::BlockVector x(3, system.matrix.size());
   const auto solve = [&](double tolerance) {
     x.setZero();
@@ -168,30 +174,56 @@ void compareSolvers(const std::string& fabric, const std::string& triangles, con
   bench::printLine("scale/difference/" + triangles, (ours - exact).norm() / exact.norm(), "ratio");
 }
 
-/// @returns ms, of a step
-double measure(const std::string& name, const material::Fabric& fabric, int cells,
-               const std::filesystem::path& programs) {
-  const bool compared = name == "linear";
-  const double before = allocatedBytes();
+cloth::StepSettings settings() {
   cloth::StepSettings settings;
   settings.tolerance = kTolerance;
   settings.newton_iterations = 1;
   settings.threads = kThreads;
-  bench::HeldSheet sheet(fabric, cells, settings);
-  const std::string triangles = std::to_string(sheet.triangleCount());
-  double total = 0.0, solve = 0.0, iterations = 0.0;
+  return settings;
+}
+
+/// Means over steps.
+struct StepTimes {
+  double total = 0.0, solve = 0.0;  // ms
+  double iterations = 0.0, solves = 0.0;
+};
+
+template <typename Sheet>
+StepTimes timesOf(Sheet& sheet) {
+  StepTimes times;
   for (int step = 0; step < kFirstSteps; ++step) sheet.step(kTimeStep);
   for (int step = 0; step < kSteps; ++step) {
     const cloth::StepReport report = sheet.step(kTimeStep);
-    total += 1e3 * report.total_seconds / kSteps;
-    solve += 1e3 * report.solve_seconds / kSteps;
-    iterations += static_cast<double>(report.linear_iterations) / kSteps;
+    times.total += 1e3 * report.total_seconds / kSteps;
+    times.solve += 1e3 * report.solve_seconds / kSteps;
+    times.iterations += static_cast<double>(report.linear_iterations) / kSteps;
+    times.solves += static_cast<double>(report.newton_iterations) / kSteps;
   }
-  bench::printLine("scale/" + name + "/" + triangles, total, "ms");
-  bench::printLine("scale/" + name + "_solve/" + triangles, solve, "ms");
-  bench::printLine("scale/" + name + "_iterations/" + triangles, iterations, "per_step");
+  return times;
+}
+
+void measureFolded(const material::Fabric& wool, int cells) {
+  bench::FoldedSheet sheet(wool, cells, settings());
+  const StepTimes times = timesOf(sheet);
+  const std::string triangles = std::to_string(sheet.triangleCount());
+  bench::printLine("scale/folded_wool/" + triangles, times.total, "ms");
+  bench::printLine("scale/folded_wool_solve/" + triangles, times.solve, "ms");
+  bench::printLine("scale/folded_wool_solves/" + triangles, times.solves, "per_step");
+}
+
+/// @returns ms, of a step
+double measure(const std::string& name, const material::Fabric& fabric, int cells,
+               const std::filesystem::path& programs) {
+  const bool compared = name == "linear";
+  const std::size_t before = simulation::allocatedBytes();
+  bench::HeldSheet sheet(fabric, cells, settings());
+  const std::string triangles = std::to_string(sheet.triangleCount());
+  const StepTimes times = timesOf(sheet);
+  bench::printLine("scale/" + name + "/" + triangles, times.total, "ms");
+  bench::printLine("scale/" + name + "_solve/" + triangles, times.solve, "ms");
+  bench::printLine("scale/" + name + "_iterations/" + triangles, times.iterations, "per_step");
   if (compared && cells == kCells[std::size(kCells) - 1]) {
-    const double bytes = allocatedBytes() - before;
+    const auto bytes = static_cast<double>(simulation::allocatedBytes() - before);
     bench::printLine("scale/memory", bytes / sheet.triangleCount() / 1e3, "kB_per_triangle");
   }
   const System system = systemOf(sheet);
@@ -199,7 +231,7 @@ double measure(const std::string& name, const material::Fabric& fabric, int cell
   if (compared && cells <= kMostCellsOfPetsc) {
     solveByPetsc(programs, triangles, rowsOf(system, sheet.state().positions));
   }
-  return total;
+  return times.total;
 }
 
 }  // namespace
@@ -219,6 +251,7 @@ int main(int, char** argv) {
     const double growth = static_cast<double>(kCells[std::size(kCells) - 1]) / kCells[0];
     bench::printLine("scale/exponent", std::log(last / first) / (2.0 * std::log(growth)),
                      "exponent");
+    for (const int cells : kFoldedCells) measureFolded(wool, cells);
     for (const int cells : kCells) measure("wool", wool, cells, programs);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_scale: %s\n", error.what());

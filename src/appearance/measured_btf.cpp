@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/appearance/srgb.h"
 #include "haptex/base/file_size.h"
 #include "haptex/base/require.h"
 
@@ -73,17 +74,19 @@ std::string nameOf(int view, int light) {
   return name.data();
 }
 
-/// IEC 61966-2-1.
-const std::array<float, 256>& linearOfSrgb() {
-  static const std::array<float, 256> table = [] {
-    std::array<float, 256> values{};
-    for (int i = 0; i < 256; ++i) {
-      const double share = i / 255.0;
-      values[i] = static_cast<float>(share <= 0.04045 ? share / 12.92
-                                                      : std::pow((share + 0.055) / 1.055, 2.4));
-    }
-    return values;
-  }();
+/// From the bytes of sRGB.
+std::array<float, 256> linearOfBytes() {
+  std::array<float, 256> table{};
+  for (int i = 0; i < 256; ++i) table[i] = static_cast<float>(linearOfSrgb(i / 255.0));
+  return table;
+}
+
+/// Irradiance times 1/sr of the white of a picture, by the light.
+std::array<float, kDirections> whites() {
+  std::array<float, kDirections> table{};
+  for (int light = 0; light < kDirections; ++light) {
+    table[light] = static_cast<float>(M_PI * sampledDirections()[light].z());
+  }
   return table;
 }
 
@@ -179,9 +182,11 @@ void MeasuredImages::take(const std::string& path, int column) {
 
 void MeasuredImages::operator()(int texel, float* values) const {
   const std::uint8_t* stored = &values_[static_cast<std::size_t>(texel) * Btf::kColumns];
-  for (int column = 0; column < Btf::kColumns; ++column) {
-    const double cosine = sampledDirections()[column / 3 % kDirections].z();
-    values[column] = linearOfSrgb()[stored[column]] / static_cast<float>(M_PI * cosine);
+  static const std::array<float, 256> linear = linearOfBytes();
+  static const std::array<float, kDirections> white = whites();
+  for (int column = 0; column < Btf::kColumns;) {
+    const float of_light = white[column / 3 % kDirections];
+    for (int c = 0; c < 3; ++c, ++column) values[column] = linear[stored[column]] / of_light;
   }
 }
 

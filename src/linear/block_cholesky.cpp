@@ -1,8 +1,11 @@
 #include "haptex/linear/block_cholesky.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <type_traits>
+
+#include "haptex/linear/shared_rows.h"
 
 // The steps of a factorisation. The order of elimination and the panels, each a supernode as a
 // dense column-major matrix with its square at the diagonal above the rows below, are those of
@@ -56,7 +59,10 @@ BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern,
     work.front.resize(tallest);
   }
   outside_.resize(top_.empty() ? 0 : std::size_t{3} * kGroups * top_columns_);
-  if constexpr (std::is_same_v<T, float>) scales_.resize(3, pattern.size());
+  if constexpr (std::is_same_v<T, float>) {
+    scales_.resize(3, pattern.size());
+    largest_.assign(std::max(1, sharesOf(pattern.size())), 0.0);
+  }
 }
 
 /// Panels lie in memory in the order in which they are factorised.
@@ -168,14 +174,18 @@ typename BasicBlockCholesky<T>::Entry BasicBlockCholesky<T>::entryOf(int row, in
 /// @returns false if a diagonal number is not positive and finite
 template <typename T>
 bool BasicBlockCholesky<T>::computeScales(const SymmetricBlockMatrix& matrix) {
-  bool sound = true;
-  for (int i = 0; i < static_cast<int>(scales_.cols()); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      const double number = matrix.diagonal(i)(c, c);
-      sound = sound && number > 0.0 && std::isfinite(number);
-      scales_(c, i) = 1.0 / std::sqrt(number);
+  std::atomic<bool> sound{true};
+  shareRows(pool_, static_cast<int>(scales_.cols()), [&](int begin, int end) {
+    bool part_is_sound = true;
+    for (int i = begin; i < end; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        const double number = matrix.diagonal(i)(c, c);
+        part_is_sound = part_is_sound && number > 0.0 && std::isfinite(number);
+        scales_(c, i) = 1.0 / std::sqrt(number);
+      }
     }
-  }
+    if (!part_is_sound) sound = false;
+  });
   return sound;
 }
 

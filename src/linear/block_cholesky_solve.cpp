@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "haptex/linear/block_cholesky.h"
+#include "haptex/linear/shared_rows.h"
 
 namespace haptex::linear {
 
@@ -56,19 +57,30 @@ void BasicBlockCholesky<T>::backward(int s, std::vector<T>& front) {
   std::copy_n(front.data(), width, own);
 }
 
+/// Takes x to that of the scaled matrix. @return its largest number, or 1
+template <typename T>
+double BasicBlockCholesky<T>::scale(BlockVector& x) {
+  shareRows(pool_, static_cast<int>(permuted_.cols()), [&](int begin, int end) {
+    auto part = x.middleCols(begin, end - begin).array();
+    part *= scales_.middleCols(begin, end - begin).array();
+    largest_[begin / kSharedRows] = part.abs().maxCoeff();
+  });
+  const double size = *std::max_element(largest_.begin(), largest_.end());
+  return size > 0.0 ? size : 1.0;
+}
+
 template <typename T>
 void BasicBlockCholesky<T>::solve(BlockVector& x) {
   const int n = static_cast<int>(permuted_.cols());
-  double size = 1.0;
-  if constexpr (std::is_same_v<T, float>) {
-    x.leftCols(n).array() *= scales_.array();
-    size = x.leftCols(n).cwiseAbs().maxCoeff();
-    if (!(size > 0.0)) size = 1.0;
-    x.leftCols(n) /= size;
-  }
-  for (int k = 0; k < n; ++k) {
-    permuted_.col(k) = x.col(elimination_.order[k]).template cast<T>();
-  }
+  constexpr bool is_scaled = std::is_same_v<T, float>;
+  const double size = is_scaled ? scale(x) : 1.0;
+  shareRows(pool_, n, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      auto value = x.col(elimination_.order[k]);
+      if constexpr (is_scaled) value /= size;
+      permuted_.col(k) = value.template cast<T>();
+    }
+  });
   const std::size_t stride = std::size_t{3} * top_columns_;
   const int groups = top_.empty() ? 1 : kGroups;
   share(groups, [&](int group, int thread) {
@@ -100,15 +112,19 @@ void BasicBlockCholesky<T>::solve(BlockVector& x) {
       }
     }
   });
-  for (int k = 0; k < n; ++k) {
-    x.col(elimination_.order[k]) = permuted_.col(k).template cast<double>();
-  }
-  if constexpr (std::is_same_v<T, float>) x.leftCols(n).array() *= size * scales_.array();
+  shareRows(pool_, n, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      const int i = elimination_.order[k];
+      x.col(i) = permuted_.col(k).template cast<double>();
+      if constexpr (is_scaled) x.col(i).array() *= size * scales_.col(i).array();
+    }
+  });
 }
 
 #define HAPTEX_INSTANTIATE(T)                                             \
   template void BasicBlockCholesky<T>::forward(int, T*, std::vector<T>&); \
   template void BasicBlockCholesky<T>::backward(int, std::vector<T>&);    \
+  template double BasicBlockCholesky<T>::scale(BlockVector&);             \
   template void BasicBlockCholesky<T>::solve(BlockVector&);
 
 HAPTEX_INSTANTIATE(double)

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "haptex/linear/shared_rows.h"
+
 namespace haptex::linear {
 
 SymmetricBlockMatrix::SymmetricBlockMatrix(int size,
@@ -32,6 +34,18 @@ SymmetricBlockMatrix::SymmetricBlockMatrix(int size,
   }
   columns_.shrink_to_fit();
   lower_.assign(columns_.size(), Eigen::Matrix3d::Zero());
+  if (size > kSharedRows) listUpper();
+}
+
+void SymmetricBlockMatrix::listUpper() {
+  upper_begin_.assign(size() + 1, 0);
+  for (const int column : columns_) ++upper_begin_[column + 1];
+  for (int i = 0; i < size(); ++i) upper_begin_[i + 1] += upper_begin_[i];
+  upper_.resize(columns_.size());
+  std::vector<int> next(upper_begin_.begin(), upper_begin_.end() - 1);
+  for (int i = 0; i < size(); ++i) {
+    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) upper_[next[columns_[s]]++] = {s, i};
+  }
 }
 
 /// @returns the slot, or -1 if the pattern has no such block
@@ -150,13 +164,19 @@ bool SymmetricBlockMatrix::takeValues(const SymmetricBlockMatrix& other) {
   return true;
 }
 
-void SymmetricBlockMatrix::setZero() {
-  std::fill(diagonal_.begin(), diagonal_.end(), Eigen::Matrix3d::Zero());
-  std::fill(lower_.begin(), lower_.end(), Eigen::Matrix3d::Zero());
+void SymmetricBlockMatrix::setZero(ThreadPool* pool) {
+  const auto clear = [](std::vector<Eigen::Matrix3d>& blocks, int begin, int end) {
+    std::fill(blocks.begin() + begin, blocks.begin() + end, Eigen::Matrix3d::Zero());
+  };
+  shareRows(pool, size(), [&](int begin, int end) {
+    clear(diagonal_, begin, end);
+    clear(lower_, row_begin_[begin], row_begin_[end]);
+  });
   clearCouplings();
 }
 
-void SymmetricBlockMatrix::multiply(const BlockVector& x, BlockVector& y) const {
+/// The fixed pattern, each block below the diagonal once.
+void SymmetricBlockMatrix::multiplyInOrder(const BlockVector& x, BlockVector& y) const {
   for (int i = 0; i < size(); ++i) {
     const Eigen::Vector3d x_i = x.col(i);
     Eigen::Vector3d sum = diagonal_[i] * x_i;
@@ -166,6 +186,27 @@ void SymmetricBlockMatrix::multiply(const BlockVector& x, BlockVector& y) const 
       y.col(j) += lower_[s].transpose() * x_i;
     }
     y.col(i) = sum;
+  }
+}
+
+/// Some rows of it, in the order of the same sums.
+void SymmetricBlockMatrix::multiplyRows(int begin, int end, const BlockVector& x,
+                                        BlockVector& y) const {
+  for (int i = begin; i < end; ++i) {
+    Eigen::Vector3d sum = diagonal_[i] * x.col(i);
+    for (int s = row_begin_[i]; s < row_begin_[i + 1]; ++s) sum += lower_[s] * x.col(columns_[s]);
+    for (int u = upper_begin_[i]; u < upper_begin_[i + 1]; ++u) {
+      sum += lower_[upper_[u].slot].transpose() * x.col(upper_[u].column);
+    }
+    y.col(i) = sum;
+  }
+}
+
+void SymmetricBlockMatrix::multiply(const BlockVector& x, BlockVector& y, ThreadPool* pool) const {
+  if (pool != nullptr && pool->threads() > 1 && !upper_.empty()) {
+    shareRows(pool, size(), [&](int begin, int end) { multiplyRows(begin, end, x, y); });
+  } else {
+    multiplyInOrder(x, y);
   }
   forEachCoupling([&](int k) {
     const Coupling& coupling = couplings_[k];

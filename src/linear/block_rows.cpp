@@ -2,8 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 namespace haptex::linear {
 
@@ -42,16 +40,6 @@ void BlockRows::allocate() {
   blocks_.assign(9 * columns_.size() + 1, 0.0f);
   inverse_diagonal_.assign(9 * static_cast<std::size_t>(size()) + 1, 0.0f);
   is_alone_.assign(size(), 0);
-}
-
-int BlockRows::slot(int row, int column) const {
-  const auto begin = columns_.begin() + begin_[row], end = columns_.begin() + begin_[row + 1];
-  const auto found = std::find(begin, end, column);
-  if (found == end) {
-    throw std::out_of_range("no block at row " + std::to_string(row) + ", column " +
-                            std::to_string(column) + " of the rows");
-  }
-  return static_cast<int>(found - columns_.begin());
 }
 
 void BlockRows::setZero() { std::fill(blocks_.begin(), blocks_.end(), 0.0f); }

@@ -81,8 +81,9 @@ SolveResult KeptFactor::solve(ConjugateGradient& conjugate_gradient,
                               double tolerance, int most_iterations, BlockVector& x) {
   SolveResult result;
   int spent = 0;
-  const auto iterate = [&](int most) {
-    result = conjugate_gradient.solve(matrix, *factor_, rhs, tolerance, most, x);
+  using Patience = ConjugateGradient::Patience;
+  const auto iterate = [&](int most, Patience patience) {
+    result = conjugate_gradient.solve(matrix, *factor_, rhs, tolerance, most, x, patience);
     cost_ += iteration_cost_ * result.iterations;
     spent += result.iterations;
   };
@@ -91,7 +92,8 @@ SolveResult KeptFactor::solve(ConjugateGradient& conjugate_gradient,
   if (old_factor_.holds()) {
     old_factor_.pass();
   } else if (is_kept_) {
-    iterate(1 + fresh_iterations_ + static_cast<int>(factor_cost_ / iteration_cost_));
+    iterate(1 + fresh_iterations_ + static_cast<int>(factor_cost_ / iteration_cost_),
+            Patience::kWhilePromising);
     if (result.converged) {
       old_factor_.succeeded();
     } else {
@@ -100,7 +102,7 @@ SolveResult KeptFactor::solve(ConjugateGradient& conjugate_gradient,
   }
   if (!result.converged) {
     if (!makeFactor(matrix)) return {};
-    iterate(most_iterations);
+    iterate(most_iterations, Patience::kToTheEnd);
     if (!given_up()) fresh_iterations_ = result.iterations;
   }
   result.iterations = spent;

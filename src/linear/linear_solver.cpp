@@ -24,7 +24,7 @@ constexpr int kMostCycles = 100;
 
 LinearSolver::LinearSolver(const SymmetricBlockMatrix& pattern, LinearSolverMethod method,
                            ThreadPool* pool, int most_factored_rows)
-    : method_(method), pool_(pool), conjugate_gradient_(pattern.size()) {
+    : method_(method), pool_(pool), conjugate_gradient_(pattern.size(), pool) {
   const bool small = pattern.size() <= kSmallPattern;
   if (method == LinearSolverMethod::kCholesky ||
       (method == LinearSolverMethod::kAutomatic && small)) {
@@ -69,15 +69,9 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
     const bool by_whole = matrix.couplingCount() > 0 && fixed_pattern_.holds();
     if (by_whole) {
       fixed_pattern_.pass();
-    } else if (iterations_.holds()) {
-      iterations_.pass();
     } else {
-      const SolveResult result = solveIteratively(matrix, rhs, tolerance, iterationBudget(), x);
-      if (result.converged) {
-        iterations_.succeeded();
-        return result;
-      }
-      iterations_.failed();
+      const SolveResult tried = tryIterations(matrix, rhs, tolerance, x);
+      if (tried.converged) return tried;
     }
     const SolveResult result = by_whole ? solveByWholeFactor(matrix, rhs, tolerance, x)
                                         : solveByKeptFactor(matrix, rhs, tolerance, x);
@@ -91,18 +85,28 @@ SolveResult LinearSolver::solve(const SymmetricBlockMatrix& matrix, const BlockV
   return solveIteratively(matrix, rhs, tolerance, lastTry(), x);
 }
 
-SolveResult LinearSolver::solveLarge(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
-                                     double tolerance, BlockVector& x, bool worth_more) {
+/// With the diagonal blocks, unless they are left out for now.
+SolveResult LinearSolver::tryIterations(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                                        double tolerance, BlockVector& x) {
   if (iterations_.holds()) {
     iterations_.pass();
+    return {};
+  }
+  last_method_ = LinearSolverMethod::kConjugateGradient;
+  const SolveResult result = conjugate_gradient_.solve(
+      matrix, rhs, tolerance, iterationBudget(), x, ConjugateGradient::Patience::kWhilePromising);
+  if (result.converged) {
+    iterations_.succeeded();
   } else {
-    const SolveResult result = solveIteratively(matrix, rhs, tolerance, iterationBudget(), x);
-    if (result.converged) {
-      iterations_.succeeded();
-      return result;
-    }
     iterations_.failed();
   }
+  return result;
+}
+
+SolveResult LinearSolver::solveLarge(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                                     double tolerance, BlockVector& x, bool worth_more) {
+  const SolveResult tried = tryIterations(matrix, rhs, tolerance, x);
+  if (tried.converged) return tried;
   last_method_ = LinearSolverMethod::kConjugateGradient;
   SolveResult result;
   const auto solveByCycles = [&] {
@@ -111,6 +115,7 @@ SolveResult LinearSolver::solveLarge(const SymmetricBlockMatrix& matrix, const B
     result.iterations += spent;
   };
   if (multigrid_ && multigrid_->takeValues(matrix)) solveByCycles();
+  if (result.indefinite && !worth_more) return result;
   if (!result.converged) {
     multigrid_ = std::make_unique<Multigrid>(matrix, pool_);
     if (multigrid_->takeValues(matrix)) solveByCycles();

@@ -75,6 +75,9 @@ void Multigrid::prepareCoarsest() {
       pairs.push_back({i, rows.column(s)});
   }
   coarsest_.emplace(rows.size(), std::vector<std::array<int, 3>>{}, pairs);
+  for (const auto& [i, j] : pairs) {
+    if (j < i) coarsest_slots_.push_back(coarsest_->slot(i, j));
+  }
   factor_ = std::make_unique<BasicBlockCholesky<float>>(*coarsest_);
   coarsest_vector_.resize(3, rows.size());
 }
@@ -98,16 +101,17 @@ std::vector<int> Multigrid::sizes() const {
 void Multigrid::estimateDamping(Level& level) {
   const BlockRows& rows = level.rows;
   PaddedVector vector = startOfPowerMethod(rows.size());
-  float eigenvalue = 1.0f;
+  float eigenvalue = 1.0f, length = norm(vector);
   for (int step = 0; step < kPowerSteps; ++step) {
     shareRows(pool_, rows.size(), [&](int first, int end) {
       for (int i = first; i < end; ++i) {
         level.next[i] = rows.timesInverseDiagonal(i, rows.product(i, vector));
       }
     });
-    eigenvalue = norm(level.next) / norm(vector);
-    const float scale = 1.0f / norm(level.next);
-    for (int i = 0; i < rows.size(); ++i) vector[i] = scale * level.next[i];
+    const float next_length = norm(level.next);
+    eigenvalue = next_length / length;
+    length = 1.0f;
+    for (int i = 0; i < rows.size(); ++i) vector[i] = level.next[i] / next_length;
   }
   level.damping = kDampingTimesEigenvalue / (kEigenvalueMargin * eigenvalue);
 }
@@ -124,14 +128,14 @@ bool Multigrid::takeValues(const SymmetricBlockMatrix& matrix) {
 bool Multigrid::factoriseCoarsest() {
   if (!factor_) return true;
   const BlockRows& rows = levels_.back().rows;
+  auto slot_of_pair = coarsest_slots_.begin();
   for (int i = 0; i < rows.size(); ++i) {
     const auto block = [&](int slot) {
       return Eigen::Map<const Eigen::Matrix3f>(rows.block(slot));
     };
     coarsest_->diagonal(i) = block(rows.begin(i)).cast<double>();
     for (int s = rows.begin(i) + 1; s < rows.begin(i + 1); ++s) {
-      const int j = rows.column(s);
-      if (j < i) coarsest_->lower(coarsest_->slot(i, j)) = block(s).cast<double>();
+      if (rows.column(s) < i) coarsest_->lower(*slot_of_pair++) = block(s).cast<double>();
     }
   }
   return std::any_of(std::begin(kShifts), std::end(kShifts),

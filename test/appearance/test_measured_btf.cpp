@@ -13,6 +13,7 @@
 #include "../temporary_directory.h"
 #include "haptex/appearance/btf_file.h"
 #include "haptex/appearance/measured_btf.h"
+#include "haptex/appearance/srgb.h"
 
 namespace haptex::appearance {
 namespace {
@@ -22,11 +23,8 @@ using Eigen::Vector3d;
 
 constexpr int kColumns = 8, kRows = 4;
 
-/// IEC 61966-2-1.
 std::uint8_t srgb(double linear) {
-  const double share =
-      linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255.0 * share));
+  return static_cast<std::uint8_t>(std::lround(255.0 * srgbOfLinear(linear)));
 }
 
 std::string jpeg(int columns, int rows, double upper, double lower) {

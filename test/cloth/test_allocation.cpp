@@ -196,6 +196,8 @@ TEST(SelfCollisionAllocation, NoStepAllocatesOnceAsMuchHasTouched) {
   Cloth cloth(layers(2, 0.04, 5), fabricNamed("wool"), selfCollision());
   StepSettings settings;
   settings.newton_iterations = 5;
+  // All runs touch as much: no solve depends on what the solver tried in the one before.
+  settings.tolerance = 1e-12;
   Integrator integrator(cloth, settings);
   long before = 0;
   std::size_t touching = 0;

@@ -96,9 +96,12 @@ class BasicBlockCholesky {
   bool factoriseNarrow(int target);
   bool factoriseWide(int target);
   template <typename Function>
-  void share(int tasks, const Function& function);
+  void share(int tasks, const Function& function) {
+    runTasks(pool_, tasks, function);
+  }
   void forward(int supernode, T* outside, std::vector<T>& front);
   void backward(int supernode, std::vector<T>& front);
+  double scale(BlockVector& x);
 
   Elimination elimination_;
   ThreadPool* pool_;
@@ -117,15 +120,9 @@ class BasicBlockCholesky {
   std::vector<Workspace> work_;  // by thread
   std::vector<T> outside_;       // by group: what its subtrees add to the top's unknowns
   Eigen::Matrix<T, 3, -1> permuted_;
-  BlockVector scales_;  // by which rows and columns are multiplied in single precision
+  std::vector<double> largest_;  // by part of the rows: what scale() finds
+  BlockVector scales_;           // by which rows and columns are multiplied in single precision
 };
-
-template <typename T>
-template <typename Function>
-void BasicBlockCholesky<T>::share(int tasks, const Function& function) {
-  if (pool_) return pool_->run(tasks, function);
-  for (int task = 0; task < tasks; ++task) function(task, 0);
-}
 
 using BlockCholesky = BasicBlockCholesky<double>;
 

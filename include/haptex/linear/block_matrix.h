@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "haptex/linear/thread_pool.h"
+
 namespace haptex::linear {
 
 /// One 3-vector per particle: 3 x n, column i belongs to particle i.
@@ -90,11 +92,12 @@ class SymmetricBlockMatrix {
   /// @returns false, with values of no use, if the other has a block that the pattern has not
   bool takeValues(const SymmetricBlockMatrix& other);
 
-  /// Clears the couplings, too.
-  void setZero();
+  /// Clears the couplings, too. @param pool as of multiply()
+  void setZero(ThreadPool* pool = nullptr);
 
-  /// y = A x.
-  void multiply(const BlockVector& x, BlockVector& y) const;
+  /// y = A x. @param pool shares the work of more than kSharedRows rows (shared_rows.h), to the
+  ///   same result; may be null
+  void multiply(const BlockVector& x, BlockVector& y, ThreadPool* pool = nullptr) const;
 
   /// Fixes the unknowns of some particles: moves their columns to the right-hand side and leaves
   /// an identity block with a zero right-hand side, so that their unknown in the solution is zero
@@ -117,6 +120,13 @@ class SymmetricBlockMatrix {
     int next;         // in couplings_: that of the row's next column; -1: none
     Eigen::Matrix3d block;
   };
+  /// Of a block above the diagonal, which is the transpose of one below.
+  struct Upper {
+    int slot, column;
+  };
+  void listUpper();
+  void multiplyInOrder(const BlockVector& x, BlockVector& y) const;
+  void multiplyRows(int begin, int end, const BlockVector& x, BlockVector& y) const;
   int find(int row, int column) const;
   void requirePair(int row, int column) const;
   template <typename Function>
@@ -126,6 +136,9 @@ class SymmetricBlockMatrix {
   std::vector<Eigen::Matrix3d> lower_;
   std::vector<int> row_begin_;
   std::vector<int> columns_;
+  // By row, columns ascending, if there are more than kSharedRows of them.
+  std::vector<int> upper_begin_;
+  std::vector<Upper> upper_;
   std::vector<Coupling> couplings_;  // in the order of adding
   // By row: in couplings_, the one of the lowest column; -1: none. Empty without couplings.
   std::vector<int> first_coupling_;

@@ -2,34 +2,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <vector>
 
 #include "haptex/linear/block_matrix.h"
-#include "haptex/linear/thread_pool.h"
+#include "haptex/linear/shared_rows.h"
 
 namespace haptex::linear {
 
 /// One 3-vector per block row, and a zero: four numbers are one register.
 using PaddedVector = std::vector<Eigen::Array4f>;
-
-constexpr int kSharedRows = 4096;
-inline int sharesOf(int count) { return (count + kSharedRows - 1) / kSharedRows; }
-
-/// Calls function(begin, end) for parts of [0, count), of kSharedRows and what is left, that
-/// threads share. @param pool may be null
-template <typename Function>
-void shareRows(ThreadPool* pool, int count, const Function& function) {
-  const int parts = sharesOf(count);
-  const auto part = [&](int i, int) {
-    function(kSharedRows * i, std::min(count, kSharedRows * (i + 1)));
-  };
-  if (pool != nullptr) {
-    pool->run(parts, part);
-  } else {
-    for (int i = 0; i < parts; ++i) part(i, 0);
-  }
-}
 
 /// Both triangles, so that rows can be multiplied independently of one another: twice the memory of
 /// SymmetricBlockMatrix in numbers of half the size. Its couplings are left out.
@@ -45,9 +26,6 @@ class BlockRows {
   /// Slots of a row: [begin(row), begin(row + 1)), first that of its diagonal block.
   int begin(int row) const { return begin_[row]; }
   int column(int slot) const { return columns_[slot]; }
-  /// Of the block (row, column) in one of these rows.
-  /// @throws std::out_of_range if the pattern has no such block
-  int slot(int row, int column) const;
   /// Nine numbers, columns first.
   const float* block(int slot) const { return &blocks_[9 * static_cast<std::size_t>(slot)]; }
   float* block(int slot) { return &blocks_[9 * static_cast<std::size_t>(slot)]; }
@@ -56,7 +34,7 @@ class BlockRows {
 
   /// Of a matrix with the constructor's pattern, which has to be the one of SymmetricBlockMatrix.
   void take(const SymmetricBlockMatrix& matrix, ThreadPool* pool);
-  /// After the blocks have changed: what the next three and isAlone() tell.
+  /// After the blocks have changed: what timesInverseDiagonal() and isAlone() tell.
   void finish(ThreadPool* pool);
   void setZero();
 

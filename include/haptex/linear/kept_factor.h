@@ -31,7 +31,8 @@ class KeptFactor {
   std::unique_ptr<KeptFactor> ofWholeMatrices() const;
 
   /// Solves A x = b until |b - A x| <= tolerance |b|.
-  /// @param most_iterations with a new factor; an old one gets as many as cost what a new one does
+  /// @param most_iterations with a new factor; an old one gets as many as cost what a new one does,
+  ///   as long as they are on the way to suffice (ConjugateGradient::Patience)
   /// @param x initial guess, overwritten by the solution
   /// @returns an empty result if what is factorised is not positive definite
   SolveResult solve(ConjugateGradient& conjugate_gradient, const SymmetricBlockMatrix& matrix,

@@ -32,9 +32,10 @@ enum class LinearSolverMethod {
 /// up to 512. The hierarchy is made for the first such system, and anew for one that it does not
 /// solve within 100 iterations. All that follows is of the others.
 ///
-/// Diagonal blocks get as many iterations as cost what a solve by the kept factor costs. When they
-/// do not suffice, the factor solves this system and the next ones, at first 8 and twice as many
-/// after each further failure up to 512, before they are tried again.
+/// Diagonal blocks get as many iterations as cost what a solve by the kept factor costs, as long as
+/// they are on the way to suffice (ConjugateGradient::Patience). When they do not, the factor
+/// solves this system and the next ones, at first 8 and twice as many after each further failure up
+/// to 512, before they are tried again.
 ///
 /// A system that is not positive definite to single precision, or that the factor does not solve,
 /// is factorised in double precision; in patterns of more than 500 rows the first such one
@@ -98,6 +99,8 @@ class LinearSolver {
                             double tolerance, BlockVector& x);
   SolveResult solveByKeptFactor(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
                                 double tolerance, BlockVector& x);
+  SolveResult tryIterations(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
+                            double tolerance, BlockVector& x);
   SolveResult solveIteratively(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,
                                double tolerance, int max_iterations, BlockVector& x);
   SolveResult solveByWholeFactor(const SymmetricBlockMatrix& matrix, const BlockVector& rhs,

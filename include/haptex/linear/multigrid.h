@@ -18,7 +18,9 @@ namespace haptex::linear {
 /// has a factor; all in single precision. A solve is a W cycle with one step of damped Jacobi on
 /// 3x3 blocks before and after what the next coarser level does: a preconditioner of an iteration,
 /// as a factor in single precision is one, in time and memory that are proportional to the number
-/// of rows. It is symmetric and positive definite.
+/// of rows. It is symmetric, and positive definite as long as damping times the largest eigenvalue
+/// of D^-1 A is below 2: the power method estimates that eigenvalue, and nothing bounds it.
+/// Conjugate gradients notice where it is not.
 ///
 /// Groups, patterns and damping are those of the constructor's matrix. Couplings are left out: the
 /// preconditioner takes them for springs that hold a particle where it is.
@@ -66,6 +68,7 @@ class Multigrid {
   ThreadPool* pool_;
   std::vector<Level> levels_;  // finest first
   std::optional<SymmetricBlockMatrix> coarsest_;
+  std::vector<int> coarsest_slots_;  // of the blocks below its diagonal, by rows of the level
   std::unique_ptr<BasicBlockCholesky<float>> factor_;  // of the coarsest, unless it is large
   BlockVector coarsest_vector_;
 };

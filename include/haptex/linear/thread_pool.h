@@ -53,4 +53,11 @@ class ThreadPool {
   Call call_ = nullptr;
 };
 
+/// The same by one thread where there is no pool. @param pool may be null
+template <typename Function>
+void runTasks(ThreadPool* pool, int tasks, const Function& function) {
+  if (pool != nullptr) return pool->run(tasks, function);
+  for (int task = 0; task < tasks; ++task) function(task, 0);
+}
+
 }  // namespace haptex::linear

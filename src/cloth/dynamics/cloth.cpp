@@ -187,9 +187,9 @@ void Cloth::computeForces(const ClothState& state, std::vector<Eigen::Vector3d>&
   forces_->addForces(state.ofForces(), forces);
 }
 
-double Cloth::potentialEnergy(const ClothState& state) const {
+double Cloth::potentialEnergy(const ClothState& state, linear::ThreadPool* pool) const {
   requireState(state);
-  return forces_->energy(state.ofForces());
+  return forces_->energy(state.ofForces(pool));
 }
 
 double Cloth::kineticEnergy(const ClothState& state) const {

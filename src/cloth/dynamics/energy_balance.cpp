@@ -48,8 +48,9 @@ double contactWork(const Cloth& cloth, const std::vector<ContactReaction>& react
 
 }  // namespace
 
-EnergyBalance::EnergyBalance(const Cloth& cloth, bool rates_from_strains)
-    : rates_from_strains_(rates_from_strains),
+EnergyBalance::EnergyBalance(const Cloth& cloth, bool rates_from_strains, linear::ThreadPool* pool)
+    : pool_(pool),
+      rates_from_strains_(rates_from_strains),
       last_positions_(cloth.initialState().positions),
       forces_(cloth.particleCount()),
       jumped_(cloth.initialState()) {}
@@ -58,7 +59,7 @@ void EnergyBalance::begin(const Cloth& cloth, const ClothState& begin) {
   const bool goes_on = begin.positions == last_positions_;
   if (!goes_on) forget();
   const bool known = goes_on && revision_ == cloth.revision() && cloth.forces().memorySize() == 0;
-  potential_begin_ = known ? potential_kept_ : cloth.potentialEnergy(begin);
+  potential_begin_ = known ? potential_kept_ : cloth.potentialEnergy(begin, pool_);
   kinetic_begin_ = freeKineticEnergy(cloth, begin.velocities);
 }
 
@@ -83,7 +84,7 @@ double EnergyBalance::reserve() const {
 double EnergyBalance::growth(const Cloth& cloth, const ClothState& begin, const ClothState& end,
                              const std::vector<ContactReaction>& reactions) {
   constexpr double kRounding = 1e-12;
-  potential_end_ = cloth.potentialEnergy(end);
+  potential_end_ = cloth.potentialEnergy(end, pool_);
   kinetic_end_ = freeKineticEnergy(cloth, end.velocities);
   double growth = potential_end_ - potential_begin_ + (kinetic_end_ - kinetic_begin_);
   growth -= kRounding *
@@ -135,7 +136,7 @@ double EnergyBalance::attachmentWork(const Cloth& cloth, const ClothState& begin
   ahead.add(end.positions, -1.0);
   computeForces(cloth, begin, ahead);
   const double at_begin = workOf(cloth, forces_, begin.positions, end.positions);
-  const double of_jump = cloth.potentialEnergy(jumped_) - potential_begin_;
+  const double of_jump = cloth.potentialEnergy(jumped_, pool_) - potential_begin_;
   return std::min(std::max(at_end, 0.5 * (at_begin + at_end)),
                   2.0 * std::max(0.0, of_jump) + kinetic_begin_);
 }

@@ -93,7 +93,7 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
   if (two_instants && settings.newton_iterations > 1 && (cloth.effects().viscosity || predicts())) {
     motion_.emplace(cloth);
   }
-  balance_.emplace(cloth, motion_.has_value());
+  balance_.emplace(cloth, motion_.has_value(), stages_->pool());
   if (cloth.selfContact() != nullptr) untangling_.emplace(cloth);
   if (method == IntegrationMethod::kBackwardEuler) return;
   forces_.resize(cloth.particleCount());
@@ -267,7 +267,7 @@ bool Integrator::continuesHistory(const ClothState& begin, double h) const {
 void Integrator::runMidpoint(const Cloth& cloth, const ClothState& begin, double h,
                              StepReport& report) {
   constexpr double kMaxBlend = 0.5;
-  const double potential = cloth.potentialEnergy(begin);
+  const double potential = cloth.potentialEnergy(begin, stages_->pool());
   while (true) {
     const double theta = 0.5 + report.blend;
     stages_->solve(cloth, {begin, theta * h, end_.time, theta, {}},
@@ -286,7 +286,7 @@ void Integrator::runMidpoint(const Cloth& cloth, const ClothState& begin, double
 double Integrator::blendAgainstGrowth(const Cloth& cloth, const ClothState& begin,
                                       double allowed) const {
   constexpr double kRounding = 1e-13;
-  const double potential = cloth.potentialEnergy(end_);
+  const double potential = cloth.potentialEnergy(end_, stages_->pool());
   double growth = potential - allowed;
   double kinetic = 0.0, change_squared = 0.0;
   for (std::size_t i = 0; i < cloth.particleCount(); ++i) {

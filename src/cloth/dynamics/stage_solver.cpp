@@ -28,12 +28,6 @@ double timeOf(const Stage& stage) {
   return (1.0 - stage.share) * stage.base.time + stage.share * stage.end;
 }
 
-/// What forces of the stage depend on, with what they remember from the beginning of the step.
-ForceState forceState(const Stage& stage, const Positions& positions,
-                      const Velocities& velocities) {
-  return {positions, velocities, timeOf(stage), stage.base.memory.data()};
-}
-
 /// m^2
 double restArea(const mesh::ClothMesh& mesh) {
   double area = 0.0;
@@ -153,6 +147,12 @@ void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const 
   report.self_cut = keepApart(cloth, stage, start_, result);
 }
 
+/// What forces of the stage depend on, with what they remember from the beginning of the step.
+ForceState StageSolver::forceState(const Stage& stage, const Positions& positions,
+                                   const Velocities& velocities) const {
+  return {positions, velocities, timeOf(stage), stage.base.memory.data(), nullptr, pool_.get()};
+}
+
 /// The guess with velocities that take tied particles to their places, so that the solution changes
 /// them as the particles that they are tied to.
 StageGuess StageSolver::sewn(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
@@ -244,7 +244,7 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
 }
 
 void StageSolver::addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities) {
-  matrix_.setZero();
+  matrix_.setZero(pool_.get());
   for (int i = 0; i < matrix_.size(); ++i) {
     const double mass = cloth.masses()[i];
     matrix_.diagonal(i).diagonal().setConstant(mass);

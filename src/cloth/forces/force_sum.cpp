@@ -15,7 +15,9 @@ template <typename Call>
 void ForceSum::forEach(const ForceState& state, Call&& call) const {
   const double* memory = state.memory;
   for (const auto& force : forces_) {
-    call(*force, ForceState{state.positions, state.velocities, state.time, memory, state.past});
+    ForceState its = state;
+    its.memory = memory;
+    call(*force, its);
     if (memory != nullptr) memory += force->memorySize();
   }
 }

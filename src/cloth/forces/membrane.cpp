@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "haptex/cloth/forces/element_assembly.h"
+#include "haptex/linear/shared_rows.h"
 #include "haptex/material/contraction.h"
 
 namespace haptex::cloth {
@@ -72,11 +73,13 @@ Membrane::Membrane(std::vector<MembraneElement> elements, const material::Fabric
 
 void Membrane::bind(const linear::SymmetricBlockMatrix& matrix) {
   bindElements(matrix, elements_);
-  batches_.clear();
-  if (!kernels::canAddBatches()) return;
-  for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
-    batches_.push_back(batchOf(&elements_[t]));
+  std::vector<kernels::MembraneBatch> batches;
+  if (kernels::canAddBatches()) {
+    for (std::size_t t = 0; t + kernels::kBatch <= elements_.size(); t += kernels::kBatch) {
+      batches.push_back(batchOf(&elements_[t]));
+    }
   }
+  batches_.assign(std::move(batches));
 }
 
 Membrane::Frame Membrane::frame(const MembraneElement& element,
@@ -132,7 +135,7 @@ void Membrane::addForces(const ForceState& state, std::vector<Vector3d>& forces)
 double Membrane::energy(const ForceState& state) const {
   const Positions& positions = state.positions;
   double energy = kernels::potential(batches_, state, nullptr, 0.0, law(false));
-  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+  for (std::size_t t = batchedCount(); t < elements_.size(); ++t) {
     energy += elements_[t].area * elasticDensity(frame(elements_[t], positions).strain());
   }
   return energy;
@@ -144,7 +147,7 @@ void Membrane::assembleLinearised(const ForceState& state, const StageTimes& tim
   const Positions& positions = state.positions;
   const Velocities& velocities = state.velocities;
   kernels::addStep(batches_, state, times, law(viscosity_), matrix, rhs);
-  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+  for (std::size_t t = batchedCount(); t < elements_.size(); ++t) {
     if (viscosity_) {
       assembleElement<true>(elements_[t], positions, velocities, times, matrix, rhs);
     } else {
@@ -188,7 +191,7 @@ void Membrane::assembleNewton(const ForceState& state, const Vector3d* held, dou
                               Hessian hessian, linear::SymmetricBlockMatrix& matrix,
                               linear::BlockVector& rhs) const {
   kernels::addNewton(batches_, state, held, a, hessian, law(viscosity_), matrix, rhs);
-  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+  for (std::size_t t = batchedCount(); t < elements_.size(); ++t) {
     const MembraneElement& element = elements_[t];
     const Frame at = frame(element, state.positions);
     const MembraneStrain strain = at.strain();
@@ -212,7 +215,7 @@ void Membrane::assembleNewton(const ForceState& state, const Vector3d* held, dou
 double Membrane::incrementalPotential(const ForceState& state, const Vector3d* held,
                                       double a) const {
   double potential = kernels::potential(batches_, state, held, a, law(viscosity_));
-  for (std::size_t t = kernels::kBatch * batches_.size(); t < elements_.size(); ++t) {
+  for (std::size_t t = batchedCount(); t < elements_.size(); ++t) {
     const MembraneStrain strain = frame(elements_[t], state.positions).strain();
     double density = elasticDensity(strain);
     for (int m = 0; viscosity_ && m < 3; ++m) {
@@ -224,14 +227,16 @@ double Membrane::incrementalPotential(const ForceState& state, const Vector3d* h
 }
 
 void Membrane::hold(const NewtonStart& start, Vector3d* held) const {
-  for (std::size_t t = 0; t < elements_.size(); ++t) {
-    if (start.at.past != nullptr) {
-      held[t] = pastStrain(elements_[t], *start.at.past);
-      continue;
+  linear::shareRows(start.at.pool, static_cast<int>(elements_.size()), [&](int begin, int end) {
+    for (int t = begin; t < end; ++t) {
+      if (start.at.past != nullptr) {
+        held[t] = pastStrain(elements_[t], *start.at.past);
+        continue;
+      }
+      const Frame at = frame(elements_[t], start.at.positions);
+      held[t] = at.strain() - start.a * at.rate(frame(elements_[t], start.at.velocities));
     }
-    const Frame at = frame(elements_[t], start.at.positions);
-    held[t] = at.strain() - start.a * at.rate(frame(elements_[t], start.at.velocities));
-  }
+  });
 }
 
 void Membrane::addJacobian(const ForceState& state, JacobianRows& rows) const {

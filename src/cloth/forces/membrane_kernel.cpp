@@ -1,6 +1,6 @@
 #include "haptex/cloth/forces/membrane_kernel.h"
 
-#include "haptex/cloth/forces/four_curves.h"
+#include "haptex/cloth/forces/batches/four_curves.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "haptex/appearance/srgb.h"
 #include "haptex/base/disjoint_sets.h"
 #include "haptex/nodes/common/cloth_fabric.h"
 #include "haptex/nodes/common/vector_messages.h"
@@ -84,11 +85,6 @@ cloth::ElementFrame frameOf(const cloth::RestTriangle& rest, const Eigen::Vector
                             const Eigen::Vector3d& second) {
   return {rest.weft_weights[1] * first + rest.weft_weights[2] * second,
           rest.warp_weights[1] * first + rest.warp_weights[2] * second};
-}
-
-/// IEC 61966-2-1. @param linear 0 to 1, and beyond
-double srgb(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
 /// NaN is not.
@@ -380,8 +376,9 @@ VertexColour ClothSurface::lookOf(std::size_t vertex, const appearance::Brdf& br
   const Eigen::Vector3f radiance =
       static_cast<float>(M_PI * (1.0 - kAmbient)) * brdf.radiance(view, axes * towardsSun()) +
       static_cast<float>(kAmbient * sky) * brdf.underSky(view);
-  return {byteOf(srgb(radiance[0])), byteOf(srgb(radiance[1])), byteOf(srgb(radiance[2])),
-          byteOf(opacity_)};
+  using appearance::srgbOfLinear;
+  return {byteOf(srgbOfLinear(radiance[0])), byteOf(srgbOfLinear(radiance[1])),
+          byteOf(srgbOfLinear(radiance[2])), byteOf(opacity_)};
 }
 
 std::vector<std::uint32_t> ClothSurface::attached(const haptex::ClothState& state) const {

@@ -29,7 +29,9 @@ struct ClothState {
   std::vector<double> memory;               ///< of the forces (Force::memorySize())
 
   /// What forces depend on.
-  ForceState ofForces() const { return {positions, velocities, time, memory.data()}; }
+  ForceState ofForces(linear::ThreadPool* pool = nullptr) const {
+    return {positions, velocities, time, memory.data(), nullptr, pool};
+  }
 };
 
 /// The place of an attached particle: it rests at `start` until `start_time`, then follows a
@@ -175,7 +177,8 @@ class Cloth {
 
   /// What all forces() hold (J): elastic energy, that of friction, gravity's and the user-defined
   /// forces' relative to the world origin, the point loads' relative to their positions.
-  double potentialEnergy(const ClothState& state) const;
+  /// @param pool shares the work if it is given
+  double potentialEnergy(const ClothState& state, linear::ThreadPool* pool = nullptr) const;
   double kineticEnergy(const ClothState& state) const;
   /// Tells whether potentialEnergy() of a state may be another now: a number greater than 0 that no
   /// other cloth has, and that setFabric(), setExternalForce() and setPointLoads()

@@ -23,7 +23,9 @@ class EnergyBalance {
 
   /// @param rates_from_strains the method takes rates of strain from strains, not from velocities,
   ///   and so does the work of attachments
-  explicit EnergyBalance(const Cloth& cloth, bool rates_from_strains = false);
+  /// @param pool shares the work if it is given; has to outlive this
+  explicit EnergyBalance(const Cloth& cloth, bool rates_from_strains = false,
+                         linear::ThreadPool* pool = nullptr);
 
   /// Before the step. What was lost before is forgotten unless the step goes on from the state of
   /// the last keep(). @param begin that the step starts from
@@ -76,6 +78,7 @@ class EnergyBalance {
   std::array<double, kRemembered> lost_{};  // J, since the beginnings of the last steps
   int remembered_ = 0;
   int next_ = 0;
+  linear::ThreadPool* pool_;
   bool rates_from_strains_;
   Positions last_positions_;
   std::vector<Eigen::Vector3d> forces_;

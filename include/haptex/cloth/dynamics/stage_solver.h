@@ -49,6 +49,8 @@ class StageSolver {
   StageSolver(const Cloth& cloth, const StepSettings& settings);
 
   int particleCount() const { return matrix_.size(); }
+  /// Of the settings' threads; null if that is one.
+  linear::ThreadPool* pool() const { return pool_.get(); }
 
   /// @param result positions and velocities of the stage. May be what the guess refers to, not the
   ///   base.
@@ -88,6 +90,8 @@ class StageSolver {
  private:
   enum class Descent { kFound, kBelowRounding, kNone };
 
+  ForceState forceState(const Stage& stage, const Positions& positions,
+                        const Velocities& velocities) const;
   void startFrom(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                  ClothState& result);
 

@@ -8,6 +8,7 @@
 
 #include "haptex/cloth/forces/jacobian_rows.h"
 #include "haptex/linear/block_matrix.h"
+#include "haptex/linear/thread_pool.h"
 
 namespace haptex::cloth {
 
@@ -51,6 +52,7 @@ struct ForceState {
   const double* memory = nullptr;    ///< Force::memorySize() numbers of this force
   const StrainPast* past = nullptr;  ///< what rates of strain are taken from by addForces(); null:
                                      ///< from the velocities
+  linear::ThreadPool* pool = nullptr;  ///< shares the work; null: none does. Changes no result
 };
 
 /// Times (s) of an implicit stage, x = x* + a v, that is linearised about a state (Stage).

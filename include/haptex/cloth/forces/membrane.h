@@ -74,9 +74,11 @@ class Membrane final : public Force {
   Response respondElastic(const MembraneStrain& strain) const;
   double elasticDensity(const MembraneStrain& strain) const;
   kernels::MembraneLaw law(bool viscosity) const;
+  /// How many of the elements are in batches: the first ones.
+  std::size_t batchedCount() const { return kernels::kBatch * batches_.size(); }
 
   std::vector<MembraneElement> elements_;
-  std::vector<kernels::MembraneBatch> batches_;  // empty where the processor cannot use them
+  kernels::BatchList<kernels::MembraneBatch> batches_;  // empty where the processor cannot use them
   Curves elastic_;
   Curves viscous_;
   bool viscosity_;

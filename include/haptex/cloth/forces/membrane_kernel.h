@@ -2,16 +2,17 @@
 // FMA.
 #pragma once
 
-#include "haptex/cloth/forces/membrane_batches.h"
+#include "haptex/cloth/forces/batches/membrane_batches.h"
 
 namespace haptex::cloth::kernels {
 
 /// Four elements of a membrane, one per lane: [which][lane]. Weights are those of the second and
 /// third particle, because the weights of a triangle sum to zero.
 struct alignas(32) MembraneBatch {
-  double weft_weights[2][kBatch];  ///< 1/m
-  double warp_weights[2][kBatch];  ///< 1/m
-  double area[kBatch];             ///< m^2
+  static constexpr int kStrains = 3;  // of an element
+  double weft_weights[2][kBatch];     ///< 1/m
+  double warp_weights[2][kBatch];     ///< 1/m
+  double area[kBatch];                ///< m^2
   int particles[3][kBatch];
   int slots[3][kBatch];  ///< of the matrix blocks (1,0), (2,0), (2,1)
 };

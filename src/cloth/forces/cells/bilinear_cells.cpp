@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "haptex/cloth/forces/membrane_kernel.h"
+#include "haptex/linear/shared_rows.h"
 
 namespace haptex::cloth {
 namespace {
@@ -124,11 +125,13 @@ void BilinearCells::bind(const linear::SymmetricBlockMatrix& matrix) {
           matrix.slot(cell.particles[kCellDistances[e][0]], cell.particles[kCellDistances[e][1]]);
     }
   }
-  batches_.clear();
-  if (!kernels::canAddBatches()) return;
-  for (std::size_t c = 0; c + kernels::kBatch <= cells_.size(); c += kernels::kBatch) {
-    batches_.push_back(kernels::batchOf(&cells_[c]));
+  std::vector<kernels::BilinearBatch> batches;
+  if (kernels::canAddBatches()) {
+    for (std::size_t c = 0; c + kernels::kBatch <= cells_.size(); c += kernels::kBatch) {
+      batches.push_back(kernels::batchOf(&cells_[c]));
+    }
   }
+  batches_.assign(std::move(batches));
 }
 
 kernels::MembraneLaw BilinearCells::law(bool viscosity) const {
@@ -210,17 +213,19 @@ void BilinearCells::assembleLinearised(const ForceState& state, const StageTimes
 }
 
 void BilinearCells::hold(const NewtonStart& start, Vector3d* held) const {
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
-    const BilinearCell& cell = cells_[c];
-    Eigen::Map<CellStrain> strain(held[2 * c].data());
-    if (start.at.past != nullptr) {
-      strain = pastStrain(cell, *start.at.past);
-      continue;
+  linear::shareRows(start.at.pool, static_cast<int>(cells_.size()), [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      const BilinearCell& cell = cells_[c];
+      Eigen::Map<CellStrain> strain(held[2 * c].data());
+      if (start.at.past != nullptr) {
+        strain = pastStrain(cell, *start.at.past);
+        continue;
+      }
+      const Distances at = distancesIn(cell, start.at.positions);
+      strain =
+          strainOf(cell, at) - start.a * rateOf(cell, at, distancesIn(cell, start.at.velocities));
     }
-    const Distances at = distancesIn(cell, start.at.positions);
-    strain =
-        strainOf(cell, at) - start.a * rateOf(cell, at, distancesIn(cell, start.at.velocities));
-  }
+  });
 }
 
 void BilinearCells::assembleNewton(const ForceState& state, const Vector3d* held, double a,

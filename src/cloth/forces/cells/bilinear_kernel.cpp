@@ -1,7 +1,7 @@
 #include "haptex/cloth/forces/cells/bilinear_kernel.h"
 
+#include "haptex/cloth/forces/batches/four_curves.h"
 #include "haptex/cloth/forces/cells/four_projections.h"
-#include "haptex/cloth/forces/four_curves.h"
 
 namespace haptex::cloth::kernels {
 

@@ -62,7 +62,7 @@ class BilinearCells final : public Force {
   std::size_t batchedCount() const { return kernels::kBatch * batches_.size(); }
 
   std::vector<BilinearCell> cells_;
-  std::vector<kernels::BilinearBatch> batches_;  // empty where the processor cannot use them
+  kernels::BatchList<kernels::BilinearBatch> batches_;  // empty where the processor cannot use them
   Curves elastic_;
   Curves viscous_;
   bool viscosity_;

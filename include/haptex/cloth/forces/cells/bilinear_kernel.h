@@ -2,8 +2,8 @@
 // FMA (kernels::canAddBatches()).
 #pragma once
 
+#include "haptex/cloth/forces/batches/membrane_batches.h"
 #include "haptex/cloth/forces/cells/bilinear_cell.h"
-#include "haptex/cloth/forces/membrane_batches.h"
 
 namespace haptex::cloth::kernels {
 
@@ -12,9 +12,10 @@ namespace haptex::cloth::kernels {
 /// symmetric matrix whose entries are written in the same order, each of the six strains is
 ///   sum_ab Q_ab (s_ab - those at rest).
 struct alignas(32) BilinearBatch {
-  double forms[6][6][kBatch];       ///< Q of each strain, 1/m^2
-  double rest_products[6][kBatch];  ///< m^2
-  double area[kBatch];              ///< m^2
+  static constexpr int kStrains = 6;  // of a cell
+  double forms[6][6][kBatch];         ///< Q of each strain, 1/m^2
+  double rest_products[6][kBatch];    ///< m^2
+  double area[kBatch];                ///< m^2
   int particles[4][kBatch];
   int slots[6][kBatch];  ///< of the matrix blocks of kCellDistances
 };

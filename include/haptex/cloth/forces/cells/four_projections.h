@@ -5,7 +5,7 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
-#include "haptex/cloth/forces/four_lanes.h"
+#include "haptex/cloth/forces/batches/four_lanes.h"
 
 namespace haptex::cloth::kernels {
 

@@ -3,8 +3,9 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <vector>
+#include <cstddef>
 
+#include "haptex/cloth/forces/batches/batch_list.h"
 #include "haptex/cloth/forces/force.h"
 #include "haptex/linear/block_matrix.h"
 #include "haptex/material/strain_stress_curve.h"
@@ -68,29 +69,44 @@ inline MembraneNewton newtonOf(const ForceState& state, const Eigen::Vector3d* h
           hessian == Hessian::kExact,     law,          systemOf(matrix, rhs)};
 }
 
+/// Numbers of the strains that are held for the elements of the batches before one.
+template <typename Batch>
+std::ptrdiff_t strainsBefore(int batch) {
+  return std::ptrdiff_t{Batch::kStrains} * kBatch * batch;
+}
+
 /// addStep(), addNewton() and potential() of all batches; nothing without one.
 template <typename Batch>
-void addStep(const std::vector<Batch>& batches, const ForceState& state, const StageTimes& times,
+void addStep(const BatchList<Batch>& batches, const ForceState& state, const StageTimes& times,
              const MembraneLaw& law, linear::SymmetricBlockMatrix& matrix,
              linear::BlockVector& rhs) {
-  if (batches.empty()) return;
-  addStep(batches.data(), static_cast<int>(batches.size()), stepOf(state, times, law, matrix, rhs));
+  if (batches.size() == 0) return;
+  const MembraneStep step = stepOf(state, times, law, matrix, rhs);
+  batches.forEachPart(state.pool,
+                      [&](const Batch* part, int, int count) { addStep(part, count, step); });
 }
 template <typename Batch>
-void addNewton(const std::vector<Batch>& batches, const ForceState& state,
+void addNewton(const BatchList<Batch>& batches, const ForceState& state,
                const Eigen::Vector3d* held, double a, Hessian hessian, const MembraneLaw& law,
                linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) {
-  if (batches.empty()) return;
-  addNewton(batches.data(), static_cast<int>(batches.size()),
-            newtonOf(state, held, a, hessian, law, matrix, rhs));
+  if (batches.size() == 0) return;
+  const MembraneNewton newton = newtonOf(state, held, a, hessian, law, matrix, rhs);
+  batches.forEachPart(state.pool, [&](const Batch* part, int first, int count) {
+    MembraneNewton its = newton;
+    if (law.viscous != nullptr) its.begin_strains += strainsBefore<Batch>(first);
+    addNewton(part, count, its);
+  });
 }
 /// @param held null without viscosity
 template <typename Batch>
-double potential(const std::vector<Batch>& batches, const ForceState& state,
+double potential(const BatchList<Batch>& batches, const ForceState& state,
                  const Eigen::Vector3d* held, double a, const MembraneLaw& law) {
-  if (batches.empty()) return 0.0;
-  return potential(batches.data(), static_cast<int>(batches.size()), state.positions.data()->data(),
-                   held == nullptr ? nullptr : held->data(), a, law);
+  const double* positions = state.positions.data()->data();
+  return batches.sumOfParts(state.pool, [&](const Batch* part, int first, int count) {
+    const double* strains = nullptr;
+    if (law.viscous != nullptr) strains = held->data() + strainsBefore<Batch>(first);
+    return potential(part, count, positions, strains, a, law);
+  });
 }
 
 }  // namespace haptex::cloth::kernels

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-#include "haptex/cloth/forces/membrane_batches.h"
+#include "haptex/cloth/forces/batches/membrane_batches.h"
 
 // Every function that touches a wide register carries the attribute and is inlined, so that no
 // wide value crosses a call: the rest of the library keeps the ABI of the baseline.

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "haptex/cloth/forces/four_lanes.h"
+#include "haptex/cloth/forces/batches/four_lanes.h"
 #include "haptex/material/strain_stress_curve.h"
 
 namespace haptex::cloth::kernels {
