@@ -1,5 +1,6 @@
 // What does it cost to know how much of the sky the particles of a cloth see past the cloth, and is
-// it proportional to the triangles? The sheets are those that proximity is measured with.
+// it proportional to the triangles? On two threads. The sheets are those that proximity is measured
+// with.
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ int main(int argc, char** argv) {
                       std::to_string(mesh.triangles.size()));
       const auto positions = oracles::deformedSheet(mesh, state);
       bench::add(names.back(), kMinTime, [mesh, positions](benchmark::State& run) {
-        proximity::SkyOcclusion sky(mesh.triangles, positions.size());
+        linear::ThreadPool pool(2);
+        proximity::SkyOcclusion sky(mesh.triangles, positions.size(), &pool);
         for (auto _ : run) sky.compute(positions);
       });
     }

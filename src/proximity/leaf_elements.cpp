@@ -62,18 +62,23 @@ LeafElements::LeafElements(const KdopHierarchy& hierarchy, const MeshElements& e
   begin_.push_back(static_cast<int>(element_.size()));
   boxes_.resize(element_.size());
   around_.resize(hierarchy.leaves());
-  fitted_.assign(hierarchy.leaves(), 0);
+  asked_.assign(hierarchy.leaves(), 0);
+}
+
+LeafElements::Scratch LeafElements::scratch() const {
+  Scratch scratch;
   // Only a leaf's elements are chosen at a time.
   for (int part = 0; part < kParts; ++part) {
     int most = 0;
-    for (int leaf = 0; leaf < hierarchy.leaves(); ++leaf) {
+    for (int leaf = 0; leaf < static_cast<int>(asked_.size()); ++leaf) {
       most = std::max(most, beginOf(leaf, part + 1) - beginOf(leaf, part));
     }
-    for (auto& chosen : chosen_) {
+    for (auto& chosen : scratch.chosen) {
       chosen[part].element.reserve(most);
       chosen[part].box.reserve(most);
     }
   }
+  return scratch;
 }
 
 void LeafElements::begin(const KdopHierarchy& hierarchy, double distance) {
@@ -82,10 +87,14 @@ void LeafElements::begin(const KdopHierarchy& hierarchy, double distance) {
   reach_ = static_cast<float>((1.0 + margin) * distance + margin * hierarchy.extent());
 }
 
-/// Boxes of all elements of a leaf and around them, unless they are fitted.
+bool LeafElements::isNew(int leaf) {
+  if (asked_[leaf] == step_) return false;
+  asked_[leaf] = step_;
+  return true;
+}
+
+/// Boxes of all elements of a leaf and around them.
 void LeafElements::fit(const KdopHierarchy& hierarchy, int leaf) {
-  if (fitted_[leaf] == step_) return;
-  fitted_[leaf] = step_;
   const float* positions = hierarchy.localPositions().data();
   const auto place = [&](int vertex) {
     Floats at;
@@ -142,27 +151,26 @@ void LeafElements::addPairs(ElementPairKind kind, const Chosen& first, const Cho
   }
 }
 
-void LeafElements::findCandidates(const KdopHierarchy& hierarchy, int first, int second,
-                                  std::vector<ElementPair>& found) {
-  fit(hierarchy, first);
+void LeafElements::findCandidates(int first, int second, Scratch& scratch,
+                                  std::vector<ElementPair>& found) const {
+  auto& chosen = scratch.chosen;
   if (first == second) {
-    choose(first, around_[first], chosen_[0]);
-    const auto& all = chosen_[0];
+    choose(first, around_[first], chosen[0]);
+    const auto& all = chosen[0];
     addPairs(ElementPairKind::kVertexTriangle, all[kVertices], all[kTriangles], found);
     addPairs(ElementPairKind::kEdgeEdge, all[kEdges], all[kEdges], found);
     return;
   }
-  fit(hierarchy, second);
   const Floats least =
       around_[first].least > around_[second].least ? around_[first].least : around_[second].least;
   const Floats most =
       around_[first].most < around_[second].most ? around_[first].most : around_[second].most;
   const Box common = {least - reach_, most + reach_};
-  choose(first, common, chosen_[0]);
-  choose(second, common, chosen_[1]);
-  addPairs(ElementPairKind::kVertexTriangle, chosen_[0][kVertices], chosen_[1][kTriangles], found);
-  addPairs(ElementPairKind::kVertexTriangle, chosen_[1][kVertices], chosen_[0][kTriangles], found);
-  addPairs(ElementPairKind::kEdgeEdge, chosen_[0][kEdges], chosen_[1][kEdges], found);
+  choose(first, common, chosen[0]);
+  choose(second, common, chosen[1]);
+  addPairs(ElementPairKind::kVertexTriangle, chosen[0][kVertices], chosen[1][kTriangles], found);
+  addPairs(ElementPairKind::kVertexTriangle, chosen[1][kVertices], chosen[0][kTriangles], found);
+  addPairs(ElementPairKind::kEdgeEdge, chosen[0][kEdges], chosen[1][kEdges], found);
 }
 
 }  // namespace haptex::proximity

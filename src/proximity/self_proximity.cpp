@@ -61,6 +61,7 @@ SelfProximity::SelfProximity(const KdopHierarchy& hierarchy, const std::vector<V
       distance_(requireDistance(distance)) {
   KdopHierarchy at_reference = hierarchy;
   at_reference.refit(reference);
+  for (Part& part : parts_) part.scratch = leaf_elements_.scratch();
   // Rounding of distances must not tell apart what is a neighbour and what is flat.
   reach_ = std::max(distance_ / FlatRegions::kLeastStretch, kTouching * at_reference.extent());
   reach_ *= 1.0 + 1e-6;
@@ -77,16 +78,21 @@ SelfProximity::SelfProximity(const KdopHierarchy& hierarchy, double distance)
       elements_(hierarchy.triangles()),
       leaf_elements_(hierarchy, elements_),
       flat_(hierarchy, hierarchy.positions()),
-      distance_(requireDistance(distance)) {}
+      distance_(requireDistance(distance)) {
+  for (Part& part : parts_) part.scratch = leaf_elements_.scratch();
+}
 
 void SelfProximity::findNeighbours(const KdopHierarchy& hierarchy, bool& reference_touches) {
   hierarchy.computePairLimits(reach_, limits_);
   leaf_elements_.begin(hierarchy, reach_);
   front_.assign(1, {0, 0});
   traverse(hierarchy, false);
-  for (const ElementPair& pair : candidates_) {
-    const std::array<int, 4> vertices = verticesOf(pair, elements_);
-    if (isNeighbour(pair, vertices)) neighbours_.push_back(pair);
+  testCandidates(hierarchy, nullptr, [&](const ElementPair& pair, Part& part) {
+    if (isNeighbour(pair, verticesOf(pair, elements_)))
+      part.found.push_back({pair, {0.0, Eigen::Vector4d::Zero()}});
+  });
+  for (const Part& part : parts_) {
+    for (const NearPair& pair : part.found) neighbours_.push_back(pair.elements);
   }
   std::sort(neighbours_.begin(), neighbours_.end());
   for (const ElementPair& pair : neighbours_) {
@@ -98,7 +104,7 @@ void SelfProximity::findNeighbours(const KdopHierarchy& hierarchy, bool& referen
 }
 
 void SelfProximity::find(std::vector<NearPair>& found, std::vector<double>* bounds,
-                         SelfProximityCost* cost) {
+                         SelfProximityCost* cost, linear::ThreadPool* pool) {
   found.clear();
   if (bounds != nullptr) bounds->assign(hierarchy_.positions().size(), 0.5 * distance_);
   hierarchy_.computePairLimits(distance_, limits_);
@@ -110,16 +116,22 @@ void SelfProximity::find(std::vector<NearPair>& found, std::vector<double>* boun
   last_tests_ = cost_.volume_pairs;
   if (age_of_front_++ == 0) tests_from_root_ = last_tests_;
   const Answer answer = {found, bounds == nullptr ? nullptr : bounds->data()};
-  for (const ElementPair& pair : candidates_) {
+  testCandidates(hierarchy_, pool, [&](const ElementPair& pair, Part& part) {
     const std::array<int, 4> vertices = verticesOf(pair, elements_);
     const std::array<Vector3d, 4> places = placesOf(vertices, hierarchy_.positions());
-    if (isSurelyApart(pair.kind, places, distance_)) continue;
+    if (isSurelyApart(pair.kind, places, distance_)) return;
     const PairDistance nearest = distanceOf(pair.kind, places);
-    ++cost_.distances;
-    if (!(nearest.distance <= distance_)) continue;
-    if (!neighbours_.empty() && isNeighbour(pair, vertices)) continue;  // follows below
-    answer.limit(vertices, nearest.distance);
-    found.push_back({pair, nearest});
+    ++part.distances;
+    if (!(nearest.distance <= distance_)) return;
+    if (!neighbours_.empty() && isNeighbour(pair, vertices)) return;  // follows below
+    part.found.push_back({pair, nearest});
+  });
+  for (const Part& part : parts_) {
+    cost_.distances += part.distances;
+    found.insert(found.end(), part.found.begin(), part.found.end());
+  }
+  for (const NearPair& pair : found) {
+    answer.limit(verticesOf(pair.elements, elements_), pair.nearest.distance);
   }
   for (std::size_t i = 0; i < neighbours_.size(); ++i) {
     const std::array<int, 4> vertices = verticesOf(neighbours_[i], elements_);
@@ -145,12 +157,13 @@ bool SelfProximity::isNeighbour(const ElementPair& pair, const std::array<int, 4
   return distanceOf(pair.kind, placesOf(vertices, reference_)).distance <= reach_;
 }
 
-/// Collects the candidates, beginning at the front, downwards where volumes are near. What has
+/// Collects the pairs of leaves, beginning at the front, downwards where volumes are near. What has
 /// moved apart, or has become flat, is seen when it begins at the root again: after some steps, or
 /// when that takes less. The front keeps the order of a traversal from there, so that the order of
 /// what is found does not depend on it.
 void SelfProximity::traverse(const KdopHierarchy& hierarchy, bool leave_out) {
-  candidates_.clear();
+  leaf_pairs_.clear();
+  new_leaves_.clear();
   next_front_.clear();
   for (std::size_t at = 0; at < front_.size();) {
     if (front_[at].first == front_[at].second) {
@@ -211,8 +224,47 @@ void SelfProximity::compare(const KdopHierarchy& hierarchy, const Pair& leaves) 
   next_front_.push_back(leaves);
   ++cost_.leaf_pairs;
   const int first_leaf = hierarchy.tree().first_leaf;
-  leaf_elements_.findCandidates(hierarchy, leaves.first - first_leaf, leaves.second - first_leaf,
-                                candidates_);
+  const Pair numbers = {leaves.first - first_leaf, leaves.second - first_leaf};
+  leaf_pairs_.push_back(numbers);
+  for (const int leaf : {numbers.first, numbers.second}) {
+    if (leaf_elements_.isNew(leaf)) new_leaves_.push_back(leaf);
+  }
+}
+
+/// Calls test(pair of elements, part) with all candidates, in parts of the pairs of leaves whose
+/// order is that of the traversal.
+template <typename Test>
+void SelfProximity::testCandidates(const KdopHierarchy& hierarchy, linear::ThreadPool* pool,
+                                   const Test& test) {
+  const auto in_parts = [&](std::size_t count, const auto& function) {
+    linear::runTasks(pool, kParts, [&](int part, int) {
+      for (std::size_t i = count * part / kParts; i < count * (part + 1) / kParts; ++i) {
+        function(i, parts_[part]);
+      }
+    });
+  };
+  in_parts(new_leaves_.size(),
+           [&](std::size_t i, Part&) { leaf_elements_.fit(hierarchy, new_leaves_[i]); });
+  for (Part& part : parts_) {
+    part.found.clear();
+    part.distances = 0;
+  }
+  in_parts(leaf_pairs_.size(), [&](std::size_t i, Part& part) {
+    part.candidates.clear();
+    leaf_elements_.findCandidates(leaf_pairs_[i].first, leaf_pairs_[i].second, part.scratch,
+                                  part.candidates);
+    for (const ElementPair& pair : part.candidates) test(pair, part);
+  });
+  // Parts have some more room than any has needed: what is near is not always in the same ones.
+  std::size_t most = 0, most_candidates = 0;
+  for (const Part& part : parts_) {
+    most = std::max(most, part.found.size());
+    most_candidates = std::max(most_candidates, part.candidates.capacity());
+  }
+  for (Part& part : parts_) {
+    if (part.found.capacity() < most) part.found.reserve(2 * most);
+    part.candidates.reserve(most_candidates);
+  }
 }
 
 }  // namespace haptex::proximity

@@ -61,24 +61,28 @@ template <typename Integers>
 
 }  // namespace
 
+SkyOcclusion::View::View(std::size_t particles, std::size_t cells)
+    : places(particles),
+      cell(particles),
+      begin(cells + 1),
+      order(particles),
+      sorted_x(particles + kMostLanes, std::numeric_limits<float>::quiet_NaN()),
+      sorted_y(sorted_x),
+      sorted_z(sorted_x),
+      hidden(particles + kMostLanes),
+      total(particles),
+      sums(particles) {}
+
 SkyOcclusion::SkyOcclusion(std::vector<std::array<int, 3>> triangles, std::size_t particles,
-                           InstructionSet instruction_set)
+                           linear::ThreadPool* pool, InstructionSet instruction_set)
     : instruction_set_(instruction_set),
+      pool_(pool),
       triangles_(std::move(triangles)),
       points_(particles),
       normals_(particles),
       columns_(cells(kColumnShare, particles)),
       rows_(cells(kRowShare, particles)),
-      places_(particles),
-      cell_(particles),
-      begin_(static_cast<std::size_t>(columns_) * rows_ + 1),
-      order_(particles),
-      sorted_x_(particles + kMostLanes, std::numeric_limits<float>::quiet_NaN()),
-      sorted_y_(sorted_x_),
-      sorted_z_(sorted_x_),
-      hidden_(particles + kMostLanes),
-      total_(particles),
-      sums_(particles),
+      views_(kViews, View(particles, static_cast<std::size_t>(columns_) * rows_)),
       shares_(particles) {
   kernels::choose(1, instruction_set);  // refuses it if the processor lacks it
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
@@ -125,7 +129,7 @@ void SkyOcclusion::sumNormals() {
   }
 }
 
-void SkyOcclusion::project(const Vector3f& direction) {
+void SkyOcclusion::project(const Vector3f& direction, View& view) const {
   using Floats = Register<4>::Floats;  // x, y, z, unused
   const Vector3f across = direction.unitOrthogonal(), up = direction.cross(across);
   const Floats by_x{across.x(), up.x(), direction.x(), 0.0f};
@@ -136,62 +140,64 @@ void SkyOcclusion::project(const Vector3f& direction) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vector3f& point = points_[i];
     const Floats place = by_x * point.x() + by_y * point.y() + by_z * point.z();
-    std::memcpy(&places_[i], &place, sizeof(place));
+    std::memcpy(&view.places[i], &place, sizeof(place));
     least = place < least ? place : least;
     most = place > most ? place : most;
   }
-  left_ = least[0];
-  low_ = least[1];
+  view.left = least[0];
+  view.low = least[1];
   const float right = most[0], high = most[1];
   constexpr float kShorter = 1.0f - 1e-6f;  // the last place is in the last cell
   const float columns = kShorter * static_cast<float>(columns_);
   const float rows = kShorter * static_cast<float>(rows_);
-  columns_per_metre_ = right > left_ ? columns / (right - left_) : 0.0f;
-  rows_per_metre_ = high > low_ ? rows / (high - low_) : 0.0f;
+  view.columns_per_metre = right > view.left ? columns / (right - view.left) : 0.0f;
+  view.rows_per_metre = high > view.low ? rows / (high - view.low) : 0.0f;
 }
 
 /// By counting, so that the cells of a row lie one after the other.
-void SkyOcclusion::sort() {
-  std::fill(begin_.begin(), begin_.end(), 0);
+void SkyOcclusion::sort(View& view) const {
+  std::fill(view.begin.begin(), view.begin.end(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const int column = static_cast<int>((places_[i].x - left_) * columns_per_metre_);
-    const int row = static_cast<int>((places_[i].y - low_) * rows_per_metre_);
-    cell_[i] = row * columns_ + column;
-    ++begin_[cell_[i] + 1];
+    const int column = static_cast<int>((view.places[i].x - view.left) * view.columns_per_metre);
+    const int row = static_cast<int>((view.places[i].y - view.low) * view.rows_per_metre);
+    view.cell[i] = row * columns_ + column;
+    ++view.begin[view.cell[i] + 1];
   }
   int sum = 0;
-  for (std::size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] = sum += begin_[cell];
+  for (std::size_t cell = 1; cell < view.begin.size(); ++cell)
+    view.begin[cell] = sum += view.begin[cell];
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const int place = begin_[cell_[i]]++;
-    order_[place] = static_cast<int>(i);
-    sorted_x_[place] = places_[i].x;
-    sorted_y_[place] = places_[i].y;
-    sorted_z_[place] = places_[i].z;
+    const int place = view.begin[view.cell[i]]++;
+    view.order[place] = static_cast<int>(i);
+    view.sorted_x[place] = view.places[i].x;
+    view.sorted_y[place] = view.places[i].y;
+    view.sorted_z[place] = view.places[i].z;
   }
   // Each has moved on to the next one's.
-  std::copy_backward(begin_.begin(), begin_.end() - 1, begin_.end());
-  begin_[0] = 0;
+  std::copy_backward(view.begin.begin(), view.begin.end() - 1, view.begin.end());
+  view.begin[0] = 0;
 }
 
 /// Hardly a branch depends on what is found: with one for every hit half of the time went into
 /// those that the processor had foretold wrongly.
 template <int kLanes>
-[[gnu::always_inline]] inline void SkyOcclusion::coverWith(const std::array<int, 3>& triangle) {
+[[gnu::always_inline]] inline void SkyOcclusion::coverWith(const std::array<int, 3>& triangle,
+                                                           View& view) const {
   using Floats = typename Register<kLanes>::Floats;
   using Integers = typename Register<kLanes>::Integers;
   using Corner = Register<4>::Floats;  // x, y, z, unused
   Corner a, b, c;
-  load(&places_[triangle[0]], a);
-  load(&places_[triangle[1]], b);
-  load(&places_[triangle[2]], c);
+  load(&view.places[triangle[0]], a);
+  load(&view.places[triangle[1]], b);
+  load(&view.places[triangle[2]], c);
   const float xa = a[0], xb = b[0], xc = c[0], ya = a[1], yb = b[1], yc = c[1];
   const float area = (xb - xa) * (yc - ya) - (yb - ya) * (xc - xa);
   if (area == 0.0f) return;
   Corner least = a < b ? a : b, most = a < b ? b : a;
   least = c < least ? c : least;
   most = c > most ? c : most;
-  const Corner origin{left_, low_, 0.0f, 0.0f};
-  const Corner cells_per_metre{columns_per_metre_, rows_per_metre_, 0.0f, 0.0f};
+  const Corner origin{view.left, view.low, 0.0f, 0.0f};
+  const Corner cells_per_metre{view.columns_per_metre, view.rows_per_metre, 0.0f, 0.0f};
   using Cell = Register<4>::Integers;  // column, row, unused
   const auto first = __builtin_convertvector((least - origin) * cells_per_metre, Cell);
   const auto last = __builtin_convertvector((most - origin) * cells_per_metre, Cell);
@@ -202,15 +208,20 @@ template <int kLanes>
               bcy = sign * (yc - yb), cax = sign * (xa - xc), cay = sign * (ya - yc);
   const int width = last[0] - first[0] + 1;
   const int last_row = last[1] * columns_ + first[0];
+  const int* const begin = view.begin.data();
+  const float* const sorted_x = view.sorted_x.data();
+  const float* const sorted_y = view.sorted_y.data();
+  const float* const sorted_z = view.sorted_z.data();
+  int* const hidden = view.hidden.data();
   for (int cell = first[1] * columns_ + first[0]; cell <= last_row; cell += columns_) {
-    const int end = begin_[cell + width];
-    int i = begin_[cell];
+    const int end = begin[cell + width];
+    int i = begin[cell];
     // Those of other cells that a register holds besides are judged as well.
     do {
       Floats x, y, z;
-      load(&sorted_x_[i], x);
-      load(&sorted_y_[i], y);
-      load(&sorted_z_[i], z);
+      load(sorted_x + i, x);
+      load(sorted_y + i, y);
+      load(sorted_z + i, z);
       const Floats to_c = abx * (y - ya) - aby * (x - xa);
       const Floats to_a = bcx * (y - yb) - bcy * (x - xb);
       const Floats to_b = cax * (y - yc) - cay * (x - xc);
@@ -218,57 +229,68 @@ template <int kLanes>
       const Floats weighted = to_a * a[2] + to_b * b[2] + to_c * c[2];
       const Floats level = (to_a + to_b + to_c) * z;
       const Integers side = (weighted > level) + kAgainst;  // a comparison is -1 where it holds
-      mark(inside & side, &hidden_[i]);
+      mark(inside & side, hidden + i);
       i += kLanes;
     } while (i < end);
   }
 }
 
-void SkyOcclusion::cover() {
-  for (const auto& triangle : triangles_) coverWith<4>(triangle);
+void SkyOcclusion::cover(View& view) const {
+  for (const auto& triangle : triangles_) coverWith<4>(triangle, view);
 }
 
 #if defined(__x86_64__)
-[[gnu::target("avx2")]] void SkyOcclusion::coverWithAvx2() {
-  for (const auto& triangle : triangles_) coverWith<8>(triangle);
+[[gnu::target("avx2")]] void SkyOcclusion::coverWithAvx2(View& view) const {
+  for (const auto& triangle : triangles_) coverWith<8>(triangle, view);
 }
 #else
-void SkyOcclusion::coverWithAvx2() { cover(); }  // never the best
+void SkyOcclusion::coverWithAvx2(View& view) const { cover(view); }  // never the best
 #endif
 
-void SkyOcclusion::add(const Vector3f& direction) {
+void SkyOcclusion::add(const Vector3f& direction, View& view) const {
   for (std::size_t place = 0; place < points_.size(); ++place) {
-    const int particle = order_[place];
+    const int particle = view.order[place];
     const float along = normals_[particle].dot(direction);
     const float cosine = std::abs(along) < kHorizon ? 0.0f : std::abs(along);
-    const float seen_along = (hidden_[place] & kAlong) != 0 ? 0.0f : cosine;
-    const float seen_against = (hidden_[place] & kAgainst) != 0 ? 0.0f : cosine;
-    total_[particle] += cosine;
-    sums_[particle].front += along > 0.0f ? seen_along : seen_against;
-    sums_[particle].back += along > 0.0f ? seen_against : seen_along;
+    const float seen_along = (view.hidden[place] & kAlong) != 0 ? 0.0f : cosine;
+    const float seen_against = (view.hidden[place] & kAgainst) != 0 ? 0.0f : cosine;
+    view.total[particle] += cosine;
+    view.sums[particle].front += along > 0.0f ? seen_along : seen_against;
+    view.sums[particle].back += along > 0.0f ? seen_against : seen_along;
+  }
+}
+
+/// Along every kViews-th direction.
+void SkyOcclusion::look(int number) {
+  View& view = views_[number];
+  std::fill(view.total.begin(), view.total.end(), 0.0f);
+  std::fill(view.sums.begin(), view.sums.end(), SkyShare{0.0f, 0.0f});
+  for (int i = number; i < kDirections; i += kViews) {
+    project(directions_[i], view);
+    sort(view);
+    std::fill(view.hidden.begin(), view.hidden.end(), 0);
+    if (instruction_set_ == InstructionSet::kAvx2) {
+      coverWithAvx2(view);
+    } else {
+      cover(view);
+    }
+    add(directions_[i], view);
   }
 }
 
 const std::vector<SkyShare>& SkyOcclusion::compute(const std::vector<Vector3d>& positions) {
   readPositions(positions);
   sumNormals();
-  std::fill(total_.begin(), total_.end(), 0.0f);
-  std::fill(sums_.begin(), sums_.end(), SkyShare{0.0f, 0.0f});
-  for (const Vector3f& direction : directions_) {
-    project(direction);
-    sort();
-    std::fill(hidden_.begin(), hidden_.end(), 0);
-    if (instruction_set_ == InstructionSet::kAvx2) {
-      coverWithAvx2();
-    } else {
-      cover();
-    }
-    add(direction);
-  }
+  linear::runTasks(pool_, kViews, [&](int view, int) { look(view); });
   for (std::size_t i = 0; i < shares_.size(); ++i) {
-    const bool has_normal = total_[i] > 0.0f;
-    shares_[i] =
-        has_normal ? SkyShare{sums_[i].front / total_[i], sums_[i].back / total_[i]} : SkyShare{};
+    float total = 0.0f;
+    SkyShare sum{0.0f, 0.0f};
+    for (const View& view : views_) {
+      total += view.total[i];
+      sum.front += view.sums[i].front;
+      sum.back += view.sums[i].back;
+    }
+    shares_[i] = total > 0.0f ? SkyShare{sum.front / total, sum.back / total} : SkyShare{};
   }
   return shares_;
 }

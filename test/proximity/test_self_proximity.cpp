@@ -257,6 +257,31 @@ TEST(SelfProximity, AnswersTheSameWhateverCameBefore) {
   EXPECT_LT(cost.volume_pairs, cost_anew.volume_pairs) << "the front was not kept";
 }
 
+TEST(SelfProximity, AnswersTheSameWithAnyNumberOfThreads) {
+  const mesh::ClothMesh mesh = sheet(16);
+  const Positions reference = restPositions(mesh);
+  linear::ThreadPool pool(3);
+  std::size_t pairs = 0;
+  for (const auto& state : oracles::deformedSheets(mesh)) {
+    KdopHierarchy hierarchy(mesh.triangles, reference);
+    hierarchy.refit(state.positions);
+    SelfProximity alone(hierarchy, reference, 0.002), shared = alone;
+    std::vector<NearPair> found, found_shared;
+    std::vector<double> bounds, bounds_shared;
+    SelfProximityCost cost, cost_shared;
+    alone.find(found, &bounds, &cost);
+    shared.find(found_shared, &bounds_shared, &cost_shared, &pool);
+    ASSERT_EQ(pairsOf(found), pairsOf(found_shared)) << state.name;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_EQ(found[i].nearest.distance, found_shared[i].nearest.distance) << state.name;
+    }
+    EXPECT_EQ(bounds, bounds_shared);
+    EXPECT_EQ(cost.distances, cost_shared.distances);
+    pairs += found.size();
+  }
+  EXPECT_GT(pairs, 1000u);
+}
+
 TEST(SelfProximity, AnswersTheSameWithBaselineInstructions) {
   const mesh::ClothMesh mesh = sheet(20);
   const Positions reference = restPositions(mesh);

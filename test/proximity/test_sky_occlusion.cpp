@@ -87,13 +87,32 @@ TEST(SkyOcclusion, IsTheSameWithEveryInstructionSet) {
   if (bestInstructionSet() == InstructionSet::kBaseline) GTEST_SKIP() << "there is one";
   const mesh::ClothMesh mesh = sheet(9);
   SkyOcclusion best(mesh.triangles, restPositions(mesh).size());
-  SkyOcclusion baseline(mesh.triangles, restPositions(mesh).size(), InstructionSet::kBaseline);
+  SkyOcclusion baseline(mesh.triangles, restPositions(mesh).size(), nullptr,
+                        InstructionSet::kBaseline);
   for (const auto& state : oracles::deformedSheets(mesh)) {
     const auto& shares = best.compute(state.positions);
     const auto& others = baseline.compute(state.positions);
     for (std::size_t i = 0; i < shares.size(); ++i) {
       ASSERT_EQ(shares[i].front, others[i].front) << state.name << i;
       ASSERT_EQ(shares[i].back, others[i].back) << state.name << i;
+    }
+  }
+}
+
+TEST(SkyOcclusion, IsTheSameWithAnyNumberOfThreads) {
+  const mesh::ClothMesh mesh = sheet(9);
+  const std::size_t particles = restPositions(mesh).size();
+  linear::ThreadPool two(2), three(3);
+  SkyOcclusion alone(mesh.triangles, particles);
+  for (linear::ThreadPool* pool : {&two, &three}) {
+    SkyOcclusion shared(mesh.triangles, particles, pool);
+    for (const auto& state : oracles::deformedSheets(mesh)) {
+      const auto& shares = shared.compute(state.positions);
+      const auto& others = alone.compute(state.positions);
+      for (std::size_t i = 0; i < shares.size(); ++i) {
+        ASSERT_EQ(shares[i].front, others[i].front) << state.name << i;
+        ASSERT_EQ(shares[i].back, others[i].back) << state.name << i;
+      }
     }
   }
 }

@@ -24,44 +24,56 @@ struct LeafElement {
 /// any two elements meet in one pair of leaves, and if they are near, so are the volumes of the
 /// leaves.
 class LeafElements {
+  enum Part { kVertices, kEdges, kTriangles, kParts };
+  // Of a part of a leaf, those that reach into a box.
+  struct Chosen {
+    std::vector<LeafElement> element;
+    std::vector<ElementBox> box;
+  };
+
  public:
+  /// What a thread writes in findCandidates().
+  struct Scratch {
+    Chosen chosen[2][kParts];
+  };
+
   /// @param hierarchy over the triangles of the elements
   LeafElements(const KdopHierarchy& hierarchy, const MeshElements& elements);
 
-  /// Before the first findCandidates() after the hierarchy has moved.
+  /// With room for the largest leaf.
+  Scratch scratch() const;
+
+  /// After the hierarchy has moved.
   /// @param distance m, up to which elements are looked for
   void begin(const KdopHierarchy& hierarchy, double distance);
+  /// Whether a leaf is asked for the first time since: then fit() is to be called before
+  /// findCandidates().
+  bool isNew(int leaf);
+  /// Several threads may do so with different leaves.
+  void fit(const KdopHierarchy& hierarchy, int leaf);
 
   /// Pairs of elements of one leaf, or of two, that are not adjacent and whose boxes are within the
   /// distance, always in the same order.
   /// @param found added to
-  void findCandidates(const KdopHierarchy& hierarchy, int first, int second,
-                      std::vector<ElementPair>& found);
+  void findCandidates(int first, int second, Scratch& scratch,
+                      std::vector<ElementPair>& found) const;
 
  private:
   using Box = ElementBox;
-  enum Part { kVertices, kEdges, kTriangles, kParts };
   using Element = LeafElement;
-  // Of a part of a leaf, those that reach into a box.
-  struct Chosen {
-    std::vector<Element> element;
-    std::vector<Box> box;
-  };
 
   int beginOf(int leaf, int part) const { return begin_[kParts * std::size_t(leaf) + part]; }
-  void fit(const KdopHierarchy& hierarchy, int leaf);
   void choose(int leaf, const Box& within, Chosen* chosen) const;
   void addPairs(ElementPairKind kind, const Chosen& first, const Chosen& second,
                 std::vector<ElementPair>& found) const;
 
   std::vector<int> begin_;  // in element_, of each part of each leaf, and the end
   std::vector<Element> element_;
-  std::vector<Box> boxes_;            // of element_
-  std::vector<Box> around_;           // each leaf
-  std::vector<std::int64_t> fitted_;  // per leaf, in which step
+  std::vector<Box> boxes_;           // of element_
+  std::vector<Box> around_;          // each leaf
+  std::vector<std::int64_t> asked_;  // per leaf, in which step
   std::int64_t step_ = 0;
   float reach_ = 0.0f;  // m, distance with a margin
-  Chosen chosen_[2][kParts];
 };
 
 }  // namespace haptex::proximity

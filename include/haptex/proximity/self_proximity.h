@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "haptex/linear/thread_pool.h"
 #include "haptex/proximity/element_pair.h"
 #include "haptex/proximity/flat_regions.h"
 #include "haptex/proximity/kdop_hierarchy.h"
@@ -67,8 +68,9 @@ class SelfProximity {
   ///   curve, no two elements can touch: the bound of offset geometric contact (Chen et al., ACM
   ///   Trans. Graphics 44(4), 2025)
   /// @param cost added to, if given
+  /// @param pool shares the work if it is given, to the same answer
   void find(std::vector<NearPair>& found, std::vector<double>* bounds = nullptr,
-            SelfProximityCost* cost = nullptr);
+            SelfProximityCost* cost = nullptr, linear::ThreadPool* pool = nullptr);
 
   const MeshElements& elements() const { return elements_; }
   double distance() const { return distance_; }
@@ -77,6 +79,14 @@ class SelfProximity {
 
  private:
   using Pair = kernels::VolumePair;
+  /// Of the pairs of leaves, and what is found there.
+  struct Part {
+    LeafElements::Scratch scratch;
+    std::vector<ElementPair> candidates;  // of a pair of leaves
+    std::vector<NearPair> found;
+    std::int64_t distances = 0;
+  };
+  static constexpr int kParts = 16;
   struct Answer;
 
   void findNeighbours(const KdopHierarchy& hierarchy, bool& reference_touches);
@@ -84,6 +94,8 @@ class SelfProximity {
   void visit(const KdopHierarchy& hierarchy, int volume, bool leave_out);
   void visit(const KdopHierarchy& hierarchy, const Pair* pairs, int count);
   void compare(const KdopHierarchy& hierarchy, const Pair& leaves);
+  template <typename Test>
+  void testCandidates(const KdopHierarchy& hierarchy, linear::ThreadPool* pool, const Test& test);
   bool isNeighbour(const ElementPair& pair, const std::array<int, 4>& vertices) const;
 
   const KdopHierarchy& hierarchy_;
@@ -103,7 +115,9 @@ class SelfProximity {
   std::int64_t last_tests_ = 0;
   std::vector<Pair> front_, next_front_;
   std::vector<float> limits_;
-  std::vector<ElementPair> candidates_;
+  std::vector<Pair> leaf_pairs_;
+  std::vector<int> new_leaves_;
+  std::array<Part, kParts> parts_;
   SelfProximityCost cost_;
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "haptex/linear/thread_pool.h"
 #include "haptex/proximity/kdop_kernels.h"
 
 namespace haptex::proximity {
@@ -32,9 +33,11 @@ class SkyOcclusion {
 
   /// @param triangles vertex indices; triangles without area are allowed
   /// @param particles of the mesh
+  /// @param pool shares the work if it is given, to the same result; has to outlive this
   /// @throws std::invalid_argument naming a vertex that is no particle, or an instruction set that
   ///   the processor lacks
   SkyOcclusion(std::vector<std::array<int, 3>> triangles, std::size_t particles,
+               linear::ThreadPool* pool = nullptr,
                InstructionSet instruction_set = bestInstructionSet());
 
   /// One for every particle; both 1 where it has no triangle with an area. Does not allocate.
@@ -49,33 +52,42 @@ class SkyOcclusion {
     float x, y, z, unused;  // m: across a direction, and along it
   };
 
+  /// Along some of the directions, one after the other.
+  struct View {
+    View(std::size_t particles, std::size_t cells);
+    // By particle:
+    std::vector<Place> places;
+    float left = 0.0f, low = 0.0f, columns_per_metre = 0.0f, rows_per_metre = 0.0f;
+    std::vector<int> cell;
+    // By place in the order of cells, which are row by row: with some more that are nowhere.
+    std::vector<int> begin, order;
+    Numbers sorted_x, sorted_y, sorted_z;
+    std::vector<int> hidden;  // 1: along the direction, 2: against it
+    // Over its directions, by particle:
+    std::vector<float> total;  // cosines
+    std::vector<SkyShare> sums;
+  };
+  static constexpr int kViews = 4;  // any number of threads adds up the same
+
   void readPositions(const std::vector<Eigen::Vector3d>& positions);
   void sumNormals();
-  void project(const Eigen::Vector3f& direction);
-  void sort();
-  void cover();
-  void coverWithAvx2();
+  void look(int number);
+  void project(const Eigen::Vector3f& direction, View& view) const;
+  void sort(View& view) const;
+  void cover(View& view) const;
+  void coverWithAvx2(View& view) const;
   template <int kLanes>
-  void coverWith(const std::array<int, 3>& triangle);
-  void add(const Eigen::Vector3f& direction);
+  void coverWith(const std::array<int, 3>& triangle, View& view) const;
+  void add(const Eigen::Vector3f& direction, View& view) const;
 
   InstructionSet instruction_set_;
+  linear::ThreadPool* pool_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<Eigen::Vector3f> directions_;
   std::vector<Eigen::Vector3f> points_, normals_;  // by particle: m, and of length 1 or 0
   int columns_, rows_;                             // cells of the grid along x and y
-
-  // Along one direction. By particle:
-  std::vector<Place> places_;
-  float left_, low_, columns_per_metre_, rows_per_metre_;
-  std::vector<int> cell_;
-  // By place in the order of cells, which are row by row: with some more that are nowhere.
-  std::vector<int> begin_, order_;
-  Numbers sorted_x_, sorted_y_, sorted_z_;
-  std::vector<int> hidden_;  // 1: along the direction, 2: against it
-
-  std::vector<float> total_;  // by particle, cosines of all directions
-  std::vector<SkyShare> sums_, shares_;
+  std::vector<View> views_;
+  std::vector<SkyShare> shares_;
 };
 
 }  // namespace haptex::proximity

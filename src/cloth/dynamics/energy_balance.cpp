@@ -95,7 +95,7 @@ double EnergyBalance::growth(const Cloth& cloth, const ClothState& begin, const 
   growth -= std::max(0.0, contactWork(cloth, reactions, begin.positions, h));
   if (cloth.seamGap(begin.time) > 0.0) growth -= closingWork(cloth, begin, end);
   if (const SelfContact* self = cloth.selfContact()) {
-    growth -= std::max(0.0, self->obstacleWork(end.ofForces()));
+    growth -= std::max(0.0, self->obstacleWork(end.ofForces(pool_)));
   }
   if (cloth.forces().isDriven() && !(growth <= 0.0)) {
     const double at_end = std::max(0.0, h * drivenPower(cloth, end));

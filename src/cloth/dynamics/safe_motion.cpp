@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "haptex/linear/shared_rows.h"
 #include "haptex/proximity/continuous.h"
 
 namespace haptex::cloth {
@@ -21,9 +22,11 @@ constexpr double kLeast = 1e-12, kKeptBelow = 1.0 - 1e-9;
 
 }  // namespace
 
-SafeMotion::SafeMotion(std::size_t particles, double margin, std::vector<double> of_sides)
+SafeMotion::SafeMotion(std::size_t particles, double margin, std::vector<double> of_sides,
+                       linear::ThreadPool* pool)
     : margin_(margin),
       of_sides_(std::move(of_sides)),
+      pool_(pool),
       place_(particles),
       left_(particles),
       way_(particles),
@@ -58,7 +61,7 @@ MotionCut SafeMotion::go(NearPairs& near, NearObstacles* obstacles,
     // Short ways need no new search: they bring nothing to the margin from farther away.
     const double reach = kOfReach * kKnown * near.searched();
     known_ = std::min(kKnown * near.searched(), 2.0 * std::sqrt(longest) + margin_);
-    if (!near.find(place_, known_)) break;
+    if (!near.find(place_, known_, pool_)) break;
     chooseWays(reach, true);
     if (obstacles != nullptr && !chooseObstaclePairs(*obstacles)) {
       chooseWays(reach, false);
@@ -154,16 +157,20 @@ bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles
   neighbour_stops_.assign(near.neighbours().size(), 0);
   obstacle_stops_.assign(at_obstacles.size(), 0);
   std::fill(changed_.begin(), changed_.end(), 0);
+  // Most pairs do not touch, and threads find those; what others shorten is looked at once more.
+  const bool all_are_known = pool_ != nullptr;
+  if (all_are_known) touchAll(near, longest);
   bool stopped = true;
   for (round_ = 1; stopped; ++round_) {
     stopped = false;
     for (std::size_t p = 0; p < stops_.size(); ++p) {
       const Pair& pair = near.pairs()[p];
       if (near.isBeyond(pair, margin_ + 2.0 * longest)) continue;
-      stopped = stopBeforeContact(pair, stops_[p]) || stopped;
+      const bool is_known = all_are_known && round_ == 1;
+      stopped = stopBeforeContact(pair, is_known ? &touches_[p] : nullptr, stops_[p]) || stopped;
     }
     for (std::size_t p = 0; p < neighbour_stops_.size(); ++p) {
-      stopped = stopBeforeContact(near.neighbours()[p], neighbour_stops_[p]) || stopped;
+      stopped = stopBeforeContact(near.neighbours()[p], nullptr, neighbour_stops_[p]) || stopped;
     }
     for (std::size_t p = 0; p < obstacle_stops_.size(); ++p) {
       if (is_common && mayHaveChanged(at_obstacles[p]) && touch(at_obstacles[p])) {
@@ -171,10 +178,22 @@ bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles
         return false;
       }
       if (is_common || obstacles->isBeyond(at_obstacles[p], 0.5 * margin_ + longest)) continue;
-      stopped = stopBeforeContact(at_obstacles[p], obstacle_stops_[p]) || stopped;
+      stopped = stopBeforeContact(at_obstacles[p], nullptr, obstacle_stops_[p]) || stopped;
     }
   }
   return true;
+}
+
+/// On the ways as they are.
+void SafeMotion::touchAll(const NearPairs& near, double longest) {
+  touches_.resize(near.pairs().size());
+  linear::shareRows(pool_, static_cast<int>(touches_.size()), [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) {
+      const Pair& pair = near.pairs()[p];
+      touches_[p].reset();
+      if (!near.isBeyond(pair, margin_ + 2.0 * longest)) touches_[p] = touch(pair);
+    }
+  });
 }
 
 /// Whether the way of one of its particles has, in this round or the one before.
@@ -244,11 +263,16 @@ double SafeMotion::firstTouch(const std::vector<Pair>& pairs, const Pair** first
   return earliest;
 }
 
+/// @param known how it touches if nothing has shortened a way yet; null: that is not known
 /// @param stops how often the pair has stopped its particles
 /// @return whether it does now
-bool SafeMotion::stopBeforeContact(const Pair& pair, char& stops) {
+bool SafeMotion::stopBeforeContact(const Pair& pair, const std::optional<Touch>* known,
+                                   char& stops) {
   if (stops > kMostStops || !mayHaveChanged(pair)) return false;
-  const auto found = touch(pair);
+  const bool is_as_known =
+      known != nullptr && std::all_of(pair.vertices.begin(), pair.vertices.end(),
+                                      [&](int vertex) { return changed_[vertex] == 0; });
+  const auto found = is_as_known ? *known : touch(pair);
   if (!found) return false;
   ++stops;
   if (stops > kMostStops || found->time <= 0.0) {

@@ -62,7 +62,7 @@ void SafeMotion::advanceObstacles(double share, const Vectors& end) {
 double SafeMotion::pushOn(NearPairs& near, NearObstacles& obstacles, MotionCut& cut) {
   const Vectors& end = obstacles.surfaces().atEnd();
   const double known = kKnown * near.searched();
-  if (!near.find(place_, known)) return 0.0;
+  if (!near.find(place_, known, pool_)) return 0.0;
   obstacles.find(place_, obstacle_place_, known);
   double longest = 0.0;
   for (std::size_t k = 0; k < end.size(); ++k) {

@@ -71,7 +71,7 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
     load_change_ = solution_;
   }
   if (const SelfContact* self = cloth.selfContact()) {
-    motion_.emplace(cloth.particleCount(), self->margin(), self->particleMargins());
+    motion_.emplace(cloth.particleCount(), self->margin(), self->particleMargins(), pool_.get());
     response_ = solution_;
   }
   if (!cloth.ties().empty()) sewn_velocities_.resize(cloth.particleCount());

@@ -247,7 +247,11 @@ void ClothSurface::take(const haptex::ClothState& state) {
   sumTriangles();
   if (!looks_.empty()) sumAxes();
   const bool shadowed = self_shadow_ && eye_;
-  if (shadowed && !sky_) sky_.emplace(triangles_, points_.size());
+  if (shadowed && !sky_) {
+    constexpr int kThreads = 2;
+    sky_threads_.emplace(kThreads);
+    sky_.emplace(triangles_, points_.size(), &*sky_threads_);
+  }
   sky_shares_ = shadowed ? &sky_->compute(points_) : nullptr;
   markExcluded(state);
   colourVertices();

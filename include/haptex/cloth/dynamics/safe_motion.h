@@ -35,7 +35,9 @@ class SafeMotion {
   /// @param margin    m, > 0, of all pairs at most
   /// @param of_sides m, of each particle; the margin of a pair is the sum of the least ones of its
   ///   two elements. Empty: each has half of the margin
-  SafeMotion(std::size_t particles, double margin, std::vector<double> of_sides = {});
+  /// @param pool shares the work if it is given, to the same ways; has to outlive this
+  SafeMotion(std::size_t particles, double margin, std::vector<double> of_sides = {},
+             linear::ThreadPool* pool = nullptr);
 
   /// @param near of the cloth
   /// @param obstacles null if there are none. Stay where they are at the end of the step
@@ -75,7 +77,8 @@ class SafeMotion {
   void chooseWays(double reach, bool common);
   bool chooseObstaclePairs(NearObstacles& obstacles);
   bool stopOnWay(const NearPairs& near, const NearObstacles* obstacles);
-  bool stopBeforeContact(const Pair& pair, char& stops);
+  void touchAll(const NearPairs& near, double longest);
+  bool stopBeforeContact(const Pair& pair, const std::optional<Touch>* known, char& stops);
   void limit(const Pair& pair, double share, double most);
   std::optional<Touch> touch(const Pair& pair) const;
   bool mayHaveChanged(const Pair& pair) const;
@@ -97,6 +100,7 @@ class SafeMotion {
 
   double margin_;                 // m
   std::vector<double> of_sides_;  // m
+  linear::ThreadPool* pool_;
   // Of the motion at hand.
   const NearPairs* near_ = nullptr;
   const NearObstacles* obstacles_ = nullptr;  // null if there are none
@@ -114,6 +118,7 @@ class SafeMotion {
   // Per pair, how often it has stopped or carried something.
   std::vector<char> stops_, neighbour_stops_, obstacle_stops_;
   int round_ = 0;
+  std::vector<std::optional<Touch>> touches_;  // of the pairs on ways that nothing has shortened
 };
 
 }  // namespace haptex::cloth

@@ -118,7 +118,8 @@ class ClothSurface {
   double opacity_ = 1.0;
   std::optional<Eigen::Vector3d> eye_;
   bool self_shadow_ = false;
-  std::optional<proximity::SkyOcclusion> sky_;                    // once there was self-shadow
+  std::optional<linear::ThreadPool> sky_threads_;                 // once there was self-shadow
+  std::optional<proximity::SkyOcclusion> sky_;                    // likewise
   const std::vector<proximity::SkyShare>* sky_shares_ = nullptr;  // of sky_, with an eye
   std::vector<Triangle> triangles_;                               // of particles
   std::vector<int> triangle_fabrics_;                             // empty: all are of the first

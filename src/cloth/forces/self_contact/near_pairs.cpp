@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "haptex/base/require.h"
+#include "haptex/linear/shared_rows.h"
 
 namespace haptex::cloth {
 namespace {
@@ -66,7 +67,8 @@ bool NearPairs::isInTangle(const Pair& pair) const {
   return ((first[0] & second[1]) | (first[1] & second[0])) != 0;
 }
 
-bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
+bool NearPairs::find(const std::vector<Vector3d>& positions, double distance,
+                     linear::ThreadPool* pool) {
   if (!searched_at_.empty()) {
     const double moved = farthestBeyondCommon(positions, searched_at_);
     if (moved <= 0.5 * (searched() - distance)) {
@@ -79,17 +81,55 @@ bool NearPairs::find(const std::vector<Vector3d>& positions, double distance) {
   };
   if (!std::all_of(positions.begin(), positions.end(), is_allowed)) return false;
   hierarchy_.refit(positions);
-  self_.find(found_);
+  self_.find(found_, nullptr, nullptr, pool);
   searched_at_ = positions;
   moved_ = 0.0;
-  pairs_.clear();
-  for (const proximity::NearPair& pair : found_) {
-    pairs_.push_back(named(pair.elements));
-    pairs_.back().distance = pair.nearest.distance;
-    if (isInTangle(pairs_.back())) pairs_.pop_back();
+  keys_.clear();
+  for (std::size_t place = 0; place < found_.size(); ++place) {
+    const auto& [kind, first, second] = found_[place].elements;
+    const auto number = [](auto value) { return static_cast<std::uint64_t>(value); };
+    keys_.push_back({number(kind) << 62 | number(first) << 31 | number(second), place});
   }
-  std::sort(pairs_.begin(), pairs_.end());
+  sortKeys(pool);
+  pairs_.resize(keys_.size());
+  linear::shareRows(pool, static_cast<int>(keys_.size()), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const proximity::NearPair& pair = found_[keys_[i].place];
+      pairs_[i] = named(pair.elements);
+      pairs_[i].distance = pair.nearest.distance;
+    }
+  });
+  if (!sides_.first.empty()) {
+    const auto in_tangle = [&](const Pair& pair) { return isInTangle(pair); };
+    pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), in_tangle), pairs_.end());
+  }
   return true;
+}
+
+/// Threads sort parts of them, and merge these two by two.
+void NearPairs::sortKeys(linear::ThreadPool* pool) {
+  constexpr std::size_t kParts = 8;
+  const auto less = [](const Key& a, const Key& b) { return a.elements < b.elements; };
+  if (pool == nullptr) {
+    std::sort(keys_.begin(), keys_.end(), less);
+    return;
+  }
+  const auto at = [&](std::size_t part) {
+    return static_cast<std::ptrdiff_t>(keys_.size() * part / kParts);
+  };
+  pool->run(kParts, [&](int part, int) {
+    std::sort(keys_.begin() + at(part), keys_.begin() + at(part + 1), less);
+  });
+  merged_.resize(keys_.size());
+  for (std::size_t sorted = 1; sorted < kParts; sorted *= 2) {  // parts, in a row
+    pool->run(static_cast<int>(kParts / sorted / 2), [&](int task, int) {
+      const std::size_t first = 2 * sorted * task;
+      const auto begin = keys_.begin();
+      std::merge(begin + at(first), begin + at(first + sorted), begin + at(first + sorted),
+                 begin + at(first + 2 * sorted), merged_.begin() + at(first), less);
+    });
+    keys_.swap(merged_);
+  }
 }
 
 /// Infinite where one is not a number.

@@ -115,8 +115,8 @@ bool SelfContact::leaveOut(const TangleSides& sides, const std::vector<TangleLin
   return changed;
 }
 
-const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions,
-                                                     bool at_end) const {
+const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions, bool at_end,
+                                                     linear::ThreadPool* pool) const {
   const int revision = obstacles_ ? obstacles_->surfaces().revision() : 0;
   at_end = at_end || !obstacles_ || !obstacles_->surfaces().moved();
   if (at_end == touching_at_end_ && revision == touching_revision_ && positions == touching_at_) {
@@ -124,7 +124,7 @@ const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions,
   }
   touching_at_end_ = at_end;
   touching_revision_ = revision;
-  if (!near_.find(positions, layers().thickness())) {
+  if (!near_.find(positions, layers().thickness(), pool)) {
     touching_.clear();
     touching_at_.clear();
     return touching_;
@@ -161,14 +161,14 @@ Vector3d SelfContact::frictionAt(const PairEnergy& pair, const Velocities& veloc
 
 double SelfContact::energy(const ForceState& state) const {
   double energy = 0.0;
-  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time))) {
+  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time), state.pool)) {
     energy += pair.energy;
   }
   return touching_at_.empty() ? std::numeric_limits<double>::quiet_NaN() : energy;
 }
 
 void SelfContact::addForces(const ForceState& state, std::vector<Vector3d>& forces) const {
-  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time))) {
+  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time), state.pool)) {
     const Vector3d friction = frictionAt(pair, state.velocities);
     for (int i = 0; i < pair.count; ++i) {
       forces[pair.vertices[i]] += pair.weights[i] * friction - pair.gradient(i);
@@ -178,7 +178,7 @@ void SelfContact::addForces(const ForceState& state, std::vector<Vector3d>& forc
 
 Vector3d SelfContact::forceOn(int obstacle, const ForceState& state) const {
   Vector3d sum = Vector3d::Zero();
-  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time))) {
+  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time), state.pool)) {
     if (pair.obstacle != obstacle) continue;
     sum -= pair.force * pair.normal + frictionAt(pair, state.velocities);
   }
@@ -188,7 +188,7 @@ Vector3d SelfContact::forceOn(int obstacle, const ForceState& state) const {
 double SelfContact::obstacleWork(const ForceState& end) const {
   if (!obstacles_ || !obstacles_->surfaces().moved()) return 0.0;
   double work = 0.0;
-  for (const PairEnergy& pair : touching(end.positions)) {
+  for (const PairEnergy& pair : touching(end.positions, true, end.pool)) {
     if (pair.obstacle < 0) continue;
     work += (pair.force * pair.normal + frictionAt(pair, end.velocities)).dot(pair.way);
   }
@@ -198,7 +198,7 @@ double SelfContact::obstacleWork(const ForceState& end) const {
 void SelfContact::addJacobian(const ForceState& state, JacobianRows& rows) const {
   constexpr double kWay = 1e-8, kSpeed = 1e-6;  // m, m/s
   std::vector<int> moved;
-  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time))) {
+  for (const PairEnergy& pair : touching(state.positions, isEnd(state.time), state.pool)) {
     moved.insert(moved.end(), pair.vertices.begin(), pair.vertices.begin() + pair.count);
   }
   std::sort(moved.begin(), moved.end());
@@ -247,7 +247,7 @@ void SelfContact::addEnergies(const std::vector<PairEnergy>& pairs, double a,
 void SelfContact::assembleLinearised(const ForceState& state, const StageTimes& times,
                                      linear::SymmetricBlockMatrix& matrix,
                                      linear::BlockVector& rhs) const {
-  const std::vector<PairEnergy>& pairs = touching(state.positions, false);
+  const std::vector<PairEnergy>& pairs = touching(state.positions, false, state.pool);
   addEnergies(pairs, times.a, matrix, rhs);
   for (const PairEnergy& pair : pairs) {
     const Vector3d velocity = velocityOf(pair, state.velocities);
@@ -275,7 +275,7 @@ void SelfContact::hold(const NewtonStart& start, Vector3d* /*held*/) const {
   held_.clear();
   held_links_.clear();
   for (const TangleLink& link : links_) held_links_.push_back(weightedSum(link, start.base));
-  for (const PairEnergy& pair : touching(start.at.positions, !start.passive)) {
+  for (const PairEnergy& pair : touching(start.at.positions, !start.passive, start.at.pool)) {
     if (!(pair.force > 0.0)) continue;
     held_.push_back({pair.count, pair.vertices, pair.weights, pair.normal,
                      frictionOf(pair) * pair.force, weightedSum(pair, start.base) + pair.way});
@@ -285,7 +285,7 @@ void SelfContact::hold(const NewtonStart& start, Vector3d* /*held*/) const {
 void SelfContact::assembleNewton(const ForceState& state, const Vector3d* /*held*/, double a,
                                  Hessian /*hessian*/, linear::SymmetricBlockMatrix& matrix,
                                  linear::BlockVector& rhs) const {
-  addEnergies(touching(state.positions), a, matrix, rhs);
+  addEnergies(touching(state.positions, true, state.pool), a, matrix, rhs);
   for (const HeldFriction& pair : held_) {
     const Vector3d slip = tangential(weightedSum(pair, state.positions) - pair.start, pair.normal);
     const double way = slip.norm();

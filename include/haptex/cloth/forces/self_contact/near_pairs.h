@@ -54,9 +54,11 @@ class NearPairs {
   /// neighbours in the fabric.
   /// @param positions m
   /// @param distance  m, below searched()
+  /// @param pool      shares the work if it is given, to the same pairs
   /// @return false, and pairs() as before, if a position is not finite or beyond
   ///   proximity::kMaxLength
-  bool find(const std::vector<Eigen::Vector3d>& positions, double distance);
+  bool find(const std::vector<Eigen::Vector3d>& positions, double distance,
+            linear::ThreadPool* pool = nullptr);
   /// From now on pairs() and neighbours() are without those of an element on one side of a tangle
   /// and another one on its other side: these do not know on which side of each other they belong.
   /// @return whether that is a change
@@ -85,7 +87,12 @@ class NearPairs {
 
  private:
   static constexpr double kRounding = 1e-12;  // m, more than that of distances
+  struct Key {  // in whose order pairs are sorted: faster than these themselves
+    std::uint64_t elements;
+    std::size_t place;
+  };
 
+  void sortKeys(linear::ThreadPool* pool);
   Pair named(const proximity::ElementPair& pair) const;
   bool isInTangle(const Pair& pair) const;
 
@@ -95,6 +102,7 @@ class NearPairs {
   proximity::KdopHierarchy hierarchy_;
   proximity::SelfProximity self_;
   std::vector<proximity::NearPair> found_;
+  std::vector<Key> keys_, merged_;  // of found_
   std::vector<Pair> pairs_, neighbours_;
   std::vector<Pair> all_neighbours_;          // those in tangles, too
   TangleSides sides_;                         // empty if there are no tangles

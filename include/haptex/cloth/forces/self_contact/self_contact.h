@@ -65,7 +65,9 @@ class SelfContact final : public Force {
 
   /// What touches at these positions, the obstacles being where they are at the end of the step, or
   /// else at its beginning; empty where one of the positions is not finite.
-  const std::vector<PairEnergy>& touching(const Positions& positions, bool at_end = true) const;
+  /// @param pool shares the work if it is given
+  const std::vector<PairEnergy>& touching(const Positions& positions, bool at_end = true,
+                                          linear::ThreadPool* pool = nullptr) const;
   NearPairs& nearPairs() const { return near_; }
   /// NearPairs::leaveOut(), after which the energy is another one if that is a change. Steps damp
   /// what tangles do against themselves, so that nothing goes on through what has no contact; the
