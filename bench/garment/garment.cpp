@@ -60,7 +60,8 @@ void measure(const GarmentScene& scene, int starts) {
   int at_rest = 0;
   for (int seed = 1; seed <= starts; ++seed) {
     GarmentStart disturbed = start;
-    studies::disturb(disturbed.laid.garment.mesh, scene, static_cast<unsigned>(seed));
+    studies::disturb(disturbed.laid.garment.mesh, disturbed.laid.body, scene,
+                     static_cast<unsigned>(seed));
     at_rest += endsAtRest(disturbed, name + "start " + std::to_string(seed)) ? 1 : 0;
   }
   if (starts > 0) {

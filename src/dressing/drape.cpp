@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -32,6 +33,7 @@ constexpr int kMostHalvings = 8;
 constexpr double kThinner = 0.8;
 constexpr double kThinningSpeed = 0.05;       // m/s, of the fastest particle, from turn to turn
 constexpr double kFastenerStiffness = 200.0;  // N/m
+constexpr double kNearer = 0.98;              // than a gap, worth waiting for
 constexpr double kStepGrowth = 1.5;           // of a time step from step to step, at most
 
 void requireSound(const DrapeSettings& settings) {
@@ -156,13 +158,17 @@ class Dressing {
     OverdampedCloth cloth = makeCloth(garment_.mesh, smooth, effects, 0.0);
     SeamPull pull(garment_, settings_.tension);
     const double farthest = 0.5 * settings_.closing_speed * settings_.time_step;
-    double tried_at = 0.0;  // or it was not to be tried
+    double tried_at = 0.0;  // or it was not to be tried, or seams came nearer
+    double narrowest = std::numeric_limits<double>::infinity();  // m, gap, then
     while (true) {
       const std::vector<Vector3d>& positions = cloth.state().positions;
       outcome_.closed_gap = pull.gap(positions);
       const bool is_near = outcome_.closed_gap < settings_.sewn_gap;
       if (is_near && sew(positions)) return;
-      if (!is_near) tried_at = outcome_.closing_time;
+      if (!is_near || outcome_.closed_gap < kNearer * narrowest) {
+        tried_at = outcome_.closing_time;
+        narrowest = outcome_.closed_gap;
+      }
       if (outcome_.closing_time - tried_at >= settings_.patience) {
         if (outcome_.with_body == 0 && pullApart()) return;
         tried_at = outcome_.closing_time;

@@ -23,13 +23,16 @@ class TwoComputers:
     def __init__(self, folder):
         """@param folder for logs and ROS's home directories"""
         self.folder, self.processes, self.made = pathlib.Path(folder), [], []
+        self.cable = {}  # the network device of each
         try:
             for name in ADDRESSES:
                 ip('netns', 'add', self.space(name))
                 self.made.append(self.space(name))
-            cable = [f'hx{name[0]}{os.getpid()}' for name in ADDRESSES]
-            ip('link', 'add', cable[0], 'type', 'veth', 'peer', 'name', cable[1])
-            for end, (name, address) in zip(cable, ADDRESSES.items()):
+            self.cable = {name: f'hx{name[0]}{os.getpid()}' for name in ADDRESSES}
+            first, second = self.cable.values()
+            ip('link', 'add', first, 'type', 'veth', 'peer', 'name', second)
+            for name, address in ADDRESSES.items():
+                end = self.cable[name]
                 ip('link', 'set', end, 'netns', self.space(name))
                 ip('-n', self.space(name), 'address', 'add', f'{address}/30', 'dev', end)
                 for device in (end, 'lo'):

@@ -23,9 +23,9 @@ struct DrapeSettings {
   /// most. It keeps a distance from the body and from itself that sewing can do without.
   double thickness = 4e-3;
   double sewn_gap = 8e-3;  ///< m, of particles from the middle of their seam, that sewing closes
-  /// s: after so long such a state that would intersect itself when sewn is sewn for a trial, and
-  /// pulled apart (cloth::Untangling) for up to twice that time. If that fails seams go on closing,
-  /// up to the next trial.
+  /// s: after so long without a gap that is 2 % less, such a state that would intersect itself when
+  /// sewn is sewn for a trial, and pulled apart (cloth::Untangling) for up to twice that time. If
+  /// that fails seams go on closing, up to the next trial.
   double patience = 0.2;
   double most_closing_time = 20.0;  ///< s
   // From then on:

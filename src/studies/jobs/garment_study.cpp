@@ -90,7 +90,7 @@ std::string GarmentStudy::run(std::size_t unit) const {
   std::string reason;
   try {
     GarmentStart start = startOf(scene, settings_.config);
-    disturb(start.laid.garment.mesh, scene, seed);
+    disturb(start.laid.garment.mesh, start.laid.body, scene, seed);
     outcome = dressing::drape(start.laid.garment, start.fabrics, start.laid.body, start.settings);
   } catch (const std::exception& refusal) {
     reason = '\t' + asField(refusal.what());

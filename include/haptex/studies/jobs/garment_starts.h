@@ -33,8 +33,11 @@ struct GarmentStart {
 GarmentStart startOf(const GarmentScene& scene, const std::string& config);
 
 /// Moves the panels of a garment that is not sewn yet: each about its middle by a vector of up to
-/// scene.shift and an angle of up to scene.turn in every direction.
+/// scene.shift and an angle of up to scene.turn in every direction. Draws again until nothing
+/// intersects, with itself or with the body.
 /// @param seed the same one moves them alike
-void disturb(mesh::ClothMesh& mesh, const GarmentScene& scene, unsigned seed);
+/// @throws std::runtime_error if 100 draws intersect
+void disturb(mesh::ClothMesh& mesh, const mesh::ObstacleMesh& body, const GarmentScene& scene,
+             unsigned seed);
 
 }  // namespace haptex::studies
