@@ -3,7 +3,9 @@
 #pragma once
 
 #include <stdexcept>
+#include <vector>
 
+#include "haptex/base/constants.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric.h"
@@ -29,15 +31,22 @@ inline mesh::ClothMesh horizontalSheet(int cells) {
   return mesh;
 }
 
-/// Released where it lies flat, held along one edge.
+/// Cloth under gravity, of which some particles stay where they are.
 class HeldSheet {
  public:
+  /// Released where it lies flat, held along one edge.
   HeldSheet(const material::Fabric& fabric, int cells, const cloth::StepSettings& settings)
-      : cloth_(horizontalSheet(cells), fabric, effectsOf(fabric)),
+      : HeldSheet(horizontalSheet(cells), mesh::Side::kTop, fabric, settings) {}
+
+  /// @param held particles of the mesh
+  HeldSheet(const mesh::ClothMesh& mesh, const std::vector<int>& held,
+            const material::Fabric& fabric, bool self_collision,
+            const cloth::StepSettings& settings)
+      : cloth_(mesh, fabric, effectsOf(fabric, self_collision)),
         start_(cloth_.initialState()),
         state_(start_),
         integrator_(cloth_, settings) {
-    for (int particle : sideParticles(cloth_.mesh(), mesh::Side::kTop)) {
+    for (int particle : held) {
       cloth::AttachmentPath place;
       place.start = state_.positions[particle];
       cloth_.attach(particle, place);
@@ -48,7 +57,7 @@ class HeldSheet {
   const cloth::ClothState& state() const { return state_; }
   std::size_t triangleCount() const { return cloth_.mesh().triangles.size(); }
 
-  /// @throws std::runtime_error if it did not reach its tolerance
+  /// @throws std::runtime_error if it was rejected or did not reach its tolerance
   cloth::StepReport step(double time_step) {
     if (state_.time >= kFreeMotion) state_ = start_;
     const cloth::StepReport report = integrator_.step(cloth_, state_, time_step);
@@ -59,10 +68,15 @@ class HeldSheet {
   }
 
  private:
-  static cloth::ModelledEffects effectsOf(const material::Fabric& fabric) {
+  HeldSheet(const mesh::ClothMesh& mesh, mesh::Side held, const material::Fabric& fabric,
+            const cloth::StepSettings& settings)
+      : HeldSheet(mesh, sideParticles(mesh, held), fabric, false, settings) {}
+
+  static cloth::ModelledEffects effectsOf(const material::Fabric& fabric, bool self_collision) {
     cloth::ModelledEffects effects;
     effects.viscosity = !fabric.weft.viscous.isZero();
-    effects.gravity = {0.0, 0.0, -9.80665};
+    effects.gravity = {0.0, 0.0, -base::kStandardGravity};
+    effects.self_collision = self_collision;
     return effects;
   }
 

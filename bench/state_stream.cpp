@@ -10,14 +10,17 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/PointCloud2.h>
-#include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "haptex/base/parse_number.h"
 
 namespace {
 
@@ -26,19 +29,15 @@ using sensor_msgs::PointCloud2;
 constexpr double kPatience = 60.0;  // s, until all states are there
 constexpr int kFirst = 5;           // states that are not counted
 
-double processorMilliseconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto milliseconds = [](const timeval& time) {
-    return 1e3 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_usec);
-  };
-  return milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
-}
+double processorMilliseconds() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Numbers of a particle in a cloud. @throws std::invalid_argument if it is another form
-int numbersOf(const std::string& form) {
-  if (form == "single") return 9;
-  if (form == "positions") return 3;
+/// Numbers of a particle in a cloud.
+int numbersOf(const std::string& form) { return form == "single" ? 9 : 3; }
+
+/// Or a cloud. @throws std::invalid_argument if there is no such form
+bool isWhole(const std::string& form) {
+  if (form == "state") return true;
+  if (form == "single" || form == "positions") return false;
   throw std::invalid_argument("no form '" + form + "'; there is: state single positions");
 }
 
@@ -76,10 +75,18 @@ void convert(const haptex::ClothState& state, int numbers, PointCloud2& cloud) {
   }
 }
 
+/// @throws std::invalid_argument if it is none, or not above 0
+template <typename Number>
+Number positive(const std::string& name, const std::string& text) {
+  const auto number = haptex::base::parseNumber<Number>(text);
+  if (number && *number > 0 && std::isfinite(double(*number))) return *number;
+  throw std::invalid_argument(name + " is '" + text + "': must be a number above 0");
+}
+
 void send(const std::string& form, int cells, double rate) {
-  ros::NodeHandle node;
-  const bool whole = form == "state";
+  const bool whole = isWhole(form);
   const int numbers = whole ? 0 : numbersOf(form);
+  ros::NodeHandle node;
   const ros::Publisher publisher = whole ? node.advertise<haptex::ClothState>("state_stream", 1)
                                          : node.advertise<PointCloud2>("state_stream", 1);
   haptex::ClothState state = stateOf(static_cast<std::size_t>(cells + 1) * (cells + 1));
@@ -152,12 +159,13 @@ int main(int argc, char** argv) {
   try {
     const std::vector<std::string> arguments(argv + 1, argv + argc);
     if (arguments.size() == 4 && arguments[0] == "send") {
-      send(arguments[1], std::stoi(arguments[2]), std::stod(arguments[3]));
+      send(arguments[1], positive<int>("CELLS", arguments[2]),
+           positive<double>("RATE", arguments[3]));
     } else if (arguments.size() == 3 && arguments[0] == "receive") {
       const double begin = processorMilliseconds();
-      const int count = std::stoi(arguments[2]);
-      const Received received = arguments[1] == "state" ? receive<haptex::ClothState>(count)
-                                                        : receive<PointCloud2>(count);
+      const int count = positive<int>("COUNT", arguments[2]);
+      const Received received =
+          isWhole(arguments[1]) ? receive<haptex::ClothState>(count) : receive<PointCloud2>(count);
       print(received, processorMilliseconds() - begin);
     } else {
       throw std::invalid_argument("usage: state_stream send FORM CELLS RATE | receive FORM COUNT");

@@ -74,7 +74,7 @@ System systemOf(const bench::HeldSheet& sheet) {
   for (int i = 0; i < size; ++i) {
     const double mass = cloth.masses()[i];
     system.matrix.diagonal(i).diagonal().setConstant(mass);
-    system.rhs.col(i) = kTimeStep * mass * Eigen::Vector3d(0.0, 0.0, -9.80665);
+    system.rhs.col(i) = kTimeStep * mass * Eigen::Vector3d(0.0, 0.0, -base::kStandardGravity);
   }
   cloth.forces().assembleLinearised(sheet.state().ofForces(), {kTimeStep, kTimeStep}, system.matrix,
                                     system.rhs);
@@ -203,7 +203,7 @@ StepTimes timesOf(Sheet& sheet) {
 }
 
 void measureFolded(const material::Fabric& wool, int cells) {
-  bench::FoldedSheet sheet(wool, cells, settings());
+  bench::HeldSheet sheet = bench::foldedSheet(wool, cells, settings());
   const StepTimes times = timesOf(sheet);
   const std::string triangles = std::to_string(sheet.triangleCount());
   bench::printLine("scale/folded_wool/" + triangles, times.total, "ms");

@@ -137,12 +137,7 @@ void CoarseProduct::multiply(const BlockRows& fine, const Interpolation& interpo
       if (!fine.isAlone(row)) addRow(row, fine, interpolation, sums, coarse);
     }
   };
-  const auto addPart = [&](int part, int) { addRows(parts_[part], sums_[part]); };
-  if (pool != nullptr) {
-    pool->run(kParts, addPart);
-  } else {
-    for (int part = 0; part < kParts; ++part) addPart(part, 0);
-  }
+  runTasks(pool, kParts, [&](int part, int) { addRows(parts_[part], sums_[part]); });
   addRows(shared_, sums_[kParts]);
   for (int row = 0; row < coarse.size(); ++row) {
     Eigen::Map<Eigen::Matrix3f> diagonal(coarse.block(coarse.begin(row)));

@@ -130,8 +130,10 @@ void SelfProximity::find(std::vector<NearPair>& found, std::vector<double>* boun
     cost_.distances += part.distances;
     found.insert(found.end(), part.found.begin(), part.found.end());
   }
-  for (const NearPair& pair : found) {
-    answer.limit(verticesOf(pair.elements, elements_), pair.nearest.distance);
+  if (bounds != nullptr) {
+    for (const NearPair& pair : found) {
+      answer.limit(verticesOf(pair.elements, elements_), pair.nearest.distance);
+    }
   }
   for (std::size_t i = 0; i < neighbours_.size(); ++i) {
     const std::array<int, 4> vertices = verticesOf(neighbours_[i], elements_);
