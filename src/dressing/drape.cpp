@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -34,7 +35,24 @@ constexpr double kThinner = 0.8;
 constexpr double kThinningSpeed = 0.05;       // m/s, of the fastest particle, from turn to turn
 constexpr double kFastenerStiffness = 200.0;  // N/m
 constexpr double kNearer = 0.98;              // than a gap, worth waiting for
-constexpr double kStepGrowth = 1.5;           // of a time step from step to step, at most
+
+/// A way to close seams.
+struct Closing {
+  double onwards;  // see SeamPull::loads()
+  double tension;  // of that of the settings
+  bool thins;      // whether panels get thinner where what is sewn would intersect itself
+};
+
+// What is expected to go on reaches its seam in a few steps, and mostly is sewn there. Where the
+// sides of a seam come to lie over each other instead, all begins anew and goes slower. What is
+// pressed on itself so much there that it stands still is pulled by less. The last way is the first
+// one again, with what intersects itself pulled apart, as in all but that.
+constexpr Closing kClosings[] = {
+    {1.0, 1.0, false}, {0.2, 1.0, true}, {0.2, 0.25, true}, {1.0, 1.0, false}};
+
+// Panels whose seams do not close get thinner by so much each time, down to (m).
+constexpr double kThinnerOpen = 0.5, kThinnestOpen = 0.5e-3;
+constexpr double kStepGrowth = 1.5;  // of a time step from step to step, at most
 
 void requireSound(const DrapeSettings& settings) {
   const auto require = [](const char* name, double value) {
@@ -150,33 +168,72 @@ class Dressing {
   }
 
   void closeSeams() {
-    std::vector<material::Fabric> smooth = thickened(closingThickness());
+    while (!closeSeams(kClosings[closing_])) ++closing_;
+  }
+
+  /// How far seams are closed.
+  struct Closed {
+    SeamPull pull;
+    std::vector<Vector3d> positions;
+    double time = 0.0;  // s
+  };
+
+  /// From the start. @return whether it is sewn: if not, it is to be tried in another way
+  bool closeSeams(const Closing& closing) {
+    Closed closed{SeamPull(garment_, closing.tension * settings_.tension),
+                  garment_.mesh.initial_positions};
+    double thickness = closingThickness();
+    while (!closeSeams(closing, thickness, closed)) {
+      const bool is_late = closed.time > settings_.most_closing_time;
+      if (&closing == std::begin(kClosings) || is_late) return false;
+      if (closing.thins && outcome_.with_body > 0) return false;
+      const bool is_thinnest = !closing.thins || thickness <= kThinnestOpen;
+      if (is_thinnest && outcome_.with_body == 0 && pullApart()) return true;
+      if (closing.thins) thickness = std::max(kThinnerOpen * thickness, kThinnestOpen);
+    }
+    return true;
+  }
+
+  /// @return whether it is sewn: otherwise it would intersect, and waiting does not help
+  bool closeSeams(const Closing& closing, double thickness, Closed& closed) {
+    OverdampedCloth cloth = makeOpenCloth(closed.positions, thickness);
+    const double farthest = 0.5 * settings_.closing_speed * settings_.time_step;
+    double tried_at = closed.time;  // or it was not to be tried, or seams came nearer
+    double moved_at = closed.time;
+    double narrowest = std::numeric_limits<double>::infinity();  // m, gap, then
+    while (true) {
+      closed.positions = cloth.state().positions;
+      outcome_.closed_gap = closed.pull.gap(closed.positions);
+      const bool is_near = outcome_.closed_gap < settings_.sewn_gap;
+      if (is_near && sew(closed.positions)) return true;
+      if (!is_near || outcome_.closed_gap < kNearer * narrowest) {
+        tried_at = closed.time;
+        narrowest = outcome_.closed_gap;
+      }
+      const bool is_late = closed.time > settings_.most_closing_time;
+      if (is_late && (&closing == std::end(kClosings) - 1 || !is_near))
+        refuseGap(closed.pull, closed.positions);
+      // What intersects itself alone does not get better; what touches the body mostly glides on.
+      const bool glides =
+          closing.thins && outcome_.with_body > 0 && closed.time - moved_at < settings_.patience;
+      if (is_late || (closed.time - tried_at >= settings_.patience && !glides)) return false;
+      cloth.cloth().setPointLoads(closed.pull.loads(closed.positions, farthest, closing.onwards));
+      step(cloth, settings_.time_step, closed.time);
+      if (outcome_.fastest > 0.0) moved_at = closed.time;
+      outcome_.closing_time += settings_.time_step;
+    }
+  }
+
+  /// Panels whose seams close. @param positions m @param thickness m
+  OverdampedCloth makeOpenCloth(const std::vector<Vector3d>& positions, double thickness) const {
+    mesh::ClothMesh mesh = garment_.mesh;
+    mesh.initial_positions = positions;
+    std::vector<material::Fabric> smooth = thickened(thickness);
     for (material::Fabric& fabric : smooth) fabric.friction = 0.0;
     cloth::ModelledEffects effects;
     effects.gravity = {0.0, 0.0, settings_.lift};
     effects.bending = effects.contacts = effects.self_collision = effects.point_loads = true;
-    OverdampedCloth cloth = makeCloth(garment_.mesh, smooth, effects, 0.0);
-    SeamPull pull(garment_, settings_.tension);
-    const double farthest = 0.5 * settings_.closing_speed * settings_.time_step;
-    double tried_at = 0.0;  // or it was not to be tried, or seams came nearer
-    double narrowest = std::numeric_limits<double>::infinity();  // m, gap, then
-    while (true) {
-      const std::vector<Vector3d>& positions = cloth.state().positions;
-      outcome_.closed_gap = pull.gap(positions);
-      const bool is_near = outcome_.closed_gap < settings_.sewn_gap;
-      if (is_near && sew(positions)) return;
-      if (!is_near || outcome_.closed_gap < kNearer * narrowest) {
-        tried_at = outcome_.closing_time;
-        narrowest = outcome_.closed_gap;
-      }
-      if (outcome_.closing_time - tried_at >= settings_.patience) {
-        if (outcome_.with_body == 0 && pullApart()) return;
-        tried_at = outcome_.closing_time;
-      }
-      if (outcome_.closing_time > settings_.most_closing_time) refuseGap(pull, positions);
-      cloth.cloth().setPointLoads(pull.loads(positions, farthest));
-      step(cloth, settings_.time_step, outcome_.closing_time);
-    }
+    return makeCloth(mesh, smooth, effects, 0.0);
   }
 
   /// @return whether what is sewn there intersects nothing
@@ -289,6 +346,7 @@ class Dressing {
   const std::vector<material::Fabric> soft_;
   DrapeOutcome outcome_;
   std::vector<int> merged_;  // particles of the sewn mesh, for those of the garment
+  int closing_ = 0;          // of kClosings
 };
 
 }  // namespace

@@ -74,12 +74,11 @@ std::vector<Vector3d> SeamPull::middles(const std::vector<Vector3d>& positions) 
 }
 
 const std::vector<cloth::PointLoad>& SeamPull::loads(const std::vector<Vector3d>& positions,
-                                                     double farthest) {
+                                                     double farthest, double onwards) {
   std::vector<Vector3d> targets = middles(positions);
   std::vector<Vector3d> before = targets;
   before.swap(middles_before_);
-  // What goes on together as in the last step is not held back.
-  for (std::size_t i = 0; i < before.size(); ++i) targets[i] += targets[i] - before[i];
+  for (std::size_t i = 0; i < before.size(); ++i) targets[i] += onwards * (targets[i] - before[i]);
   loads_.clear();
   for (Member& member : members_) {
     if (sizes_[member.group] == 1) continue;

@@ -23,11 +23,12 @@ struct DrapeSettings {
   /// most. It keeps a distance from the body and from itself that sewing can do without.
   double thickness = 4e-3;
   double sewn_gap = 8e-3;  ///< m, of particles from the middle of their seam, that sewing closes
-  /// s: after so long without a gap that is 2 % less, such a state that would intersect itself when
-  /// sewn is sewn for a trial, and pulled apart (cloth::Untangling) for up to twice that time. If
-  /// that fails seams go on closing, up to the next trial.
+  /// s: after so long without a gap that is 2 % less, where what is sewn would intersect, panels
+  /// get thinner, or all begins anew in another way (drape()). In the end such a state that would
+  /// intersect itself is sewn for a trial, and pulled apart (cloth::Untangling) for up to twice
+  /// that time. If that fails seams go on closing, up to the next trial.
   double patience = 0.2;
-  double most_closing_time = 20.0;  ///< s
+  double most_closing_time = 40.0;  ///< s, of each way
   // From then on:
   int halvings = 0;            ///< how often edges are halved once the garment is sewn, 0 to 8
   double halved_speed = 5e-3;  ///< m/s: the fastest particle is slower than that when they are
@@ -56,7 +57,7 @@ struct DrapeOutcome {
   /// those at the end.
   mesh::ClothMesh mesh;
   double closed_gap = 0.0;     ///< m, the largest that sewing closed at once
-  double closing_time = 0.0;   ///< s
+  double closing_time = 0.0;   ///< s, what began anew included
   double settling_time = 0.0;  ///< s
   double fastest = 0.0;        ///< m/s, at the end
   int steps = 0;
@@ -72,7 +73,12 @@ struct DrapeOutcome {
 /// Sews a garment on a body that stands still, and lets it come to rest under gravity.
 ///
 /// 1. The sides of seams are pulled together without friction, and with a lift instead of weight.
-///    Panels touch the body and each other and pass through neither.
+///    Panels touch the body and each other and pass through neither. There are four
+///    ways, of which the next begins anew where one does not lead to what can be sewn. The middle
+///    of a seam is expected to go on as in the last step; or by a fifth of that, which takes
+///    longer, but sides of seams do not come to lie over each other, and panels get thinner where
+///    they would intersect themselves; or the same with a quarter of the tension; or the first one
+///    again.
 /// 2. As soon as all are near, and what is sewn together there intersects neither itself nor the
 ///    body, or can be pulled apart, they become one mesh.
 /// 3. That comes to rest with weight, thickness and friction as they are.

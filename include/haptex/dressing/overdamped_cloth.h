@@ -28,6 +28,8 @@ class OverdampedCloth {
   OverdampedCloth(const mesh::ClothMesh& mesh, const std::vector<material::Fabric>& fabrics,
                   const cloth::ModelledEffects& effects, std::vector<mesh::Obstacle> obstacles,
                   const OverdampedMotion& motion);
+  OverdampedCloth(const OverdampedCloth&) = delete;  // its parts refer to each other
+  OverdampedCloth& operator=(const OverdampedCloth&) = delete;
 
   cloth::Cloth& cloth() { return cloth_; }
   const cloth::ClothState& state() const { return state_; }
