@@ -33,7 +33,7 @@ haptex_end_last() {
 haptex_start_display() {
   local number
   mkfifo "$haptex_work/display"
-  Xvfb -displayfd 3 -screen 0 "${1}x24" 3>"$haptex_work/display" >"$haptex_work/xvfb.log" 2>&1 &
+  Xvfb -displayfd 3 -noreset -screen 0 "${1}x24" 3>"$haptex_work/display" >"$haptex_work/xvfb.log" 2>&1 &
   haptex_processes=($! "${haptex_processes[@]}")
   read -r number <"$haptex_work/display"
   export DISPLAY=":$number"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/base/constants.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/checks/cloth_oracles.h"
 #include "haptex/simulation/simulated_cloth.h"
@@ -31,7 +32,7 @@ scene::Scene swing(IntegrationMethod method) {
   for (Eigen::Vector3d& place : scene.mesh.initial_positions) {
     place = {-place.z() * std::sin(kAngle), place.y(), place.z() * std::cos(kAngle)};
   }
-  scene.effects.gravity = {0.0, 0.0, -9.80665};
+  scene.effects.gravity = {0.0, 0.0, -base::kStandardGravity};
   scene.effects.bending = true;
   scene.effects.viscosity = true;
   scene.time_step = kFrame;

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "haptex/base/constants.h"
 #include "haptex/kes/equilibrium.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/scene/quality_file.h"
@@ -74,7 +75,7 @@ scene::Scene swingScene(const material::Fabric& fabric, double cell_size) {
   scene.mesh = mesh::makeRectangle(studies::kSampleSize, studies::kSampleSize, cells, cells,
                                    mesh::Triangulation::kAlternating);
   scene.effects.viscosity = true;
-  scene.effects.gravity = {0.0, 0.0, -9.80665};
+  scene.effects.gravity = {0.0, 0.0, -base::kStandardGravity};
   scene.effects.bending = fabric.bending.has_value();
   scene.attached_particles = sideParticles(scene.mesh, mesh::Side::kTop);
   scene.time_step = kCycle;

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "haptex/base/constants.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/exact/elastica.h"
@@ -91,7 +92,7 @@ double secondsOfStep(const material::Fabric& fabric, Elasticity elasticity, int 
   cloth::ModelledEffects effects;
   effects.elasticity = elasticity;
   effects.bending = effects.viscosity = true;
-  effects.gravity = {0.0, 0.0, -9.80665};
+  effects.gravity = {0.0, 0.0, -base::kStandardGravity};
   cloth::Cloth cloth(mesh::makeRectangle(0.2, 0.2, cells, cells, mesh::Triangulation::kAlternating),
                      fabric, effects);
   cloth::ClothState state = cloth.initialState();

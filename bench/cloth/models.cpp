@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "haptex/base/constants.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/kes/virtual_test.h"
 #include "haptex/material/fabric_file.h"
@@ -51,7 +52,7 @@ void printTensileTests(const material::Fabric& fabric, const std::vector<double>
 void printStep(const material::Fabric& fabric, const Named& model) {
   cloth::ModelledEffects effects;
   effects.elasticity = model.elasticity;
-  effects.gravity = {0.0, 0.0, -9.80665};
+  effects.gravity = {0.0, 0.0, -base::kStandardGravity};
   mesh::ClothMesh mesh = mesh::makeRectangle(0.5, 0.5, 32, 32, mesh::Triangulation::kAlternating);
   for (Eigen::Vector3d& position : mesh.initial_positions) {
     position = {position.z(), position.y(), 0.0};
@@ -86,7 +87,7 @@ void writeHanging(const material::Fabric& fabric, const char* name, Elasticity e
   effects.contraction = contraction;
   effects.bending = true;
   effects.viscosity = true;
-  effects.gravity = {0.0, 0.0, -9.80665};
+  effects.gravity = {0.0, 0.0, -base::kStandardGravity};
   mesh::ClothMesh mesh =
       mesh::makeRectangle(1.0, 1.0, kCells, kCells, mesh::Triangulation::kAlternating);
   for (Eigen::Vector3d& place : mesh.initial_positions) {

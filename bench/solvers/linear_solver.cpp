@@ -13,6 +13,7 @@
 #include <Eigen/LU>
 
 #include "cholmod.h"
+#include "haptex/base/constants.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/linear/ordering.h"
 #include "haptex/material/fabric_file.h"
@@ -41,7 +42,7 @@ System makeSystem(int cells) {
   const material::Fabric fabric =
       material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/linear.yaml");
   cloth::ModelledEffects effects;
-  effects.gravity = {-9.80665, 0.0, 0.0};
+  effects.gravity = {-base::kStandardGravity, 0.0, 0.0};
   const cloth::Cloth cloth(mesh, fabric, effects);
   const int size = static_cast<int>(cloth.particleCount());
   System system{linear::SymmetricBlockMatrix(size, mesh.triangles),

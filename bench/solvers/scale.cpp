@@ -32,6 +32,7 @@
 #include "cholmod.h"
 #include "dumped_system.h"
 #include "folded_sheet.h"
+#include "haptex/base/constants.h"
 #include "haptex/linear/kept_factor.h"
 #include "haptex/linear/multigrid.h"
 #include "haptex/material/fabric_file.h"
@@ -188,8 +189,7 @@ struct StepTimes {
   double iterations = 0.0, solves = 0.0;
 };
 
-template <typename Sheet>
-StepTimes timesOf(Sheet& sheet) {
+StepTimes timesOf(bench::HeldSheet& sheet) {
   StepTimes times;
   for (int step = 0; step < kFirstSteps; ++step) sheet.step(kTimeStep);
   for (int step = 0; step < kSteps; ++step) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "haptex/base/constants.h"
 #include "haptex/contact/haptic_layer.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/oracles/exact/finger_geometry.h"
@@ -33,7 +34,7 @@ oracles::HapticLoopSettings woolSample(double large_scale_step) {
   settings.effects.viscosity = true;
   settings.effects.bending = true;
   settings.effects.elasticity = scene::usualElasticity(settings.effects);
-  settings.effects.gravity = Vector3d(0.0, 0.0, -9.80665);
+  settings.effects.gravity = Vector3d(0.0, 0.0, -base::kStandardGravity);
   settings.attached_particles = mesh::sideParticles(settings.mesh, mesh::Side::kTop);
   settings.large_scale_step = large_scale_step;
   settings.step.newton_iterations = 2;

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "haptex/base/constants.h"
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/material/fabric_file.h"
@@ -241,7 +242,7 @@ void printEquality(const Case& c) {
 /// the sheet swings from one edge for two seconds at 80 states per second.
 double movedInSwing(const Case& c) {
   cloth::ModelledEffects effects;
-  effects.gravity = {9.80665, 0.0, 0.0};  // across the hanging sheet
+  effects.gravity = {base::kStandardGravity, 0.0, 0.0};  // across the hanging sheet
   cloth::Cloth cloth(c.mesh, material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/linear.yaml"),
                      effects);
   for (const int particle : mesh::sideParticles(c.mesh, mesh::Side::kTop)) {

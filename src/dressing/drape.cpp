@@ -36,19 +36,16 @@ constexpr double kThinningSpeed = 0.05;       // m/s, of the fastest particle, f
 constexpr double kFastenerStiffness = 200.0;  // N/m
 constexpr double kNearer = 0.98;              // than a gap, worth waiting for
 
-/// A way to close seams.
+/// A way to close seams, and what is done where they would be sewn through themselves.
 struct Closing {
-  double onwards;  // see SeamPull::loads()
-  double tension;  // of that of the settings
-  bool thins;      // whether panels get thinner where what is sewn would intersect itself
+  double onwards;    // see SeamPull::loads()
+  bool thins;        // whether panels get thinner
+  bool pulls_apart;  // whether they are sewn all the same, and then pulled apart
 };
 
 // What is expected to go on reaches its seam in a few steps, and mostly is sewn there. Where the
-// sides of a seam come to lie over each other instead, all begins anew and goes slower. What is
-// pressed on itself so much there that it stands still is pulled by less. The last way is the first
-// one again, with what intersects itself pulled apart, as in all but that.
-constexpr Closing kClosings[] = {
-    {1.0, 1.0, false}, {0.2, 1.0, true}, {0.2, 0.25, true}, {1.0, 1.0, false}};
+// sides of a seam come to lie over each other instead, all begins anew and goes slower.
+constexpr Closing kClosings[] = {{1.0, false, false}, {0.2, true, true}, {1.0, false, true}};
 
 // Panels whose seams do not close get thinner by so much each time, down to (m).
 constexpr double kThinnerOpen = 0.5, kThinnestOpen = 0.5e-3;
@@ -146,6 +143,14 @@ class Dressing {
     return std::min(settings_.thickness, 0.5 * altitude);
   }
 
+  /// m, of the fabrics as they are.
+  double leastThickness() const {
+    const auto thinner = [](const material::Fabric& a, const material::Fabric& b) {
+      return a.compression->thickness < b.compression->thickness;
+    };
+    return std::min_element(fabrics_.begin(), fabrics_.end(), thinner)->compression->thickness;
+  }
+
   bool hasLayers() const {
     const std::vector<garment::Panel>& panels = garment_.pattern.panels;
     return std::any_of(panels.begin(), panels.end(), [&](const garment::Panel& panel) {
@@ -156,11 +161,7 @@ class Dressing {
   /// From what the garment was sewn with to its fabrics as they are, in turns: where layers lie on
   /// each other they would be out of equilibrium everywhere otherwise, and too near to move.
   void thin() {
-    const auto thinner = [](const material::Fabric& a, const material::Fabric& b) {
-      return a.compression->thickness < b.compression->thickness;
-    };
-    const double least =
-        std::min_element(fabrics_.begin(), fabrics_.end(), thinner)->compression->thickness;
+    const double least = leastThickness();
     double thickness = closingThickness();
     settle(thickened(thickness), settings_.halved_speed);
     while ((thickness *= kThinner) > least) settle(thickened(thickness), kThinningSpeed);
@@ -168,7 +169,8 @@ class Dressing {
   }
 
   void closeSeams() {
-    while (!closeSeams(kClosings[closing_])) ++closing_;
+    const Closing* closing = std::begin(kClosings);
+    while (!closeSeams(*closing, closing + 1 == std::end(kClosings))) ++closing;
   }
 
   /// How far seams are closed.
@@ -179,23 +181,27 @@ class Dressing {
   };
 
   /// From the start. @return whether it is sewn: if not, it is to be tried in another way
-  bool closeSeams(const Closing& closing) {
-    Closed closed{SeamPull(garment_, closing.tension * settings_.tension),
-                  garment_.mesh.initial_positions};
+  bool closeSeams(const Closing& closing, bool is_last) {
+    Closed closed{SeamPull(garment_, settings_.tension), garment_.mesh.initial_positions};
     double thickness = closingThickness();
-    while (!closeSeams(closing, thickness, closed)) {
+    bool is_sewn = false, goes_on = true;
+    while (!is_sewn && goes_on) {
+      is_sewn = closeSeams(closing, is_last, thickness, closed);
+      if (is_sewn) break;
+      const double thinnest = std::max(kThinnestOpen, leastThickness());
       const bool is_late = closed.time > settings_.most_closing_time;
-      if (&closing == std::begin(kClosings) || is_late) return false;
-      if (closing.thins && outcome_.with_body > 0) return false;
-      const bool is_thinnest = !closing.thins || thickness <= kThinnestOpen;
-      if (is_thinnest && outcome_.with_body == 0 && pullApart()) return true;
-      if (closing.thins) thickness = std::max(kThinnerOpen * thickness, kThinnestOpen);
+      const bool is_thinnest = !closing.thins || thickness <= thinnest || is_late;
+      const bool intersects_body = outcome_.with_body > 0;
+      is_sewn = closing.pulls_apart && is_thinnest && !intersects_body && pullApart();
+      goes_on = closing.pulls_apart && !is_late && !(closing.thins && intersects_body);
+      if (closing.thins) thickness = std::max(kThinnerOpen * thickness, thinnest);
     }
-    return true;
+    outcome_.closing_time += closed.time;
+    return is_sewn;
   }
 
   /// @return whether it is sewn: otherwise it would intersect, and waiting does not help
-  bool closeSeams(const Closing& closing, double thickness, Closed& closed) {
+  bool closeSeams(const Closing& closing, bool is_last, double thickness, Closed& closed) {
     OverdampedCloth cloth = makeOpenCloth(closed.positions, thickness);
     const double farthest = 0.5 * settings_.closing_speed * settings_.time_step;
     double tried_at = closed.time;  // or it was not to be tried, or seams came nearer
@@ -211,8 +217,7 @@ class Dressing {
         narrowest = outcome_.closed_gap;
       }
       const bool is_late = closed.time > settings_.most_closing_time;
-      if (is_late && (&closing == std::end(kClosings) - 1 || !is_near))
-        refuseGap(closed.pull, closed.positions);
+      if (is_late && (is_last || !is_near)) refuseGap(closed.pull, closed.positions);
       // What intersects itself alone does not get better; what touches the body mostly glides on.
       const bool glides =
           closing.thins && outcome_.with_body > 0 && closed.time - moved_at < settings_.patience;
@@ -220,7 +225,6 @@ class Dressing {
       cloth.cloth().setPointLoads(closed.pull.loads(closed.positions, farthest, closing.onwards));
       step(cloth, settings_.time_step, closed.time);
       if (outcome_.fastest > 0.0) moved_at = closed.time;
-      outcome_.closing_time += settings_.time_step;
     }
   }
 
@@ -346,7 +350,6 @@ class Dressing {
   const std::vector<material::Fabric> soft_;
   DrapeOutcome outcome_;
   std::vector<int> merged_;  // particles of the sewn mesh, for those of the garment
-  int closing_ = 0;          // of kClosings
 };
 
 }  // namespace

@@ -47,8 +47,8 @@ TEST(SeamPull, ExpectsTheMiddleToGoOnAsFarAsItIsTold) {
     SeamPull pull(twoTriangles(), kTension);
     pull.loads(places(4e-3, 0.0), kFarthest, onwards);
     for (const cloth::PointLoad& load : pull.loads(places(4e-3, kWay), kFarthest, onwards)) {
-      const double corner = load.weights.dot(Vector3d(0.0, kEdge, 0.0));
-      const double at = load.triangle == 0 ? corner : kEdge * load.weights[2];
+      const int end = load.triangle == 0 ? 1 : 2;  // corner of the triangle where the edge ends
+      const double at = kEdge * load.weights[end];
       EXPECT_NEAR(load.position.x() - at, (1.0 + onwards) * kWay, 1e-15) << onwards;
     }
   }
@@ -56,9 +56,9 @@ TEST(SeamPull, ExpectsTheMiddleToGoOnAsFarAsItIsTold) {
 
 TEST(SeamPull, PullsHarderWhereNothingComesNearerUpTo20Times) {
   SeamPull pull(twoTriangles(), kTension);
-  double before = 0.0, stiffness = 0.0;
+  double stiffness = 0.0;
   for (int step = 0; step < 200; ++step) {
-    before = stiffness;
+    const double before = stiffness;
     stiffness = pull.loads(places(20e-3, 0.0), kFarthest, 0.2).front().stiffness(0, 0);
     EXPECT_GE(stiffness, before);
   }

@@ -103,7 +103,7 @@ class Shell:
             probe.bind(('', 0))
             port = probe.getsockname()[1]
         reader, writer = os.pipe()
-        self.display = subprocess.Popen(['Xvfb', '-displayfd', str(writer), '-screen', '0', '800x600x24'],
+        self.display = subprocess.Popen(['Xvfb', '-displayfd', str(writer), '-noreset', '-screen', '0', '800x600x24'],
                                         pass_fds=[writer], stdout=subprocess.DEVNULL,
                                         stderr=subprocess.DEVNULL)
         os.close(writer)

@@ -18,9 +18,9 @@ class SeamPull {
 
   /// @param positions m, of the garment's particles
   /// @param farthest  m, > 0: how far a particle is pulled in a step at most
-  /// @param onwards   0 to 1: what of its way in the last step the middle of a group is expected to
-  /// go
-  ///   on. What moves together is held back less with more, but a blow goes on until the next one
+  /// @param onwards   0 to 1: by which part of its way in the last step the middle of a group is
+  ///   expected to go on. With more, what moves together is held back less, but a blow goes on
+  ///   until the next one
   const std::vector<cloth::PointLoad>& loads(const std::vector<Eigen::Vector3d>& positions,
                                              double farthest, double onwards);
   /// m, the largest distance of a particle from the middle of its group.

@@ -11,6 +11,7 @@ namespace haptex::cloth {
 namespace {
 
 using Eigen::Vector3d;
+using proximity::ElementPairKind;
 
 constexpr int kMostWays = 16, kMostWaysAmongObstacles = 64;
 // What comes near stops half way into the thickness, where the pressure is still small, what is
@@ -19,6 +20,28 @@ constexpr double kKept = 0.8;
 // Needles that are neighbours at rest have no pressure: a fifth less on every way, their distance
 // would be below the rounding of their places after a hundred. Below this one (m) it stays.
 constexpr double kLeast = 1e-12, kKeptBelow = 1.0 - 1e-9;
+// Of the margin: so near, edges that turn past each other part as a solve means it only on ways far
+// shorter than it asks for, and would come nearer in every iteration.
+constexpr double kPressed = 0.03;
+
+/// Of the nearest points of two elements.
+struct Separation {
+  Eigen::Vector4d weights;  // of the vertices: sum w_i x_i = distance normal
+  double distance;          // m
+  Vector3d normal;          // zero where both are the same
+};
+
+Separation separationOf(ElementPairKind kind, const std::array<Vector3d, 4>& places) {
+  const proximity::PairDistance nearest = proximity::distanceOf(kind, places);
+  Separation separation{nearest.weights, nearest.distance, Vector3d::Zero()};
+  const int first_end = kind == ElementPairKind::kVertexTriangle ? 1 : 2;
+  for (int i = 0; i < 4; ++i) {
+    if (i >= first_end) separation.weights[i] *= -1.0;
+    separation.normal += separation.weights[i] * places[i];
+  }
+  separation.normal.normalize();
+  return separation;
+}
 
 }  // namespace
 
@@ -46,6 +69,7 @@ MotionCut SafeMotion::go(NearPairs& near, NearObstacles* obstacles,
   near_ = &near;
   obstacles_ = obstacles;
   place_ = from;
+  to_ = to;
   if (obstacles != nullptr) obstacle_place_ = obstacles->surfaces().atEnd();
   obstacle_pairs_ = nullptr;
   stopped_by_.assign(particles, {-1, -1, -1, -1});
@@ -54,7 +78,7 @@ MotionCut SafeMotion::go(NearPairs& near, NearObstacles* obstacles,
     double longest = 0.0;
     for (std::size_t i = 0; i < particles; ++i) {
       const bool stopped = stopped_by_[i][0] >= 0;
-      left_[i] = stopped ? Vector3d::Zero() : Vector3d(to[i] - place_[i]);
+      left_[i] = stopped ? Vector3d::Zero() : Vector3d(to_[i] - place_[i]);
       longest = std::max(longest, left_[i].squaredNorm());
     }
     if (longest == 0.0) break;
@@ -76,7 +100,7 @@ MotionCut SafeMotion::go(NearPairs& near, NearObstacles* obstacles,
       const Vector3d way = common_ + way_[i];
       const bool whole = (way - left_[i]).squaredNorm() <= 1e-24 * left_[i].squaredNorm();
       if (stopped_by_[i][0] < 0 && whole) {
-        place_[i] = to[i];
+        place_[i] = to_[i];
       } else {
         place_[i] += way;
       }
@@ -150,48 +174,52 @@ bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles
   static const std::vector<Pair> none;
   const std::vector<Pair>& at_obstacles = obstacles != nullptr ? *obstacle_pairs_ : none;
   const bool is_common = !common_.isZero(0.0);
-  double longest = 0.0;
-  for (const Vector3d& way : way_) longest = std::max(longest, way.squaredNorm());
-  longest = std::sqrt(longest);
+  longest_ = 0.0;
+  for (const Vector3d& way : way_) longest_ = std::max(longest_, way.squaredNorm());
+  longest_ = std::sqrt(longest_);
   stops_.assign(near.pairs().size(), 0);
+  asides_.assign(near.pairs().size(), {});
   neighbour_stops_.assign(near.neighbours().size(), 0);
   obstacle_stops_.assign(at_obstacles.size(), 0);
   std::fill(changed_.begin(), changed_.end(), 0);
   // Most pairs do not touch, and threads find those; what others shorten is looked at once more.
   const bool all_are_known = pool_ != nullptr;
-  if (all_are_known) touchAll(near, longest);
+  if (all_are_known) touchAll(near);
   bool stopped = true;
   for (round_ = 1; stopped; ++round_) {
     stopped = false;
     for (std::size_t p = 0; p < stops_.size(); ++p) {
       const Pair& pair = near.pairs()[p];
-      if (near.isBeyond(pair, margin_ + 2.0 * longest)) continue;
+      if (near.isBeyond(pair, margin_ + 2.0 * longest_)) continue;
       const bool is_known = all_are_known && round_ == 1;
-      stopped = stopBeforeContact(pair, is_known ? &touches_[p] : nullptr, stops_[p]) || stopped;
+      stopped =
+          stopBeforeContact(pair, is_known ? &touches_[p] : nullptr, stops_[p], &asides_[p]) ||
+          stopped;
     }
     for (std::size_t p = 0; p < neighbour_stops_.size(); ++p) {
-      stopped = stopBeforeContact(near.neighbours()[p], nullptr, neighbour_stops_[p]) || stopped;
+      stopped =
+          stopBeforeContact(near.neighbours()[p], nullptr, neighbour_stops_[p], nullptr) || stopped;
     }
     for (std::size_t p = 0; p < obstacle_stops_.size(); ++p) {
       if (is_common && mayHaveChanged(at_obstacles[p]) && touch(at_obstacles[p])) {
         stopped_by_.assign(stopped_by_.size(), {-1, -1, -1, -1});
         return false;
       }
-      if (is_common || obstacles->isBeyond(at_obstacles[p], 0.5 * margin_ + longest)) continue;
-      stopped = stopBeforeContact(at_obstacles[p], nullptr, obstacle_stops_[p]) || stopped;
+      if (is_common || obstacles->isBeyond(at_obstacles[p], 0.5 * margin_ + longest_)) continue;
+      stopped = stopBeforeContact(at_obstacles[p], nullptr, obstacle_stops_[p], nullptr) || stopped;
     }
   }
   return true;
 }
 
 /// On the ways as they are.
-void SafeMotion::touchAll(const NearPairs& near, double longest) {
+void SafeMotion::touchAll(const NearPairs& near) {
   touches_.resize(near.pairs().size());
   linear::shareRows(pool_, static_cast<int>(touches_.size()), [&](int begin, int end) {
     for (int p = begin; p < end; ++p) {
       const Pair& pair = near.pairs()[p];
       touches_[p].reset();
-      if (!near.isBeyond(pair, margin_ + 2.0 * longest)) touches_[p] = touch(pair);
+      if (!near.isBeyond(pair, margin_ + 2.0 * longest_)) touches_[p] = touch(pair);
     }
   });
 }
@@ -265,21 +293,69 @@ double SafeMotion::firstTouch(const std::vector<Pair>& pairs, const Pair** first
 
 /// @param known how it touches if nothing has shortened a way yet; null: that is not known
 /// @param stops how often the pair has stopped its particles
+/// @param aside where it has sent them; null: it only stops them
 /// @return whether it does now
-bool SafeMotion::stopBeforeContact(const Pair& pair, const std::optional<Touch>* known,
-                                   char& stops) {
+bool SafeMotion::stopBeforeContact(const Pair& pair, const std::optional<Touch>* known, char& stops,
+                                   Aside* aside) {
   if (stops > kMostStops || !mayHaveChanged(pair)) return false;
   const bool is_as_known =
       known != nullptr && std::all_of(pair.vertices.begin(), pair.vertices.end(),
                                       [&](int vertex) { return changed_[vertex] == 0; });
   const auto found = is_as_known ? *known : touch(pair);
   if (!found) return false;
+  if (aside != nullptr && aside->times < kMostAsides &&
+      found->distance < kPressed * marginOf(pair) && sendAside(pair, found->kept, *aside)) {
+    return true;
+  }
   ++stops;
   if (stops > kMostStops || found->time <= 0.0) {
     stops = kMostStops + 1;
     limit(pair, 1.0, 0.5 * (found->distance - found->kept));
   } else {
     limit(pair, kOfTime * found->time, proximity::kMaxLength);
+  }
+  return true;
+}
+
+/// Lets the ways of a pair end as far apart as they are to first order, and not nearer than what it
+/// keeps: a second-order correction (Nocedal and Wright, Numerical Optimization, 2006, section
+/// 15.6). What has been stopped, or is to stay, stays.
+/// @param kept m @return whether they are others now
+bool SafeMotion::sendAside(const Pair& pair, double kept, Aside& aside) {
+  const auto& v = pair.vertices;
+  std::array<Vector3d, 4> begin, end;
+  for (int i = 0; i < 4; ++i) {
+    begin[i] = placeOf(v[i]);
+    end[i] = begin[i] + wayOf(v[i]);
+  }
+  const Separation from = separationOf(pair.kind, begin);
+  if (aside.times++ == 0) {
+    double to_first_order = from.distance;
+    for (int i = 0; i < 4; ++i) {
+      to_first_order += from.weights[i] * from.normal.dot(wayOf(v[i]));
+    }
+    aside.distance = std::max(1.1 * kept, std::min(to_first_order, margin_));
+  }
+  Separation to = separationOf(pair.kind, end);
+  if (to.normal.dot(from.normal) < 0.0) {
+    to.normal *= -1.0;
+    to.distance *= -1.0;
+  }
+  double mobility = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    if (left_[v[i]].isZero(0.0)) to.weights[i] = 0.0;
+    mobility += to.weights[i] * to.weights[i];
+  }
+  const double missing = aside.distance - to.distance;
+  if (!(missing > 0.0) || !(missing < mobility * margin_)) return false;
+  for (int i = 0; i < 4; ++i) {
+    const Vector3d change = missing / mobility * to.weights[i] * to.normal;
+    way_[v[i]] += change;
+    const double length = way_[v[i]].norm();
+    if (length > longest_) way_[v[i]] *= longest_ / length;
+    left_[v[i]] += change;
+    to_[v[i]] += change;
+    changed_[v[i]] = round_;
   }
   return true;
 }

@@ -76,6 +76,35 @@ TEST(SafeMotion, SaysWhatStopsALayerThatIsToGoThroughAnother) {
   for (std::size_t i = half; i < from.size(); ++i) EXPECT_GE(reached[i].z(), 0.99 * kMargin);
 }
 
+TEST(SafeMotion, EdgesThatArePressedPartAsTheyTurnPastEachOther) {
+  constexpr double kSide = 0.04, kTurn = 1e-3, kAlong = 1e-3;  // m
+  const Cloth cloth(layers(2, kSide, 1), fabricNamed("wool"), selfCollision());
+  const Positions flat = cloth.initialState().positions;
+  for (const double distance : {2e-6, 4e-6, 8e-6}) {
+    // The upper edge of one sheet below the lower one of another, which crosses it.
+    Positions from = flat, reached;
+    const std::size_t half = from.size() / 2;
+    for (std::size_t i = 0; i < half; ++i) {
+      from[i] = {flat[i].x() - 0.5 * kSide, 0.0, flat[i].y() - kSide};
+      from[half + i] = {0.0, from[i].x(), flat[i].y() + distance};
+    }
+    // To the first order twice as far apart; but it would be 0.05 mm below.
+    Positions to = from;
+    for (std::size_t i = half; i < to.size(); ++i) {
+      to[i] += Vector3d(0.0, kAlong, distance + kTurn * from[i].y() / (0.5 * kSide));
+    }
+    SafeMotion motion(from.size(), 3e-4);
+    const MotionCut cut = motion.go(cloth.selfContact()->nearPairs(), nullptr, from, to, reached);
+    EXPECT_GT(cut.particles, 0);
+    EXPECT_LT(cut.longest, 2.0 * kTurn * kAlong / (0.5 * kSide));
+    double least = 1.0;
+    for (const PairEnergy& pair : cloth.selfContact()->touching(reached)) {
+      least = std::min(least, pair.distance);
+    }
+    EXPECT_GT(least, 1.9 * distance);
+  }
+}
+
 TEST(SafeMotion, LeavesWhatIsNotFiniteToTheStepThatRefusesIt) {
   const Cloth cloth(layers(1, 0.04, 2), fabricNamed("wool"), selfCollision());
   const Positions from = cloth.initialState().positions;

@@ -44,7 +44,7 @@ class Display:
 
     def __init__(self):
         read, write = os.pipe()
-        self.process = subprocess.Popen(['Xvfb', '-displayfd', str(write), '-screen', '0', '1400x900x24'],
+        self.process = subprocess.Popen(['Xvfb', '-displayfd', str(write), '-noreset', '-screen', '0', '1400x900x24'],
                                         pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as pipe:

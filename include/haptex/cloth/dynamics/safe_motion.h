@@ -67,18 +67,27 @@ class SafeMotion {
     double kept;      // m
   };
 
+  /// Of a pair that is pressed.
+  struct Aside {
+    char times = 0;         // that its particles were sent
+    double distance = 0.0;  // m, that it is to have in the end
+  };
+
   static constexpr double kKnown = 0.9;     // of the distance that is searched for
   static constexpr double kOfReach = 0.49;  // of the distance up to which all pairs are known
   static constexpr double kOfTime = 0.95;   // up to where the kept distance is reached
   // A pair whose particles were stopped so often stops both elements half way to what is kept,
   // which is safe whatever the other does.
   static constexpr char kMostStops = 3;
+  static constexpr char kMostAsides = 8;  // ways that a pressed pair is sent
 
   void chooseWays(double reach, bool common);
   bool chooseObstaclePairs(NearObstacles& obstacles);
   bool stopOnWay(const NearPairs& near, const NearObstacles* obstacles);
-  void touchAll(const NearPairs& near, double longest);
-  bool stopBeforeContact(const Pair& pair, const std::optional<Touch>* known, char& stops);
+  void touchAll(const NearPairs& near);
+  bool stopBeforeContact(const Pair& pair, const std::optional<Touch>* known, char& stops,
+                         Aside* aside);
+  bool sendAside(const Pair& pair, double kept, Aside& aside);
   void limit(const Pair& pair, double share, double most);
   std::optional<Touch> touch(const Pair& pair) const;
   bool mayHaveChanged(const Pair& pair) const;
@@ -106,6 +115,7 @@ class SafeMotion {
   const NearObstacles* obstacles_ = nullptr;  // null if there are none
   double reach_ = 0.0;                        // m, of a pass of push()
   double known_ = 0.0;      // m, distance up to which all pairs are known on this way
+  Vectors to_;              // m, where the particles are to go
   Vectors place_;           // m, reached
   Vectors left_;            // m, of the way of each particle that is not stopped
   Vectors way_;             // m, beyond the common one
@@ -117,6 +127,8 @@ class SafeMotion {
   std::vector<int> changed_;                           // round in which the way last did
   // Per pair, how often it has stopped or carried something.
   std::vector<char> stops_, neighbour_stops_, obstacle_stops_;
+  std::vector<Aside> asides_;  // of the cloth's pairs
+  double longest_ = 0.0;       // m, of the ways beyond the common one before any was changed
   int round_ = 0;
   std::vector<std::optional<Touch>> touches_;  // of the pairs on ways that nothing has shortened
 };
