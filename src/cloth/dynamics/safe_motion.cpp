@@ -182,6 +182,7 @@ bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles
   neighbour_stops_.assign(near.neighbours().size(), 0);
   obstacle_stops_.assign(at_obstacles.size(), 0);
   std::fill(changed_.begin(), changed_.end(), 0);
+  is_bounded_.assign(way_.size(), 0);
   // Most pairs do not touch, and threads find those; what others shorten is looked at once more.
   const bool all_are_known = pool_ != nullptr;
   if (all_are_known) touchAll(near);
@@ -191,10 +192,10 @@ bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles
     for (std::size_t p = 0; p < stops_.size(); ++p) {
       const Pair& pair = near.pairs()[p];
       if (near.isBeyond(pair, margin_ + 2.0 * longest_)) continue;
-      const bool is_known = all_are_known && round_ == 1;
-      stopped =
-          stopBeforeContact(pair, is_known ? &touches_[p] : nullptr, stops_[p], &asides_[p]) ||
-          stopped;
+      const auto* known = all_are_known && round_ == 1 ? &touches_[p] : nullptr;
+      // Of obstacles those near the common way alone are known.
+      Aside* aside = is_common ? nullptr : &asides_[p];
+      stopped = stopBeforeContact(pair, known, stops_[p], aside) || stopped;
     }
     for (std::size_t p = 0; p < neighbour_stops_.size(); ++p) {
       stopped =
@@ -311,6 +312,9 @@ bool SafeMotion::stopBeforeContact(const Pair& pair, const std::optional<Touch>*
   if (stops > kMostStops || found->time <= 0.0) {
     stops = kMostStops + 1;
     limit(pair, 1.0, 0.5 * (found->distance - found->kept));
+    for (int vertex : pair.vertices) {
+      if (isParticle(vertex)) is_bounded_[vertex] = 1;
+    }
   } else {
     limit(pair, kOfTime * found->time, proximity::kMaxLength);
   }
@@ -319,7 +323,7 @@ bool SafeMotion::stopBeforeContact(const Pair& pair, const std::optional<Touch>*
 
 /// Lets the ways of a pair end as far apart as they are to first order, and not nearer than what it
 /// keeps: a second-order correction (Nocedal and Wright, Numerical Optimization, 2006, section
-/// 15.6). What has been stopped, or is to stay, stays.
+/// 15.6). What has been stopped, or is to stay, keeps its way: bounds of other pairs rest on that.
 /// @param kept m @return whether they are others now
 bool SafeMotion::sendAside(const Pair& pair, double kept, Aside& aside) {
   const auto& v = pair.vertices;
@@ -343,7 +347,8 @@ bool SafeMotion::sendAside(const Pair& pair, double kept, Aside& aside) {
   }
   double mobility = 0.0;
   for (int i = 0; i < 4; ++i) {
-    if (left_[v[i]].isZero(0.0)) to.weights[i] = 0.0;
+    const bool has_been_stopped = is_bounded_[v[i]] || stopped_by_[v[i]][0] >= 0;
+    if (has_been_stopped || left_[v[i]].isZero(0.0)) to.weights[i] = 0.0;
     mobility += to.weights[i] * to.weights[i];
   }
   const double missing = aside.distance - to.distance;

@@ -127,8 +127,9 @@ class SafeMotion {
   std::vector<int> changed_;                           // round in which the way last did
   // Per pair, how often it has stopped or carried something.
   std::vector<char> stops_, neighbour_stops_, obstacle_stops_;
-  std::vector<Aside> asides_;  // of the cloth's pairs
-  double longest_ = 0.0;       // m, of the ways beyond the common one before any was changed
+  std::vector<Aside> asides_;     // of the cloth's pairs
+  std::vector<char> is_bounded_;  // per particle, whether a bound rests on its way
+  double longest_ = 0.0;          // m, of the ways beyond the common one before any was changed
   int round_ = 0;
   std::vector<std::optional<Touch>> touches_;  // of the pairs on ways that nothing has shortened
 };
