@@ -124,6 +124,21 @@ TEST(Drape, ReadsAsManyFabricsAsTheGarmentNames) {
             std::string::npos);
 }
 
+/// Sewn where it starts it would cut into the cone, and nobody waits: so the second way closes it.
+TEST(Drape, BeginsAnewWhereWhatIsSewnWouldIntersect) {
+  DrapeSettings settings;
+  settings.sewn_gap = 0.3;
+  settings.patience = 1e-9;
+  const auto garment = garment::makeGarmentMesh(tube(0.15), kEdge);
+  const mesh::ObstacleMesh body = cone(0.25, 0.04, 0.4);
+  const mesh::ClothMesh sewn = mesh::merge(garment.mesh, garment.seams).mesh;
+  ASSERT_FALSE(garment::findOverlaps(sewn, body.vertices, body.triangles).empty());
+  const DrapeOutcome outcome = drape(garment, wool(), body, settings);
+  EXPECT_TRUE(outcome.isSound());
+  EXPECT_EQ(outcome.intersecting_states, 0);
+  EXPECT_GT(outcome.closing_time, 0.0);
+}
+
 TEST(Drape, RefusesPanelsThatStartInTheBody) {
   const auto garment = garment::makeGarmentMesh(tube(0.15), kEdge);
   const std::string refusal = refusalOf([&] { drape(garment, wool(), cone(0.5, 0.04, 0.4), {}); });

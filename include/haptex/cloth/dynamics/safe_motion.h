@@ -16,8 +16,8 @@ namespace haptex::cloth {
 struct MotionCut {
   int particles = 0;     ///< that did not get where they were to go
   double longest = 0.0;  ///< m, that one of them was short of
-  /// The pair that stopped this one (proximity::verticesOf()); -1 if none did, but the number of
-  /// ways was spent. Vertices of obstacles are numbered after the particles.
+  /// The pair that stopped this one (proximity::verticesOf()); -1 if none did, but it was sent
+  /// aside or the number of ways was spent. Vertices of obstacles are numbered after the particles.
   std::array<int, 4> between = {-1, -1, -1, -1};
   int obstacle = -1;  ///< that the pair has an element of; -1: none
 };
@@ -27,7 +27,9 @@ struct MotionCut {
 /// than half of the distance up to which pairs are known; pairs that might touch within that are
 /// tested by continuous detection (proximity::earliestContact()), and their particles stopped
 /// before they touch. So two elements keep a margin, or where they are nearer already a part of
-/// their distance, on every way. Of obstacles it is half of the margin.
+/// their distance, on every way. Of obstacles it is half of the margin. Particles of elements of
+/// the cloth that are pressed on each other do not end on the straight way, but aside of it, where
+/// these are as far apart as to the first order of their motion.
 ///
 /// Allocates nothing once its buffers have had the size that they need.
 class SafeMotion {
