@@ -11,7 +11,6 @@ namespace haptex::cloth {
 namespace {
 
 using Eigen::Vector3d;
-using proximity::ElementPairKind;
 
 constexpr int kMostWays = 16, kMostWaysAmongObstacles = 64;
 // What comes near stops half way into the thickness, where the pressure is still small, what is
@@ -31,10 +30,10 @@ struct Separation {
   Vector3d normal;          // zero where both are the same
 };
 
-Separation separationOf(ElementPairKind kind, const std::array<Vector3d, 4>& places) {
+Separation separationOf(proximity::ElementPairKind kind, const std::array<Vector3d, 4>& places) {
   const proximity::PairDistance nearest = proximity::distanceOf(kind, places);
   Separation separation{nearest.weights, nearest.distance, Vector3d::Zero()};
-  const int first_end = kind == ElementPairKind::kVertexTriangle ? 1 : 2;
+  const int first_end = kind == proximity::ElementPairKind::kVertexTriangle ? 1 : 2;
   for (int i = 0; i < 4; ++i) {
     if (i >= first_end) separation.weights[i] *= -1.0;
     separation.normal += separation.weights[i] * places[i];
