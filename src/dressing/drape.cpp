@@ -44,7 +44,8 @@ struct Closing {
 };
 
 // What is expected to go on reaches its seam in a few steps, and mostly is sewn there. Where the
-// sides of a seam come to lie over each other instead, all begins anew and goes slower.
+// sides of a seam come to lie over each other instead, all begins anew and goes slower. Where that
+// does not help either, the first way is gone once more and what it leads to is pulled apart.
 constexpr Closing kClosings[] = {{1.0, false, false}, {0.2, true, true}, {1.0, false, true}};
 
 // Panels whose seams do not close get thinner by so much each time, down to (m).
@@ -170,7 +171,7 @@ class Dressing {
 
   void closeSeams() {
     const Closing* closing = std::begin(kClosings);
-    while (!closeSeams(*closing, closing + 1 == std::end(kClosings))) ++closing;
+    while (!closeIn(*closing, closing + 1 == std::end(kClosings))) ++closing;
   }
 
   /// How far seams are closed.
@@ -181,27 +182,28 @@ class Dressing {
   };
 
   /// From the start. @return whether it is sewn: if not, it is to be tried in another way
-  bool closeSeams(const Closing& closing, bool is_last) {
+  bool closeIn(const Closing& closing, bool is_last) {
     Closed closed{SeamPull(garment_, settings_.tension), garment_.mesh.initial_positions};
     double thickness = closingThickness();
-    bool is_sewn = false, goes_on = true;
+    bool is_sewn = closeAt(thickness, closing, is_last, closed), goes_on = true;
     while (!is_sewn && goes_on) {
-      is_sewn = closeSeams(closing, is_last, thickness, closed);
-      if (is_sewn) break;
       const double thinnest = std::max(kThinnestOpen, leastThickness());
       const bool is_late = closed.time > settings_.most_closing_time;
       const bool is_thinnest = !closing.thins || thickness <= thinnest || is_late;
       const bool intersects_body = outcome_.with_body > 0;
       is_sewn = closing.pulls_apart && is_thinnest && !intersects_body && pullApart();
       goes_on = closing.pulls_apart && !is_late && !(closing.thins && intersects_body);
+      if (is_sewn || !goes_on) continue;
       if (closing.thins) thickness = std::max(kThinnerOpen * thickness, thinnest);
+      is_sewn = closeAt(thickness, closing, is_last, closed);
     }
     outcome_.closing_time += closed.time;
     return is_sewn;
   }
 
+  /// With panels of one thickness (m).
   /// @return whether it is sewn: otherwise it would intersect, and waiting does not help
-  bool closeSeams(const Closing& closing, bool is_last, double thickness, Closed& closed) {
+  bool closeAt(double thickness, const Closing& closing, bool is_last, Closed& closed) {
     OverdampedCloth cloth = makeOpenCloth(closed.positions, thickness);
     const double farthest = 0.5 * settings_.closing_speed * settings_.time_step;
     double tried_at = closed.time;  // or it was not to be tried, or seams came nearer

@@ -119,6 +119,17 @@ PairDistance distanceOf(ElementPairKind kind, const Places& places) {
                                                   : edgeEdgeDistance(places);
 }
 
+Separation separationOf(ElementPairKind kind, const Places& places) {
+  const PairDistance nearest = distanceOf(kind, places);
+  Separation separation{nearest.distance, nearest.weights, Vector3d::Zero()};
+  const int first_end = kind == ElementPairKind::kVertexTriangle ? 1 : 2;
+  for (int i = 0; i < 4; ++i) {
+    if (i >= first_end) separation.weights[i] *= -1.0;
+    separation.away += separation.weights[i] * places[i];
+  }
+  return separation;
+}
+
 bool isSurelyApart(ElementPairKind kind, const Places& places, double distance) {
   const bool is_face = kind == ElementPairKind::kVertexTriangle;
   const Vector3d normal = is_face ? (places[2] - places[1]).cross(places[3] - places[1])

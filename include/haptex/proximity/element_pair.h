@@ -65,6 +65,14 @@ PairDistance vertexTriangleDistance(const std::array<Eigen::Vector3d, 4>& places
 PairDistance edgeEdgeDistance(const std::array<Eigen::Vector3d, 4>& places);
 PairDistance distanceOf(ElementPairKind kind, const std::array<Eigen::Vector3d, 4>& places);
 
+/// The way from the nearest point of the second element of a pair to that of the first.
+struct Separation {
+  double distance;          ///< m
+  Eigen::Vector4d weights;  ///< of verticesOf(): those of PairDistance, of the second one negative
+  Eigen::Vector3d away;     ///< m, the sum of the weights times the places
+};
+Separation separationOf(ElementPairKind kind, const std::array<Eigen::Vector3d, 4>& places);
+
 /// Whether a plane between the elements, along the triangle or both edges, tells that they are
 /// farther apart than a distance (m), by more than distanceOf() may be off. Faster than that; false
 /// says nothing.

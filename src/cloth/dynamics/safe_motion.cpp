@@ -22,25 +22,9 @@ constexpr double kLeast = 1e-12, kKeptBelow = 1.0 - 1e-9;
 // Of the margin: so near, edges that turn past each other part as a solve means it only on ways far
 // shorter than it asks for, and would come nearer in every iteration.
 constexpr double kPressed = 0.03;
-
-/// Of the nearest points of two elements.
-struct Separation {
-  Eigen::Vector4d weights;  // of the vertices: sum w_i x_i = distance normal
-  double distance;          // m
-  Vector3d normal;          // zero where both are the same
-};
-
-Separation separationOf(proximity::ElementPairKind kind, const std::array<Vector3d, 4>& places) {
-  const proximity::PairDistance nearest = proximity::distanceOf(kind, places);
-  Separation separation{nearest.weights, nearest.distance, Vector3d::Zero()};
-  const int first_end = kind == proximity::ElementPairKind::kVertexTriangle ? 1 : 2;
-  for (int i = 0; i < 4; ++i) {
-    if (i >= first_end) separation.weights[i] *= -1.0;
-    separation.normal += separation.weights[i] * places[i];
-  }
-  separation.normal.normalize();
-  return separation;
-}
+// What is sent aside ends this much farther apart than what it keeps, or that would stop it at
+// once.
+constexpr double kFarther = 1.1;
 
 }  // namespace
 
@@ -311,9 +295,6 @@ bool SafeMotion::stopBeforeContact(const Pair& pair, const std::optional<Touch>*
   if (stops > kMostStops || found->time <= 0.0) {
     stops = kMostStops + 1;
     limit(pair, 1.0, 0.5 * (found->distance - found->kept));
-    for (int vertex : pair.vertices) {
-      if (isParticle(vertex)) is_bounded_[vertex] = 1;
-    }
   } else {
     limit(pair, kOfTime * found->time, proximity::kMaxLength);
   }
@@ -331,17 +312,20 @@ bool SafeMotion::sendAside(const Pair& pair, double kept, Aside& aside) {
     begin[i] = placeOf(v[i]);
     end[i] = begin[i] + wayOf(v[i]);
   }
-  const Separation from = separationOf(pair.kind, begin);
+  const double margin = marginOf(pair);
+  const proximity::Separation from = proximity::separationOf(pair.kind, begin);
+  const Vector3d before = from.away.normalized();
   if (aside.times++ == 0) {
     double to_first_order = from.distance;
     for (int i = 0; i < 4; ++i) {
-      to_first_order += from.weights[i] * from.normal.dot(wayOf(v[i]));
+      to_first_order += from.weights[i] * before.dot(wayOf(v[i]));
     }
-    aside.distance = std::max(1.1 * kept, std::min(to_first_order, margin_));
+    aside.distance = std::max(kFarther * kept, std::min(to_first_order, margin));
   }
-  Separation to = separationOf(pair.kind, end);
-  if (to.normal.dot(from.normal) < 0.0) {
-    to.normal *= -1.0;
+  proximity::Separation to = proximity::separationOf(pair.kind, end);
+  Vector3d normal = to.away.normalized();
+  if (normal.dot(before) < 0.0) {
+    normal *= -1.0;
     to.distance *= -1.0;
   }
   double mobility = 0.0;
@@ -351,9 +335,9 @@ bool SafeMotion::sendAside(const Pair& pair, double kept, Aside& aside) {
     mobility += to.weights[i] * to.weights[i];
   }
   const double missing = aside.distance - to.distance;
-  if (!(missing > 0.0) || !(missing < mobility * margin_)) return false;
+  if (!(missing > 0.0) || !(missing < mobility * margin)) return false;
   for (int i = 0; i < 4; ++i) {
-    const Vector3d change = missing / mobility * to.weights[i] * to.normal;
+    const Vector3d change = missing / mobility * to.weights[i] * normal;
     way_[v[i]] += change;
     const double length = way_[v[i]].norm();
     if (length > longest_) way_[v[i]] *= longest_ / length;
@@ -364,10 +348,12 @@ bool SafeMotion::sendAside(const Pair& pair, double kept, Aside& aside) {
   return true;
 }
 
-/// Shortens the ways of a pair's particles. @param most m, of each
+/// Shortens the ways of a pair's particles. @param most m, of each: a bound that rests on them if
+/// it is less than proximity::kMaxLength
 void SafeMotion::limit(const Pair& pair, double share, double most) {
   for (int vertex : pair.vertices) {
     if (!isParticle(vertex)) continue;
+    if (most < proximity::kMaxLength) is_bounded_[vertex] = 1;
     const double length = way_[vertex].norm();
     const double shorter = std::min(share, length > most ? most / length : 1.0);
     if (shorter == 1.0) continue;

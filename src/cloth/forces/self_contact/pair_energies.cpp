@@ -163,19 +163,15 @@ void PairEnergies::addEdges(const Positions& positions, const Pair& pair,
   const std::array<int, 2> fabrics = {fabricOfEdge(pair.first), fabricOfEdge(pair.second)};
   const LayerPair law = layers_.pair(fabrics[0], fabrics[1]);
   if (proximity::isSurelyApart(pair.kind, places, law.leastDistance())) return;
-  const proximity::PairDistance nearest = proximity::edgeEdgeDistance(places);
+  const proximity::Separation nearest = proximity::separationOf(pair.kind, places);
   if (nearest.distance >= law.leastDistance()) return;
   PairEnergy energy{};
   energy.fabrics = fabrics;
   energy.count = 4;
   energy.vertices = v;
-  Vector3d away = Vector3d::Zero();
-  for (int i = 0; i < 4; ++i) {
-    energy.weights[i] = (i < 2 ? 1.0 : -1.0) * nearest.weights[i];
-    away += energy.weights[i] * places[i];
-  }
+  for (int i = 0; i < 4; ++i) energy.weights[i] = nearest.weights[i];
   energy.distance = nearest.distance;
-  energy.normal = directionOf(away, nearest.distance);
+  energy.normal = directionOf(nearest.away, nearest.distance);
   fadeWhereParallel(places[1] - places[0], places[3] - places[2],
                     kParallel * edge_squares_[pair.first] * edge_squares_[pair.second],
                     0.5 * (edge_areas_[pair.first] + edge_areas_[pair.second]),
