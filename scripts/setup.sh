@@ -18,14 +18,16 @@ haptex_as_root() {
   fi
 }
 
-# Installs the packages of scripts/packages.txt that are not installed yet.
+# haptex_install_packages [LIST]: installs the packages of scripts/packages.txt, or of another list there, that are not
+# installed yet.
 haptex_install_packages() {
+  local list="$haptex_root/scripts/${1:-packages.txt}"
   local package
   local missing=()
   while read -r package; do
     [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
       missing+=("$package")
-  done < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$haptex_root/scripts/packages.txt")
+  done < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$list")
   [ "${#missing[@]}" -eq 0 ] && return
   echo "Installing ${#missing[@]} Debian packages: ${missing[*]}" >&2
   haptex_as_root apt-get update >&2 || haptex_die "apt-get update failed"
