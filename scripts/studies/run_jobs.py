@@ -26,10 +26,10 @@ def arguments_of(argv):
     parser = argparse.ArgumentParser(prog='scripts/study', allow_abbrev=False)
     parser.add_argument('program', help=argparse.SUPPRESS)
     parser.add_argument('results', help=argparse.SUPPRESS)
-    parser.add_argument('study', choices=('extremes', 'self_colliding', 'garments'))
+    parser.add_argument('study', choices=('extremes', 'self_colliding', 'garments', 'trade_off'))
     parser.add_argument('--cases', help='how many')
     parser.add_argument('--seed', help='of the first')
-    parser.add_argument('--jobs', type=number, default=JOBS, help=f'into which it is split ({JOBS})')
+    parser.add_argument('--jobs', type=number, help=f'into which it is split ({JOBS}, or one for each unit)')
     parser.add_argument('--directory', help='of the jobs and the result (build/studies/STUDY)')
     parser.add_argument('--workers', type=number, help='jobs at the same time, on each machine (its processors)')
     where = parser.add_mutually_exclusive_group()
@@ -38,14 +38,22 @@ def arguments_of(argv):
     return parser.parse_args(argv)
 
 
-def command_of(arguments, directory):
-    """Of run_study, without what is to be done."""
-    command = [arguments.program, arguments.study, '--directory', str(directory), '--jobs', str(arguments.jobs)]
+def study_of(arguments):
+    """The command that tells what the study has to compute."""
+    command = [arguments.program, arguments.study]
     for option in ('cases', 'seed'):
         value = getattr(arguments, option)
         if value is not None:
             command += [f'--{option}', value]
     return command
+
+
+def jobs_of(study):
+    """How many where nobody says it: no more than units. Ends as the program does if that refuses the study."""
+    told = subprocess.run(study, stdout=subprocess.PIPE, text=True)
+    if told.returncode != 0:
+        sys.exit(told.returncode)
+    return min(JOBS, int(dict(line.split('\t') for line in told.stdout.splitlines())['units']))
 
 
 def needed(program, package):
@@ -94,9 +102,11 @@ def by_slurm(arguments, directory, command):
 
 def main(argv):
     arguments = arguments_of(argv)
+    study = study_of(arguments)
+    arguments.jobs = arguments.jobs or jobs_of(study)
     directory = pathlib.Path(arguments.directory or pathlib.Path(arguments.results) / arguments.study).resolve()
     directory.mkdir(parents=True, exist_ok=True)
-    command = command_of(arguments, directory)
+    command = [*study, '--directory', str(directory), '--jobs', str(arguments.jobs)]
     try:
         (by_slurm if arguments.slurm else by_parallel)(arguments, directory, command)
     except RuntimeError as error:

@@ -204,6 +204,12 @@ std::vector<std::vector<TradeOffResult>> followPoints(const std::vector<TradeOff
   return results;
 }
 
+void tellErrors(const std::string& name, const TradeOffErrors& errors, const Tell& tell) {
+  tell(name + "/position_error", errors.position, "m");
+  tell(name + "/force_error", errors.force, "N");
+  tell(name + "/energy_error", errors.energy, "J");
+}
+
 std::string nameOf(const TradeOffPoint& point) {
   std::string name =
       std::string(nameOf(point.elasticity)) + "-" + cloth::nameOf(point.step.method) + "-" +

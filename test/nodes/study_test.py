@@ -96,6 +96,15 @@ class Local(Study):
         self.assertIn("input seed is '1' and '100': computed anew", answer.stderr)
         self.assertIn(b'\ninput seed 100\n', self.merged('again'))
 
+    def test_a_study_with_few_units_has_a_job_for_each(self):
+        answer = self.run_study('few', cases=5)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual({path.name for path in self.files('few')}, {f'extremes_{job}_of_5.txt' for job in range(1, 6)})
+        answer = self.run_study('none', cases=0)
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn("--cases is '0': allowed are whole numbers from 1 on", answer.stderr)
+        self.assertEqual(self.files('none'), {})
+
     def test_what_cannot_be_done_is_refused(self):
         for options, reason in ((('--jobs', '0'), "'0': allowed are 1 to 100000"), (('--workers', 'x'), "'x': allowed"),
                                 (('--slurm', '--sshloginfile', 'x'), 'not allowed with')):

@@ -84,6 +84,11 @@ std::vector<Reference> computeReferences(const std::vector<TradeOffCase>& cases,
                                          const ReferenceSettings& settings, int threads,
                                          const Progress& progress);
 
+/// For what is told: name, value and unit of a quantity.
+using Tell = std::function<void(const std::string& name, double value, const char* unit)>;
+/// NAME/position_error, NAME/force_error and NAME/energy_error.
+void tellErrors(const std::string& name, const TradeOffErrors& errors, const Tell& tell);
+
 /// Unique, for example green_lagrange-backward_euler-12.5ms-16cells-2solves-automatic-0.000001, or
 /// ...-20solves-0.001error-automatic-0.000001 where steps end by an error; an explicit method has
 /// neither solves nor solver.

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <exception>
-#include <filesystem>
 #include <limits>
 #include <ostream>
 
-#include "haptex/base/checksum.h"
 #include "haptex/base/require.h"
-#include "haptex/base/yaml_reader.h"
+#include "haptex/studies/jobs/folder_checksum.h"
 #include "haptex/studies/jobs/garment_starts.h"
 #include "haptex/studies/jobs/records.h"
 
@@ -18,21 +16,6 @@ namespace {
 constexpr const char* kGarmentStart = "a start of a garment";
 constexpr std::size_t kStartFields = 8;
 constexpr std::size_t kStartFieldsWithReason = 9;
-
-/// Of the names and the bytes of all files below a directory.
-std::string checksumOfFolder(const std::string& directory) {
-  std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
-    if (entry.is_regular_file()) paths.push_back(entry.path().string());
-  }
-  std::sort(paths.begin(), paths.end());
-  std::uint64_t sum = base::kChecksumOfNothing;
-  for (const std::string& path : paths) {
-    sum = base::checksum(path.substr(directory.size()), sum);
-    sum = base::checksum(base::readTextFile(path, std::numeric_limits<std::size_t>::max()), sum);
-  }
-  return base::digitsOf(sum);
-}
 
 /// What a record says.
 struct StartResult {

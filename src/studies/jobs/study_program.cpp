@@ -14,6 +14,7 @@
 #include "haptex/studies/jobs/extremes_study.h"
 #include "haptex/studies/jobs/garment_study.h"
 #include "haptex/studies/jobs/study_jobs.h"
+#include "haptex/studies/jobs/trade_off_sweep.h"
 
 namespace haptex::studies {
 namespace {
@@ -24,7 +25,7 @@ const char* const kUsage =
     "       run_study STUDY [--cases N] [--seed S] --jobs N --merge OUT --directory DIR\n"
     "Tells what a study has to compute, computes one of N jobs, or merges them. STUDY is "
     "extremes,\n"
-    "self_colliding or garments: docs/studies.md.\n";
+    "self_colliding, garments or trade_off, which has no --seed: docs/studies.md.\n";
 
 struct Request {
   std::string directory, merge;
@@ -47,8 +48,9 @@ Number numberOf(const base::CommandLine& line, const std::string& option, Number
 
 std::unique_ptr<Study> studyOf(const base::CommandLine& line, const std::string& config) {
   if (line.files.size() != 1) {
-    base::refuse(line.files.size(),
-                 " studies are named: allowed is one, extremes, self_colliding or garments");
+    base::refuse(
+        line.files.size(),
+        " studies are named: allowed is one, extremes, self_colliding, garments or trade_off");
   }
   const std::string& name = line.files[0];
   if (name == "garments") {
@@ -56,9 +58,16 @@ std::unique_ptr<Study> studyOf(const base::CommandLine& line, const std::string&
         GarmentSettings{numberOf<std::size_t>(line, "--cases", 20, 1),
                         numberOf<unsigned>(line, "--seed", 1, 0), config});
   }
+  if (name == "trade_off") {
+    if (line.options.count("--seed") > 0) base::refuse("--seed: trade_off draws nothing");
+    TradeOffSweepSettings settings;
+    settings.fabrics = numberOf<std::size_t>(line, "--cases", tradeOffFabrics().size(), 1);
+    settings.config = config;
+    return std::make_unique<TradeOffSweep>(settings);
+  }
   if (name != "extremes" && name != "self_colliding") {
     base::refuse("there is no study ", base::quoted(name),
-                 ": allowed are extremes, self_colliding and garments");
+                 ": allowed are extremes, self_colliding, garments and trade_off");
   }
   ExtremesSettings settings;
   settings.self_colliding = name == "self_colliding";

@@ -136,6 +136,8 @@ TEST_F(StudyProgram, SaysWhatIsWrongWithItsArguments) {
       {{"extremes", "--jobs", "2", "--job", "1"}, "--job or --merge needs both"},
       {{"extremes", "--job", "1", "--directory", "x"}, "--job or --merge needs both"},
       {{"extremes", "--job", "1", "--merge", "x"}, "--job and --merge: allowed is one"},
+      {{"trade_off", "--seed", "1"}, "--seed: trade_off draws nothing"},
+      {{"trade_off", "--cases", "1000"}, "cases = 1000: allowed are 1 to "},
       {{"extremes", "--size", "3"}, "--size is unknown"}};
   for (const auto& [arguments, message] : refused) {
     EXPECT_EQ(run(arguments), 2);
