@@ -6,6 +6,6 @@
 #include "haptex/studies/jobs/study_program.h"
 
 int main(int argc, char** argv) {
-  return haptex::studies::studyProgram({argv + 1, argv + argc}, HAPTEX_CONFIG_DIRECTORY, std::cout,
+  return haptex::studies::studyProgram({argv + 1, argv + argc}, HAPTEX_SOURCE_DIRECTORY, std::cout,
                                        std::cerr);
 }

@@ -2,6 +2,7 @@
 what the fabric files say. Called by scripts/evaluate."""
 import argparse
 import concurrent.futures
+import itertools
 import pathlib
 import subprocess
 import sys
@@ -174,8 +175,10 @@ def spearman_of(name, fabrics, judged, files):
                                np.array([files[fabric][name] for fabric in known]))
 
 
-def print_ranks(fabrics, judged, again, coarse, files):
-    """Rank correlations with the files, between two seeds of the tremor, and by a coarse device."""
+def print_ranks(fabrics, runs, coarse, files):
+    """Rank correlations with the files, between seeds of the tremor, the least, and by a coarse device.
+    @param runs judgements of one seed after the other; all but `repeat` is of the first"""
+    judged = runs[0]
     for name, (_, same) in PROPERTIES.items():
         known = [fabric for fabric in fabrics if name in judged[fabric] and name in files[fabric]]
         if len(known) < 3:
@@ -187,9 +190,10 @@ def print_ranks(fabrics, judged, again, coarse, files):
         low, high = statistics.bootstrap_interval(statistics.spearman, column(judged), file)
         print(f'evaluate/{name}/spearman\t{statistics.spearman(column(judged), file):.4f}\t'
               f'{low:.4f}\t{high:.4f}')
-        if all(name in again[fabric] for fabric in known):
-            print(f'evaluate/{name}/repeat\t'
-                  f'{statistics.spearman(column(judged), column(again)):.4f}')
+        if len(runs) > 1 and all(name in run[fabric] for run in runs for fabric in known):
+            repeat = min(statistics.spearman(column(one), column(other))
+                         for one, other in itertools.combinations(runs, 2))
+            print(f'evaluate/{name}/repeat\t{repeat:.4f}')
         if name not in BY_STROKES:
             rank = spearman_of(name, fabrics, coarse, files)
             print(f'evaluate/{name}/spearman_coarse\t{rank:.4f}')
@@ -290,7 +294,7 @@ def main():
     if arguments.picture:
         draw_picture(arguments.picture, fabrics, judged, files)
     print_judgements(fabrics, judged, files)
-    print_ranks(fabrics, judged, again, coarse, files)
+    print_ranks(fabrics, [judged, again], coarse, files)
     if arguments.presets:
         by_preset = dict(zip(PRESETS, presets))
         print_presets(fabrics, by_preset, files)

@@ -26,7 +26,7 @@ def arguments_of(argv):
     parser = argparse.ArgumentParser(prog='scripts/study', allow_abbrev=False)
     parser.add_argument('program', help=argparse.SUPPRESS)
     parser.add_argument('results', help=argparse.SUPPRESS)
-    parser.add_argument('study', choices=('extremes', 'self_colliding', 'garments', 'trade_off'))
+    parser.add_argument('study', choices=('extremes', 'self_colliding', 'garments', 'trade_off', 'evaluation'))
     parser.add_argument('--cases', help='how many')
     parser.add_argument('--seed', help='of the first')
     parser.add_argument('--jobs', type=number, help=f'into which it is split ({JOBS}, or one for each unit)')

@@ -1,16 +1,20 @@
 #!/usr/bin/python3
 """The machine rater finds what was put into synthetic records of a device, and refuses what shows nothing."""
+import argparse
+import contextlib
+import io
 import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 import rostest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / 'scripts'), str(ROOT / 'test' / 'nodes')]
-from machine_rater import overhang, pressed_strips, rater, study  # noqa: E402
+from machine_rater import overhang, pressed_strips, rater, study, units  # noqa: E402
 from machine_rater.records import DeviceRecord  # noqa: E402
 from unit_fixtures import suite_of  # noqa: E402
 
@@ -253,7 +257,62 @@ class Judging(unittest.TestCase):
                          {'roughness', 'weight'})
 
 
-Tests = suite_of(Rating, Pressing, Overhanging, Judging)
+def printed_by(work, arguments=None, lines=()):
+    with contextlib.redirect_stdout(io.StringIO()) as out, \
+            unittest.mock.patch('sys.stdin', io.StringIO(''.join(line + '\n' for line in lines))):
+        work(arguments)
+    return out.getvalue()
+
+
+class Units(unittest.TestCase):
+    def test_a_record_is_read_back_as_it_was(self):
+        judged = {'weight': rater.Judgement(0.1 + 0.2, 1e-300), 'drape': rater.Judgement(1.0 / 3.0, 0.0)}
+        coarse = {'weight': rater.Judgement(np.float64(0.1), 2.5e-7)}
+        text = units.record_of('wool', 7, judged, coarse)
+        self.assertEqual(text, 'wool\t7\tweight\t0.30000000000000004\t1e-300\tdrape\t0.3333333333333333\t0.0'
+                         '\tcoarse/weight\t0.1\t2.5e-07')
+        self.assertEqual(units.parse(text), ('wool', 7, judged, coarse))
+        for other in ('', 'wool', 'wool\tone', 'wool\t7\tweight\t0.1', 'wool\t7\tweight\t0.1\tmuch'):
+            with self.assertRaisesRegex(SystemExit, 'is no result of an evaluation'):
+                units.parse(other)
+
+    def test_fabrics_come_in_turn_and_are_judged_by_both_devices(self):
+        fabrics = study.fabric_names()
+        def judge_record(_directory, _hand, fabric, stroke, seed, quality, limits):
+            self.assertEqual((fabric, stroke, quality), (fabrics[1], 5.0, study.FINEST))
+            return {'weight': rater.Judgement(float(seed), 1.0 if limits else 0.0)}
+        with unittest.mock.patch.object(study, 'run_hand', return_value=(None, [{fabrics[1]: 5.0}])) as hand, \
+                unittest.mock.patch.object(study, 'judge_record', judge_record):
+            text = printed_by(units.run, argparse.Namespace(cases=2, seed=8, unit=len(fabrics) + 1))
+        self.assertEqual(text, f'{fabrics[1]}\t9\tweight\t9.0\t0.0\tcoarse/weight\t9.0\t1.0\n')
+        self.assertEqual(hand.call_args[0][1:], ([fabrics[1]], [(9, study.FINEST)]))
+
+    def test_the_summary_is_that_of_the_evaluation_and_of_all_seeds(self):
+        fabrics = ['acrylic_knit', 'cotton_poplin', 'cotton_rep', 'denim', 'wool']
+        files = {fabric: study.values_of(fabric) for fabric in fabrics}
+        weights = sorted(files[fabric]['weight'] for fabric in fabrics)
+        exact = [files[fabric]['weight'] for fabric in fabrics]
+        swapped = [weights[[1, 0, 2, 3, 4][weights.index(weight)]] for weight in exact]
+        turned = [weights[4 - weights.index(weight)] for weight in exact]
+        def runs(*of_seeds):
+            return [{fabric: {'weight': rater.Judgement(weight, 0.1)} for fabric, weight in zip(fabrics, of_seed)}
+                    for of_seed in of_seeds]
+        def summary(judged):
+            return printed_by(units.summary, lines=[units.record_of(fabric, seed, run[fabric], run[fabric])
+                                                    for seed, run in enumerate(judged) for fabric in fabrics])
+        two = runs(exact, swapped)
+        def evaluate(_):
+            study.print_judgements(fabrics, two[0], files)
+            study.print_ranks(fabrics, two, two[0], files)
+        self.assertEqual(summary(two), printed_by(evaluate))
+        self.assertIn('evaluate/weight/spearman\t1.0000\t', summary(two))
+        self.assertIn('evaluate/weight/repeat\t0.9000\n', summary(two))
+        # Between the last two.
+        self.assertIn('evaluate/weight/repeat\t-1.0000\n', summary(runs(swapped, exact, turned)))
+        self.assertNotIn('repeat', summary(runs(exact)))
+
+
+Tests = suite_of(Rating, Pressing, Overhanging, Judging, Units)
 
 if __name__ == '__main__':
     rostest.rosrun('haptex', 'machine_rater', f'{__name__}.Tests')

@@ -105,6 +105,15 @@ class Local(Study):
         self.assertIn("--cases is '0': allowed are whole numbers from 1 on", answer.stderr)
         self.assertEqual(self.files('none'), {})
 
+    def test_units_of_the_evaluation_are_those_of_its_rater(self):
+        answer = subprocess.run([program(), 'evaluation', '--cases', '3', '--seed', '5'], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        fabrics = {path.stem for path in (ROOT / 'config' / 'fabrics').glob('*.yaml')} - {'linear'}
+        self.assertIn(f'units\t{3 * len(fabrics)}\ncases\t3\nseed\t5\nfabrics\t', answer.stdout)
+        for name in ('rater', 'libraries', 'processor', 'program', 'instructions'):
+            self.assertIn(f'\n{name}\t', answer.stdout)
+
     def test_what_cannot_be_done_is_refused(self):
         for options, reason in ((('--jobs', '0'), "'0': allowed are 1 to 100000"), (('--workers', 'x'), "'x': allowed"),
                                 (('--slurm', '--sshloginfile', 'x'), 'not allowed with')):

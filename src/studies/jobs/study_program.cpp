@@ -13,6 +13,7 @@
 #include "haptex/base/whole_file.h"
 #include "haptex/studies/jobs/extremes_study.h"
 #include "haptex/studies/jobs/garment_study.h"
+#include "haptex/studies/jobs/script_study.h"
 #include "haptex/studies/jobs/study_jobs.h"
 #include "haptex/studies/jobs/trade_off_sweep.h"
 
@@ -25,7 +26,7 @@ const char* const kUsage =
     "       run_study STUDY [--cases N] [--seed S] --jobs N --merge OUT --directory DIR\n"
     "Tells what a study has to compute, computes one of N jobs, or merges them. STUDY is "
     "extremes,\n"
-    "self_colliding, garments or trade_off, which has no --seed: docs/studies.md.\n";
+    "self_colliding, garments, evaluation, or trade_off, which has no --seed: docs/studies.md.\n";
 
 struct Request {
   std::string directory, merge;
@@ -46,11 +47,12 @@ Number numberOf(const base::CommandLine& line, const std::string& option, Number
   return *number;
 }
 
-std::unique_ptr<Study> studyOf(const base::CommandLine& line, const std::string& config) {
+std::unique_ptr<Study> studyOf(const base::CommandLine& line, const std::string& package) {
+  const std::string config = package + "/config";
   if (line.files.size() != 1) {
-    base::refuse(
-        line.files.size(),
-        " studies are named: allowed is one, extremes, self_colliding, garments or trade_off");
+    base::refuse(line.files.size(),
+                 " studies are named: allowed is one, extremes, self_colliding, garments, "
+                 "trade_off or evaluation");
   }
   const std::string& name = line.files[0];
   if (name == "garments") {
@@ -65,9 +67,15 @@ std::unique_ptr<Study> studyOf(const base::CommandLine& line, const std::string&
     settings.config = config;
     return std::make_unique<TradeOffSweep>(settings);
   }
+  if (name == "evaluation") {
+    const auto cases = std::to_string(numberOf<unsigned>(line, "--cases", 2, 1));
+    const auto seed = std::to_string(numberOf<unsigned>(line, "--seed", 1, 0));
+    return std::make_unique<ScriptStudy>(
+        name, std::vector<std::string>{package + "/scripts/machine_rater/units.py", cases, seed});
+  }
   if (name != "extremes" && name != "self_colliding") {
     base::refuse("there is no study ", base::quoted(name),
-                 ": allowed are extremes, self_colliding, garments and trade_off");
+                 ": allowed are extremes, self_colliding, garments, trade_off and evaluation");
   }
   ExtremesSettings settings;
   settings.self_colliding = name == "self_colliding";
@@ -77,11 +85,11 @@ std::unique_ptr<Study> studyOf(const base::CommandLine& line, const std::string&
   return std::make_unique<ExtremesStudy>(settings);
 }
 
-Request parse(const std::vector<std::string>& arguments, const std::string& config) {
+Request parse(const std::vector<std::string>& arguments, const std::string& package) {
   const base::CommandLine line = base::readCommandLine(
       arguments, {"--cases", "--seed", "--jobs", "--job", "--merge", "--directory"});
   Request request;
-  request.study = studyOf(line, config);
+  request.study = studyOf(line, package);
   request.jobs = numberOf<std::size_t>(line, "--jobs", 0, 1);
   request.job = numberOf<std::size_t>(line, "--job", 0, 1);
   request.merge = line.value("--merge");
@@ -132,10 +140,10 @@ void merge(const Request& request, std::ostream& out) {
 
 }  // namespace
 
-int studyProgram(const std::vector<std::string>& arguments, const std::string& config,
+int studyProgram(const std::vector<std::string>& arguments, const std::string& package,
                  std::ostream& out, std::ostream& err) {
   Request request;
-  const auto read = [&] { request = parse(arguments, config); };
+  const auto read = [&] { request = parse(arguments, package); };
   return base::runProgram(kUsage, err, read, [&] {
     if (request.job > 0) {
       compute(request, err);

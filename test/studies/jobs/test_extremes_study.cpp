@@ -89,7 +89,7 @@ class StudyProgram : public StudyJobs {
  protected:
   int run(const std::vector<std::string>& arguments) {
     std::ostringstream out, err;
-    const int status = studyProgram(arguments, HAPTEX_CONFIG_DIRECTORY, out, err);
+    const int status = studyProgram(arguments, HAPTEX_SOURCE_DIRECTORY, out, err);
     out_ = out.str();
     err_ = err.str();
     return status;
@@ -138,6 +138,7 @@ TEST_F(StudyProgram, SaysWhatIsWrongWithItsArguments) {
       {{"extremes", "--job", "1", "--merge", "x"}, "--job and --merge: allowed is one"},
       {{"trade_off", "--seed", "1"}, "--seed: trade_off draws nothing"},
       {{"trade_off", "--cases", "1000"}, "cases = 1000: allowed are 1 to "},
+      {{"evaluation", "--cases", "0"}, "--cases is '0': allowed are whole numbers from 1 on"},
       {{"extremes", "--size", "3"}, "--size is unknown"}};
   for (const auto& [arguments, message] : refused) {
     EXPECT_EQ(run(arguments), 2);

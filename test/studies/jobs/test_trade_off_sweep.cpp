@@ -118,18 +118,18 @@ TEST(TradeOffSweep, HasTheBenchsFabricsFirstAndNoMoreThanThereAre) {
 TEST(TradeOffSweep, KnowsWhatItDependsOn) {
   const test::TemporaryDirectory config;
   std::filesystem::create_directory(config.path() + "/fabrics");
-  const auto inputsWith = [&](const char* fabric, const TradeOffPoint& point, int cells) {
+  const auto inputs_with = [&](const char* fabric, const TradeOffPoint& point, int cells) {
     std::ofstream(config.path() + "/fabrics/wool.yaml") << fabric;
     return TradeOffSweep({3, config.path(), {point}, {cells, 2}}).inputs();
   };
   TradeOffPoint finer = coarse();
   finer.cells = 9;
-  const StudyInputs inputs = inputsWith("a", coarse(), 8);
+  const StudyInputs inputs = inputs_with("a", coarse(), 8);
   EXPECT_EQ(inputs[0], (std::pair<std::string, std::string>("cases", "3")));
-  EXPECT_NE(inputsWith("b", coarse(), 8), inputs);
-  EXPECT_NE(inputsWith("a", finer, 8), inputs);
-  EXPECT_NE(inputsWith("a", coarse(), 16), inputs);
-  EXPECT_EQ(inputsWith("a", coarse(), 8), inputs);
+  EXPECT_NE(inputs_with("b", coarse(), 8), inputs);
+  EXPECT_NE(inputs_with("a", finer, 8), inputs);
+  EXPECT_NE(inputs_with("a", coarse(), 16), inputs);
+  EXPECT_EQ(inputs_with("a", coarse(), 8), inputs);
 }
 
 TEST(TradeOffPoints, HaveNamesOfTheirOwn) {

@@ -11,10 +11,10 @@ namespace haptex::studies {
 ///   nothing else: tells units and inputs;
 ///   --jobs N --job I --directory DIR: computes job I of N into DIR, unless it is there;
 ///   --jobs N --merge OUT --directory DIR: makes one file of all jobs, and tells what follows
-/// @param config the directory of the package's files
+/// @param package its directory
 /// @param out what it tells, lines with tabs between; `err` for progress and refusals
 /// @returns the exit status: 1 if something was refused or failed, 2 if the arguments were wrong
-int studyProgram(const std::vector<std::string>& arguments, const std::string& config,
+int studyProgram(const std::vector<std::string>& arguments, const std::string& package,
                  std::ostream& out, std::ostream& err);
 
 }  // namespace haptex::studies
