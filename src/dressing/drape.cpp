@@ -2,13 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "haptex/base/constants.h"
@@ -35,6 +36,7 @@ constexpr double kThinner = 0.8;
 constexpr double kThinningSpeed = 0.05;       // m/s, of the fastest particle, from turn to turn
 constexpr double kFastenerStiffness = 200.0;  // N/m
 constexpr double kNearer = 0.98;              // than a gap, worth waiting for
+constexpr int kSlowSteps = 2;                 // at least, of what is at rest
 
 /// A way to close seams, and what is done where they would be sewn through themselves.
 struct Closing {
@@ -98,7 +100,7 @@ class Dressing {
         soft_(withSoftThreads(fabrics)) {}
 
   DrapeOutcome run() {
-    const std::clock_t begin = std::clock();
+    const auto begin = std::chrono::steady_clock::now();
     closeSeams();
     if (hasLayers()) thin();
     for (int i = 0; i < settings_.halvings; ++i) {
@@ -106,7 +108,8 @@ class Dressing {
       halveEdges();
     }
     settle(fabrics_, settings_.rest_speed);
-    outcome_.computing_seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    outcome_.wall_seconds = taken.count();
     countIntersections();
     return std::move(outcome_);
   }
@@ -326,11 +329,14 @@ class Dressing {
     OverdampedCloth cloth = makeSewnCloth(fabrics);
     outcome_.at_rest = false;
     double time = 0.0, fast_at = 0.0, time_step = settings_.time_step;
+    int slow_steps = 0;
     while (!outcome_.at_rest && time < settings_.most_time) {
       step(cloth, time_step, time);
       const bool tangled = cloth.report().tangle.pairs > 0;
-      if (tangled || outcome_.fastest > rest_speed) fast_at = time;
-      outcome_.at_rest = time - fast_at >= settings_.rest_time;
+      const bool is_fast = tangled || outcome_.fastest > rest_speed;
+      if (is_fast) fast_at = time;
+      slow_steps = is_fast ? 0 : slow_steps + 1;
+      outcome_.at_rest = slow_steps >= kSlowSteps && time - fast_at >= settings_.rest_time;
       time_step = nextTimeStep(time_step);
     }
     outcome_.settling_time += time;
@@ -355,6 +361,10 @@ class Dressing {
 };
 
 }  // namespace
+
+int allThreads() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, cloth::kMaxThreads);
+}
 
 CoarseStart coarseStart(double edge_length) {
   CoarseStart start{edge_length, 0};

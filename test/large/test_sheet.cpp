@@ -4,10 +4,10 @@
 #include <fstream>
 #include <numeric>
 
+#include "../refusal.h"
+#include "../temporary_directory.h"
 #include "haptex/large/sheet.h"
 #include "haptex/material/fabric_file.h"
-#include "refusal.h"
-#include "temporary_directory.h"
 
 namespace haptex::large {
 namespace {

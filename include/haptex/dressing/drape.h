@@ -33,13 +33,16 @@ struct DrapeSettings {
   int halvings = 0;            ///< how often edges are halved once the garment is sewn, 0 to 8
   double halved_speed = 5e-3;  ///< m/s: the fastest particle is slower than that when they are
   double farthest = 0.01;      ///< m: steps are so long that no particle goes farther, about, but
-  double longest_step = 0.2;   ///< s, at most, > time_step
+  double longest_step = 1.0;   ///< s, at most, > time_step
   // Rest:
   double rest_speed = 2e-3;  ///< m/s: the fastest particle has been slower than that for
-  double rest_time = 0.4;    ///< s
+  double rest_time = 0.4;    ///< s, and in two steps at least
   double most_time = 60.0;   ///< s, for coming to rest with edges as they are
   int threads = 1;           ///< that share the work of a step
 };
+
+/// For a garment that has the machine for itself: as many as processors, kMaxThreads at most.
+int allThreads();
 
 /// Edges with which a garment is sewn, and how often they are halved then, to get those asked for.
 struct CoarseStart {
@@ -61,11 +64,11 @@ struct DrapeOutcome {
   double settling_time = 0.0;  ///< s
   double fastest = 0.0;        ///< m/s, at the end
   int steps = 0;
-  double computing_seconds = 0.0;  ///< of the processor, all threads
-  int intersecting_states = 0;     ///< that intersected themselves, of all after a step
-  std::size_t with_itself = 0;     ///< pairs of triangles that intersect at the end
-  std::size_t with_body = 0;       ///< likewise, of the garment and of the body
-  bool at_rest = false;            ///< or most_time was spent
+  double wall_seconds = 0.0;    ///< by the clock
+  int intersecting_states = 0;  ///< that intersected themselves, of all after a step
+  std::size_t with_itself = 0;  ///< pairs of triangles that intersect at the end
+  std::size_t with_body = 0;    ///< likewise, of the garment and of the body
+  bool at_rest = false;         ///< or most_time was spent
 
   bool isSound() const { return at_rest && with_itself == 0 && with_body == 0; }
 };
