@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ostream>
 #include <utility>
-#include <vector>
 
 #include "haptex/base/constants.h"
 #include "haptex/base/require.h"
@@ -35,10 +33,8 @@ int process() {
 
 const Sheet& withRows(const Sheet& sheet, int parts) {
   if (sheet.rowCount() < parts) {
-    base::refuse("the sheet has ", sheet.rowCount(),
-                 " rows of particles: allowed are as many "
-                 "processes, not ",
-                 parts);
+    base::refuse("the sheet has ", sheet.rowCount(), " rows of particles for ", parts,
+                 " processes: each needs one");
   }
   return sheet;
 }

@@ -79,7 +79,7 @@ class LargeSheet(Folder):
     def test_processes_without_a_row_are_refused(self):
         answer = self.run_sheet(4, self.scene(), '--edge', '0.1')
         self.assertNotEqual(answer.returncode, 0)
-        self.assertIn('the sheet has 3 rows of particles: allowed are as many processes, not 4', answer.stderr)
+        self.assertIn('the sheet has 3 rows of particles for 4 processes: each needs one', answer.stderr)
 
     def test_a_file_that_cannot_be_written_is_told_before_anything_moves(self):
         answer = self.run_sheet(2, self.scene(), '--edge', '0.01', '--out', str(self.folder / 'none' / 'a.obj'))
