@@ -93,8 +93,8 @@ LargeStep LargeSheet::step(double time_step) {
 void LargeSheet::solveStage(LargeStep& step) {
   if (!strip_.predict()) {
     strip_.linearise(matrix_, rhs_);
-    system_.take(matrix_, rhs_, strip_.result().positions);
-    solve(step);
+    system_.take(matrix_, rhs_);
+    if (!solve(step)) solution_.setZero();
     strip_.takeLinearised(solution_);
   }
   strip_.hold();
@@ -116,13 +116,14 @@ bool LargeSheet::iterateNewton(double potential, LargeStep& step) {
   auto hessian = cloth::Hessian::kProjected;
   for (int solves = 0;; ++solves) {
     strip_.assembleNewton(hessian, matrix_, rhs_);
-    system_.take(matrix_, rhs_, strip_.result().positions);
+    system_.take(matrix_, rhs_);
     step.residual = system_.rhsNorm() / (strip_.a() * weight_);
     if (step.residual <= kForceError || step.residual > kSlow * unjudged) return true;
     if (solves == kMostSolves || !std::isfinite(step.residual)) return false;
     const bool exact = hessian == cloth::Hessian::kExact;
     const bool solved = solve(step);
-    const Descent descent = solved || !exact ? searchLine(potential) : Descent::kNone;
+    if (!solved && !exact) return false;
+    const Descent descent = solved ? searchLine(potential) : Descent::kNone;
     if (descent == Descent::kBelowRounding) unjudged = step.residual;
     if (descent != Descent::kNone) {
       hessian = step.residual <= near ? cloth::Hessian::kExact : cloth::Hessian::kProjected;

@@ -6,11 +6,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "haptex/linear/block_cholesky.h"
+
 namespace haptex::large {
 namespace {
 
 constexpr double kTolerance = 1e-6;  // relative, of the residual
 constexpr int kMostIterations = 10000;
+// Of the unit diagonal: what single precision needs where it cannot factorise a matrix otherwise.
+constexpr float kShift = 1e-4f;
 
 void check(PetscErrorCode error) {
   if (error == 0) return;
@@ -49,28 +53,44 @@ std::vector<PetscInt> scalarRows(const std::vector<PetscInt>& blocks) {
   return rows;
 }
 
+Mat makeMatrix(const linear::SymmetricBlockMatrix& pattern, const PartPlace& place) {
+  const PetscInt own = 3 * (place.own_end - place.own_begin);
+  const auto all = static_cast<PetscInt>(3 * place.all);
+  Mat matrix = nullptr;
+  check(MatCreate(PETSC_COMM_WORLD, &matrix));
+  check(MatSetSizes(matrix, own, own, all, all));
+  check(MatSetBlockSize(matrix, 3));
+  check(MatSetType(matrix, MATAIJ));
+  check(MatSetFromOptions(matrix));
+  const RowCounts counts = countBlocks(pattern, place);
+  const std::vector<PetscInt> here = scalarRows(counts.here);
+  const std::vector<PetscInt> elsewhere = scalarRows(counts.elsewhere);
+  check(MatSeqAIJSetPreallocation(matrix, 0, here.data()));
+  check(MatMPIAIJSetPreallocation(matrix, 0, here.data(), 0, elsewhere.data()));
+  check(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
+  return matrix;
+}
+
 }  // namespace
 
 struct PetscSystem::Objects {
-  Mat matrix = nullptr;
-  Vec rhs = nullptr, solution = nullptr, positions = nullptr;
-  Vec known = nullptr;  // of the strip, of this process
-  VecScatter to_known = nullptr;
-  KSP solver = nullptr;
-
+  explicit Objects(const linear::SymmetricBlockMatrix& pattern, const PartPlace& place);
   ~Objects() {
     KSPDestroy(&solver);
     VecScatterDestroy(&to_known);
-    for (Vec* vector : {&rhs, &solution, &positions, &known}) VecDestroy(vector);
+    for (Vec* vector : {&rhs, &solution, &known}) VecDestroy(vector);
     MatDestroy(&matrix);
   }
+  Objects(const Objects&) = delete;
+  Objects& operator=(const Objects&) = delete;
 
-  void bring(Vec from, double* to, std::size_t size) {
+  /// @param to of the strip
+  void bring(Vec from, double* to) {
     check(VecScatterBegin(to_known, from, known, INSERT_VALUES, SCATTER_FORWARD));
     check(VecScatterEnd(to_known, from, known, INSERT_VALUES, SCATTER_FORWARD));
     const PetscScalar* values = nullptr;
     check(VecGetArrayRead(known, &values));
-    std::copy_n(values, size, to);
+    std::copy_n(values, part.size(), to);
     check(VecRestoreArrayRead(known, &values));
   }
 
@@ -83,59 +103,97 @@ struct PetscSystem::Objects {
     std::copy_n(from, size, values);
     check(VecRestoreArray(to, &values));
   }
+
+  /// to = the sum over all parts of what their factors make of theirs.
+  void precondition(Vec from, Vec to) {
+    bring(from, part.data());
+    clearCut();
+    factor->solve(part);
+    clearCut();
+    PetscScalar* values = nullptr;
+    check(VecGetArray(known, &values));
+    std::copy_n(part.data(), part.size(), values);
+    check(VecRestoreArray(known, &values));
+    check(VecSet(to, 0.0));
+    check(VecScatterBegin(to_known, known, to, ADD_VALUES, SCATTER_REVERSE));
+    check(VecScatterEnd(to_known, known, to, ADD_VALUES, SCATTER_REVERSE));
+  }
+
+  /// Of what the strip does not know whole.
+  void clearCut() {
+    part.leftCols(place.whole_begin).setZero();
+    part.rightCols(part.cols() - place.whole_end).setZero();
+  }
+
+  PartPlace place;
+  Mat matrix = nullptr;
+  Vec rhs = nullptr, solution = nullptr;
+  Vec known = nullptr;  // of the strip, of this process
+  VecScatter to_known = nullptr;
+  KSP solver = nullptr;
+  linear::BlockVector part;     // of the strip
+  std::vector<char> is_cut;     // per particle of it: its rows are not whole
+  linear::BlockVector nothing;  // of what is cut: zero
+  std::unique_ptr<linear::BasicBlockCholesky<float>> factor;  // null: PETSC_OPTIONS chose otherwise
+  bool is_definite = true;  // as far as the factors of all processes say
 };
 
-PetscSystem::PetscSystem(const linear::SymmetricBlockMatrix& pattern, const PartPlace& place)
-    : objects_(std::make_unique<Objects>()), place_(place) {
-  Objects& o = *objects_;
-  const PetscInt own = 3 * (place.own_end - place.own_begin);
-  const auto all = static_cast<PetscInt>(3 * place.all);
-  check(MatCreate(PETSC_COMM_WORLD, &o.matrix));
-  check(MatSetSizes(o.matrix, own, own, all, all));
-  check(MatSetBlockSize(o.matrix, 3));
-  check(MatSetType(o.matrix, MATAIJ));
-  check(MatSetFromOptions(o.matrix));
-  const RowCounts counts = countBlocks(pattern, place);
-  const std::vector<PetscInt> here = scalarRows(counts.here);
-  const std::vector<PetscInt> elsewhere = scalarRows(counts.elsewhere);
-  check(MatSeqAIJSetPreallocation(o.matrix, 0, here.data()));
-  check(MatMPIAIJSetPreallocation(o.matrix, 0, here.data(), 0, elsewhere.data()));
-  check(MatSetOption(o.matrix, MAT_SPD, PETSC_TRUE));
-  check(MatCreateVecs(o.matrix, &o.solution, &o.rhs));
-  check(VecSetBlockSize(o.solution, 3));
-  check(VecDuplicate(o.rhs, &o.positions));
-  check(VecSetBlockSize(o.positions, 3));
+namespace {
 
-  const PetscInt known = 3 * pattern.size();
-  check(VecCreateSeq(PETSC_COMM_SELF, known, &o.known));
+PetscErrorCode applyFactors(PC preconditioner, Vec from, Vec to) {
+  void* objects = nullptr;
+  check(PCShellGetContext(preconditioner, &objects));
+  static_cast<PetscSystem::Objects*>(objects)->precondition(from, to);
+  return 0;
+}
+
+}  // namespace
+
+PetscSystem::Objects::Objects(const linear::SymmetricBlockMatrix& pattern, const PartPlace& at)
+    : place(at),
+      matrix(makeMatrix(pattern, at)),
+      part(3, pattern.size()),
+      is_cut(pattern.size(), 1),
+      nothing(linear::BlockVector::Zero(3, pattern.size())) {
+  check(MatCreateVecs(matrix, &solution, &rhs));
+  std::fill(is_cut.begin() + at.whole_begin, is_cut.begin() + at.whole_end, 0);
+
+  const PetscInt size = 3 * pattern.size();
+  check(VecCreateSeq(PETSC_COMM_SELF, size, &known));
   IS places = nullptr;
-  check(
-      ISCreateStride(PETSC_COMM_SELF, known, static_cast<PetscInt>(3 * place.offset), 1, &places));
-  check(VecScatterCreate(o.solution, places, o.known, nullptr, &o.to_known));
+  check(ISCreateStride(PETSC_COMM_SELF, size, static_cast<PetscInt>(3 * at.offset), 1, &places));
+  check(VecScatterCreate(solution, places, known, nullptr, &to_known));
   check(ISDestroy(&places));
 
-  check(KSPCreate(PETSC_COMM_WORLD, &o.solver));
-  check(KSPSetOperators(o.solver, o.matrix, o.matrix));
-  check(KSPSetType(o.solver, KSPCG));
-  check(KSPSetNormType(o.solver, KSP_NORM_UNPRECONDITIONED));
-  check(KSPSetTolerances(o.solver, kTolerance, PETSC_DEFAULT, PETSC_DEFAULT, kMostIterations));
+  check(KSPCreate(PETSC_COMM_WORLD, &solver));
+  check(KSPSetOperators(solver, matrix, matrix));
+  check(KSPSetType(solver, KSPCG));
+  check(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
+  check(KSPSetTolerances(solver, kTolerance, PETSC_DEFAULT, PETSC_DEFAULT, kMostIterations));
   PC preconditioner = nullptr;
-  check(KSPGetPC(o.solver, &preconditioner));
-  check(PCSetType(preconditioner, PCCHOLESKY));
-  check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
-  check(KSPSetFromOptions(o.solver));
+  check(KSPGetPC(solver, &preconditioner));
+  check(PCSetType(preconditioner, PCSHELL));
+  check(PCShellSetContext(preconditioner, this));
+  check(PCShellSetApply(preconditioner, applyFactors));
+  check(PCShellSetName(preconditioner, "additive Schwarz with factors in single precision"));
+  check(KSPSetFromOptions(solver));
+  PetscBool is_ours = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(preconditioner), PCSHELL, &is_ours));
+  if (is_ours) factor = std::make_unique<linear::BasicBlockCholesky<float>>(pattern);
 }
+
+PetscSystem::PetscSystem(const linear::SymmetricBlockMatrix& pattern, const PartPlace& place)
+    : objects_(std::make_unique<Objects>(pattern, place)) {}
 
 PetscSystem::~PetscSystem() = default;
 
-void PetscSystem::take(const linear::SymmetricBlockMatrix& matrix, const linear::BlockVector& rhs,
-                       const std::vector<Eigen::Vector3d>& positions) {
+void PetscSystem::take(linear::SymmetricBlockMatrix& matrix, const linear::BlockVector& rhs) {
   using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   Objects& o = *objects_;
   const auto set = [&](int row, int column, const RowMajor& block) {
-    if (row < place_.own_begin || row >= place_.own_end) return;
-    const auto global_row = static_cast<PetscInt>(place_.offset + row);
-    const auto global_column = static_cast<PetscInt>(place_.offset + column);
+    if (row < o.place.own_begin || row >= o.place.own_end) return;
+    const auto global_row = static_cast<PetscInt>(o.place.offset + row);
+    const auto global_column = static_cast<PetscInt>(o.place.offset + column);
     check(MatSetValuesBlocked(o.matrix, 1, &global_row, 1, &global_column, block.data(),
                               INSERT_VALUES));
   };
@@ -148,12 +206,11 @@ void PetscSystem::take(const linear::SymmetricBlockMatrix& matrix, const linear:
   }
   check(MatAssemblyBegin(o.matrix, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(o.matrix, MAT_FINAL_ASSEMBLY));
-  o.put(rhs.col(place_.own_begin).data(), o.rhs);
-  o.put(positions[place_.own_begin].data(), o.positions);
-  MatNullSpace rigid = nullptr;
-  check(MatNullSpaceCreateRigidBody(o.positions, &rigid));
-  check(MatSetNearNullSpace(o.matrix, rigid));
-  check(MatNullSpaceDestroy(&rigid));
+  o.put(rhs.col(o.place.own_begin).data(), o.rhs);
+  if (!o.factor) return;
+  matrix.eliminate(o.is_cut, o.nothing, o.part);
+  const bool is_definite = o.factor->factorise(matrix) || o.factor->factorise(matrix, kShift);
+  o.is_definite = sum(is_definite ? 0.0 : 1.0) == 0.0;
 }
 
 double PetscSystem::rhsNorm() const {
@@ -164,12 +221,13 @@ double PetscSystem::rhsNorm() const {
 
 PetscSolve PetscSystem::solve(linear::BlockVector& solution) {
   Objects& o = *objects_;
+  if (!o.is_definite) return {};
   check(KSPSolve(o.solver, o.rhs, o.solution));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(o.solver, &reason));
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(o.solver, &iterations));
-  o.bring(o.solution, solution.data(), static_cast<std::size_t>(solution.size()));
+  o.bring(o.solution, solution.data());
   return {reason > 0, static_cast<int>(iterations)};
 }
 
@@ -181,8 +239,8 @@ double PetscSystem::product() const {
 
 void PetscSystem::share(std::vector<Eigen::Vector3d>& vectors) {
   Objects& o = *objects_;
-  o.put(vectors[place_.own_begin].data(), o.positions);
-  o.bring(o.positions, vectors.front().data(), 3 * vectors.size());
+  o.put(vectors[o.place.own_begin].data(), o.solution);
+  o.bring(o.solution, vectors.front().data());
 }
 
 double PetscSystem::sum(double number) {

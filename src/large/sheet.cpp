@@ -14,8 +14,8 @@ namespace {
 using mesh::Side;
 using mesh::Triangulation;
 
-/// Rows on either side of its own that a part knows at least: quadratic bending couples particles
-/// that are so far apart, or needs as many to know how its hinges bend (test/large/test_sheet.cpp).
+/// Rows on either side of those that are whole: quadratic bending couples particles that are so far
+/// apart, or needs as many to know how its hinges bend (test/large/test_sheet.cpp).
 constexpr int kMargin = 3;
 
 /// Why a scene is no such sheet; empty if it is.
@@ -124,17 +124,23 @@ Rows ownRows(const Sheet& sheet, int part, int parts) {
   return {first(part), first(part + 1)};
 }
 
+Rows wholeRows(const Sheet& sheet, int part, int parts) {
+  const Rows own = ownRows(sheet, part, parts);
+  return {std::max(0, own.begin - kOverlap), std::min(sheet.rowCount(), own.end + kOverlap)};
+}
+
 /// The first row is an even one, so that diagonals alternate as in the whole sheet.
 Rows knownRows(const Sheet& sheet, int part, int parts) {
-  const Rows own = ownRows(sheet, part, parts);
-  return {std::max(0, own.begin - kMargin) / 2 * 2, std::min(sheet.rowCount(), own.end + kMargin)};
+  const Rows whole = wholeRows(sheet, part, parts);
+  return {std::max(0, whole.begin - kMargin) / 2 * 2,
+          std::min(sheet.rowCount(), whole.end + kMargin)};
 }
 
 PartPlace placeOf(const Sheet& sheet, int part, int parts) {
-  const Rows own = ownRows(sheet, part, parts), known = knownRows(sheet, part, parts);
-  const int row = sheet.rowSize();
-  return {sheet.particleCount(), std::int64_t{known.begin} * row, (own.begin - known.begin) * row,
-          (own.end - known.begin) * row};
+  const Rows own = ownRows(sheet, part, parts), whole = wholeRows(sheet, part, parts);
+  const int first = knownRows(sheet, part, parts).begin, row = sheet.rowSize();
+  return {sheet.particleCount(),   std::int64_t{first} * row,   (own.begin - first) * row,
+          (own.end - first) * row, (whole.begin - first) * row, (whole.end - first) * row};
 }
 
 cloth::Cloth clothOf(const Sheet& sheet, const Rows& rows) {

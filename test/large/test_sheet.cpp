@@ -55,9 +55,9 @@ std::vector<Modelled> modelled() {
 Sheet sheetOf(const Modelled& what) {
   Sheet sheet;
   sheet.width = 0.14;
-  sheet.height = 0.41;
+  sheet.height = 1.01;
   sheet.cells_u = 7;
-  sheet.cells_v = 41;
+  sheet.cells_v = 101;
   sheet.triangulation = what.triangulation;
   sheet.axes.col(0) = Vector3d::UnitY();
   sheet.axes.col(1) = Vector3d::UnitX();
@@ -114,25 +114,25 @@ Systems systemsOf(const cloth::Cloth& cloth) {
   return systems;
 }
 
-/// The largest difference of the own rows of a part from those of the whole, over the largest
-/// number of these.
+/// The largest difference of the rows that a part knows whole from those of the sheet, over the
+/// largest number of these.
 double difference(const System& whole, const System& part, const PartPlace& place) {
   const auto offset = static_cast<int>(place.offset);
   double largest = 0.0, scale = 0.0, rhs_difference = 0.0;
   for (int i = 0; i < part.matrix.size(); ++i) {
-    const bool own = i >= place.own_begin && i < place.own_end;
+    const bool known = i >= place.whole_begin && i < place.whole_end;
     const auto compare = [&](const Eigen::Matrix3d& here, const Eigen::Matrix3d& there) {
       largest = std::max(largest, (here - there).cwiseAbs().maxCoeff());
       scale = std::max(scale, there.cwiseAbs().maxCoeff());
     };
-    if (own) {
+    if (known) {
       compare(part.matrix.diagonal(i), whole.matrix.diagonal(offset + i));
       rhs_difference =
           std::max(rhs_difference, (part.rhs.col(i) - whole.rhs.col(offset + i)).norm());
     }
     for (int s = part.matrix.rowBegin(i); s < part.matrix.rowBegin(i + 1); ++s) {
       const int j = part.matrix.column(s);
-      if (!own && (j < place.own_begin || j >= place.own_end)) continue;
+      if (!known && (j < place.whole_begin || j >= place.whole_end)) continue;
       compare(part.matrix.lower(s), whole.matrix.lower(whole.matrix.slot(offset + i, offset + j)));
     }
   }
@@ -166,8 +166,9 @@ TEST(LargeSheet, PartsHaveTheirRowsOfTheWholeSystem) {
         EXPECT_LT(difference(whole.newton, mine.newton, place), 1e-12)
             << what.name << ", part " << part << " of " << parts;
         const auto offset = static_cast<int>(place.offset);
-        EXPECT_EQ(blocksOf(mine.newton.matrix, place.own_begin, place.own_end),
-                  blocksOf(whole.newton.matrix, offset + place.own_begin, offset + place.own_end))
+        EXPECT_EQ(
+            blocksOf(mine.newton.matrix, place.whole_begin, place.whole_end),
+            blocksOf(whole.newton.matrix, offset + place.whole_begin, offset + place.whole_end))
             << what.name << ", part " << part << " of " << parts;
         own += place.own_end - place.own_begin;
       }

@@ -33,7 +33,7 @@ struct DrapeSettings {
   int halvings = 0;            ///< how often edges are halved once the garment is sewn, 0 to 8
   double halved_speed = 5e-3;  ///< m/s: the fastest particle is slower than that when they are
   double farthest = 0.01;      ///< m: steps are so long that no particle goes farther, about, but
-  double longest_step = 1.0;   ///< s, at most, > time_step
+  double longest_step = 0.5;   ///< s, at most, > time_step
   // Rest:
   double rest_speed = 2e-3;  ///< m/s: the fastest particle has been slower than that for
   double rest_time = 0.4;    ///< s, and in two steps at least

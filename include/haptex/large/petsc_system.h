@@ -20,8 +20,10 @@ struct PetscSolve {
 /// particles, and gets the solution of all that it knows. All functions are called by all of them,
 /// in the same order.
 ///
-/// Conjugate gradients with a factor by MUMPS as preconditioner, to a relative residual of 1e-6;
-/// the environment variable PETSC_OPTIONS chooses otherwise, as always with PETSc.
+/// Conjugate gradients, to a relative residual of 1e-6, with overlapping additive Schwarz as
+/// preconditioner (Dryja and Widlund 1987): each process has a factor in single precision of the
+/// part of the matrix that it knows whole. The environment variable PETSC_OPTIONS chooses
+/// otherwise, as always with PETSc.
 class PetscSystem {
  public:
   /// @param pattern of the strip
@@ -31,11 +33,11 @@ class PetscSystem {
   PetscSystem(const PetscSystem&) = delete;
   PetscSystem& operator=(const PetscSystem&) = delete;
 
-  /// @param positions m, of the strip: the rigid motions from here are nearly without resistance
-  void take(const linear::SymmetricBlockMatrix& matrix, const linear::BlockVector& rhs,
-            const std::vector<Eigen::Vector3d>& positions);
+  /// @param matrix is used up
+  void take(linear::SymmetricBlockMatrix& matrix, const linear::BlockVector& rhs);
   double rhsNorm() const;
   /// @param solution of all particles of the strip
+  /// @returns not converged, and without a solution, if the matrix is not positive definite
   PetscSolve solve(linear::BlockVector& solution);
   /// Of right-hand side and solution.
   double product() const;
@@ -45,10 +47,10 @@ class PetscSystem {
   /// Of all processes.
   static double sum(double number);
 
- private:
   struct Objects;
+
+ private:
   std::unique_ptr<Objects> objects_;
-  PartPlace place_;
 };
 
 }  // namespace haptex::large

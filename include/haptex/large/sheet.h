@@ -54,14 +54,20 @@ struct Rows {
 /// @param parts from 1 to the number of rows
 Rows ownRows(const Sheet& sheet, int part, int parts);
 
-/// Those and the ones around them that act on them, or on which forces act that depend on them.
+/// Those and some on either side, kOverlap at most, whose part of a system (Strip) is whole, too.
+Rows wholeRows(const Sheet& sheet, int part, int parts);
+constexpr int kOverlap = 12;
+
+/// Those and the ones around them that make their part of a system whole.
 Rows knownRows(const Sheet& sheet, int part, int parts);
 
 /// Where the particles of a part are among all.
 struct PartPlace {
-  std::int64_t all = 0;            ///< particles of the sheet
-  std::int64_t offset = 0;         ///< of the first particle of the known rows among them
-  int own_begin = 0, own_end = 0;  ///< its own ones, of the known rows
+  std::int64_t all = 0;     ///< particles of the sheet
+  std::int64_t offset = 0;  ///< of the first particle of the known rows among them
+  // Of the known ones:
+  int own_begin = 0, own_end = 0;
+  int whole_begin = 0, whole_end = 0;  ///< those of wholeRows()
 };
 PartPlace placeOf(const Sheet& sheet, int part, int parts);
 
