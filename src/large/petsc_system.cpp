@@ -30,12 +30,12 @@ struct RowCounts {
 };
 
 RowCounts countBlocks(const linear::SymmetricBlockMatrix& pattern, const PartPlace& place) {
-  const auto isOwn = [&](int i) { return i >= place.own_begin && i < place.own_end; };
+  const auto is_own = [&](int i) { return i >= place.own_begin && i < place.own_end; };
   RowCounts counts;
   counts.here.assign(place.own_end - place.own_begin, 1);
   counts.elsewhere.assign(counts.here.size(), 0);
   const auto count = [&](int row, int column) {
-    if (isOwn(row)) ++(isOwn(column) ? counts.here : counts.elsewhere)[row - place.own_begin];
+    if (is_own(row)) ++(is_own(column) ? counts.here : counts.elsewhere)[row - place.own_begin];
   };
   for (int i = 0; i < pattern.size(); ++i) {
     for (int s = pattern.rowBegin(i); s < pattern.rowBegin(i + 1); ++s) {
