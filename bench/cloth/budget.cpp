@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "haptex/base/constants.h"
+#include "haptex/base/processors.h"
 #include "haptex/kes/equilibrium.h"
 #include "haptex/material/fabric_file.h"
 #include "haptex/scene/quality_file.h"
@@ -47,8 +48,8 @@ double since(Clock::time_point begin) {
 class CompetingLoad {
  public:
   CompetingLoad() {
-    const unsigned count = 2 * std::max(1u, std::thread::hardware_concurrency());
-    for (unsigned i = 0; i < count; ++i) threads_.emplace_back([this] { work(); });
+    const int count = 2 * base::processorCount();
+    for (int i = 0; i < count; ++i) threads_.emplace_back([this] { work(); });
   }
   ~CompetingLoad() {
     ended_ = true;

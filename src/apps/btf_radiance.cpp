@@ -1,13 +1,12 @@
 // The program btf_radiance: values of a bidirectional texture function for a renderer, see
 // docs/appearance.md.
-#include <algorithm>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "haptex/appearance/btf_file.h"
 #include "haptex/appearance/btf_requests.h"
 #include "haptex/base/command_line.h"
+#include "haptex/base/processors.h"
 
 namespace {
 
@@ -25,9 +24,9 @@ constexpr const char* kUsage =
 
 void evaluate(const std::vector<std::string>& files) {
   const appearance::Btf btf = appearance::readBtf(files[0]);
-  const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   appearance::writeRadiance(
-      appearance::radianceOf(btf, appearance::readRequests(files[1]), threads), files[2]);
+      appearance::radianceOf(btf, appearance::readRequests(files[1]), base::processorCount()),
+      files[2]);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // the reference method on PETSc over MPI (docs/large_sheets.md). Needs no ROS master.
 #include "haptex/large/large_sheet.h"
 
-#include <mpi.h>
 #include <petscsys.h>
 
 #include <chrono>
@@ -10,13 +9,10 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
-#include <optional>
 #include <sstream>
 #include <string>
 
 #include "haptex/base/command_line.h"
-#include "haptex/base/parse_number.h"
-#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/nodes/common/config_files.h"
 
@@ -35,18 +31,17 @@ constexpr const char* kUsage =
 
 struct Request {
   large::Sheet sheet;
-  double seconds = 1.0, step = 0.0;
+  double step = 0.0;  // s
+  int steps = 0;
   std::string out;
 };
 
+constexpr double kMostSteps = 1e9;
+
 double numberOf(const base::CommandLine& line, const std::string& option, double otherwise) {
-  if (line.options.count(option) == 0) return otherwise;
-  const auto number = base::parseNumber<double>(line.value(option));
-  if (!number || !std::isfinite(*number) || *number <= 0.0) {
-    base::refuse(option, " is ", base::quoted(line.value(option)),
-                 ": allowed are numbers greater than 0");
-  }
-  return *number;
+  return line.number(
+      option, otherwise, [](double number) { return std::isfinite(number) && number > 0.0; },
+      "are numbers greater than 0");
 }
 
 Request readRequest(const std::vector<std::string>& arguments) {
@@ -59,8 +54,12 @@ Request readRequest(const std::vector<std::string>& arguments) {
   Request request;
   request.sheet = large::loadSheet(nodes::findConfigFile("scenes", line.files[0]),
                                    numberOf(line, "--edge", 0.0));
-  request.seconds = numberOf(line, "--seconds", 1.0);
   request.step = numberOf(line, "--step", request.sheet.time_step);
+  const double steps = std::ceil(numberOf(line, "--seconds", 1.0) / request.step - 1e-9);
+  if (!(steps <= kMostSteps)) {
+    base::refuse("--seconds are ", steps, " steps of --step: allowed are ", kMostSteps);
+  }
+  request.steps = static_cast<int>(steps);
   request.out = line.value("--out");
   return request;
 }
@@ -79,8 +78,7 @@ void run(const Request& request, bool prints) {
                 static_cast<long long>(request.sheet.triangleCount()));
     std::printf("time_s\tnewton\tlinear\tresidual\tkinetic_J\tpotential_J\tlowest_m\ttaken_s\n");
   }
-  const auto steps = static_cast<long>(std::ceil(request.seconds / request.step - 1e-9));
-  for (long i = 0; i < steps; ++i) {
+  for (int i = 0; i < request.steps; ++i) {
     const auto start = std::chrono::steady_clock::now();
     const large::LargeStep step = sheet.step(request.step);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
@@ -110,7 +108,7 @@ int main(int argc, char** argv) {
   int none = 1;
   if (PetscInitialize(&none, &argv, nullptr, nullptr) != 0) return 1;
   int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   // All processes refuse the same arguments; one says so.
   std::ostringstream silent;
   Request request;
@@ -120,7 +118,7 @@ int main(int argc, char** argv) {
         run(request, rank == 0);
         return 0;
       });
-  if (status == 1) MPI_Abort(MPI_COMM_WORLD, 1);  // the others may wait for this one
+  if (status == 1) MPI_Abort(PETSC_COMM_WORLD, 1);  // the others may wait for this one
   PetscFinalize();
   return status;
 }

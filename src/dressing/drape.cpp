@@ -9,10 +9,10 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 #include "haptex/base/constants.h"
+#include "haptex/base/processors.h"
 #include "haptex/base/require.h"
 #include "haptex/cloth/forces/self_contact/rest_surface.h"
 #include "haptex/dressing/fastened.h"
@@ -188,17 +188,19 @@ class Dressing {
   bool closeIn(const Closing& closing, bool is_last) {
     Closed closed{SeamPull(garment_, settings_.tension), garment_.mesh.initial_positions};
     double thickness = closingThickness();
-    bool is_sewn = closeAt(thickness, closing, is_last, closed), goes_on = true;
-    while (!is_sewn && goes_on) {
+    bool is_sewn = closeAt(thickness, closing, is_last, closed), goes_on = !is_sewn;
+    while (goes_on) {
       const double thinnest = std::max(kThinnestOpen, leastThickness());
       const bool is_late = closed.time > settings_.most_closing_time;
       const bool is_thinnest = !closing.thins || thickness <= thinnest || is_late;
       const bool intersects_body = outcome_.with_body > 0;
       is_sewn = closing.pulls_apart && is_thinnest && !intersects_body && pullApart();
-      goes_on = closing.pulls_apart && !is_late && !(closing.thins && intersects_body);
-      if (is_sewn || !goes_on) continue;
-      if (closing.thins) thickness = std::max(kThinnerOpen * thickness, thinnest);
-      is_sewn = closeAt(thickness, closing, is_last, closed);
+      goes_on = !is_sewn && closing.pulls_apart && !is_late && !(closing.thins && intersects_body);
+      if (goes_on) {
+        if (closing.thins) thickness = std::max(kThinnerOpen * thickness, thinnest);
+        is_sewn = closeAt(thickness, closing, is_last, closed);
+        goes_on = !is_sewn;
+      }
     }
     outcome_.closing_time += closed.time;
     return is_sewn;
@@ -362,9 +364,7 @@ class Dressing {
 
 }  // namespace
 
-int allThreads() {
-  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, cloth::kMaxThreads);
-}
+int allThreads() { return std::min(base::processorCount(), cloth::kMaxThreads); }
 
 CoarseStart coarseStart(double edge_length) {
   CoarseStart start{edge_length, 0};

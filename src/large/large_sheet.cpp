@@ -1,6 +1,6 @@
 #include "haptex/large/large_sheet.h"
 
-#include <mpi.h>
+#include <petscsys.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,13 +21,13 @@ constexpr int kMostSolves = 40;       // of a stage
 
 int processes() {
   int count = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &count);
+  MPI_Comm_size(PETSC_COMM_WORLD, &count);
   return count;
 }
 
 int process() {
   int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   return rank;
 }
 
@@ -210,7 +210,7 @@ double LargeSheet::lowest() const {
   for (int i = place_.own_begin; i < place_.own_end; ++i) {
     lowest = std::min(lowest, strip_.state().positions[i].z());
   }
-  MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_DOUBLE, MPI_MIN, PETSC_COMM_WORLD);
   return lowest;
 }
 

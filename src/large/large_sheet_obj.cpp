@@ -1,22 +1,15 @@
 // A large sheet as an OBJ file.
-#include <mpi.h>
+#include <petscsys.h>
 
-#include <limits>
 #include <ostream>
 
 #include "haptex/large/large_sheet.h"
+#include "haptex/mesh/obj_writer.h"
 
 namespace haptex::large {
 namespace {
 
 constexpr int kTag = 1;  // of messages with positions
-
-/// Of one process after the other.
-void writePositions(const std::vector<Eigen::Vector3d>& positions, std::ostream& out) {
-  for (const Eigen::Vector3d& at : positions) {
-    out << "v " << at.x() << ' ' << at.y() << ' ' << at.z() << '\n';
-  }
-}
 
 void writeRest(const Sheet& sheet, std::ostream& out) {
   for (int row = 0; row < sheet.rowCount(); ++row) {
@@ -50,17 +43,16 @@ void LargeSheet::writeObj(std::ostream& out) const {
   std::vector<Eigen::Vector3d> positions(begin + place_.own_begin, begin + place_.own_end);
   if (part_ > 0) {
     MPI_Send(positions.data(), static_cast<int>(3 * positions.size()), MPI_DOUBLE, 0, kTag,
-             MPI_COMM_WORLD);
+             PETSC_COMM_WORLD);
     return;
   }
-  out.precision(std::numeric_limits<double>::max_digits10);
-  writePositions(positions, out);
+  mesh::writeObjPositions(positions, out);
   for (int part = 1; part < parts_; ++part) {
     const PartPlace place = placeOf(sheet_, part, parts_);
     positions.resize(place.own_end - place.own_begin);
     MPI_Recv(positions.data(), static_cast<int>(3 * positions.size()), MPI_DOUBLE, part, kTag,
-             MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    writePositions(positions, out);
+             PETSC_COMM_WORLD, MPI_STATUS_IGNORE);
+    mesh::writeObjPositions(positions, out);
   }
   writeRest(sheet_, out);
   writeTriangles(sheet_, out);

@@ -85,13 +85,14 @@ struct PetscSystem::Objects {
   Objects& operator=(const Objects&) = delete;
 
   /// @param to of the strip
-  void bring(Vec from, double* to) {
-    check(VecScatterBegin(to_known, from, known, INSERT_VALUES, SCATTER_FORWARD));
-    check(VecScatterEnd(to_known, from, known, INSERT_VALUES, SCATTER_FORWARD));
+  PetscErrorCode bring(Vec from, double* to) {
+    PetscCall(VecScatterBegin(to_known, from, known, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecScatterEnd(to_known, from, known, INSERT_VALUES, SCATTER_FORWARD));
     const PetscScalar* values = nullptr;
-    check(VecGetArrayRead(known, &values));
+    PetscCall(VecGetArrayRead(known, &values));
     std::copy_n(values, part.size(), to);
-    check(VecRestoreArrayRead(known, &values));
+    PetscCall(VecRestoreArrayRead(known, &values));
+    return 0;
   }
 
   /// @param from of the strip's own particles
@@ -104,19 +105,21 @@ struct PetscSystem::Objects {
     check(VecRestoreArray(to, &values));
   }
 
-  /// to = the sum over all parts of what their factors make of theirs.
-  void precondition(Vec from, Vec to) {
-    bring(from, part.data());
+  /// to = the sum over all parts of what their factors make of theirs. PETSc calls it: an exception
+  /// must not pass its frames.
+  PetscErrorCode precondition(Vec from, Vec to) noexcept {
+    PetscCall(bring(from, part.data()));
     clearCut();
     factor->solve(part);
     clearCut();
     PetscScalar* values = nullptr;
-    check(VecGetArray(known, &values));
+    PetscCall(VecGetArray(known, &values));
     std::copy_n(part.data(), part.size(), values);
-    check(VecRestoreArray(known, &values));
-    check(VecSet(to, 0.0));
-    check(VecScatterBegin(to_known, known, to, ADD_VALUES, SCATTER_REVERSE));
-    check(VecScatterEnd(to_known, known, to, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecRestoreArray(known, &values));
+    PetscCall(VecSet(to, 0.0));
+    PetscCall(VecScatterBegin(to_known, known, to, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecScatterEnd(to_known, known, to, ADD_VALUES, SCATTER_REVERSE));
+    return 0;
   }
 
   /// Of what the strip does not know whole.
@@ -138,21 +141,10 @@ struct PetscSystem::Objects {
   bool is_definite = true;  // as far as the factors of all processes say
 };
 
-namespace {
-
-PetscErrorCode applyFactors(PC preconditioner, Vec from, Vec to) {
-  void* objects = nullptr;
-  check(PCShellGetContext(preconditioner, &objects));
-  static_cast<PetscSystem::Objects*>(objects)->precondition(from, to);
-  return 0;
-}
-
-}  // namespace
-
 PetscSystem::Objects::Objects(const linear::SymmetricBlockMatrix& pattern, const PartPlace& at)
     : place(at),
       matrix(makeMatrix(pattern, at)),
-      part(3, pattern.size()),
+      part(linear::BlockVector::Zero(3, pattern.size())),
       is_cut(pattern.size(), 1),
       nothing(linear::BlockVector::Zero(3, pattern.size())) {
   check(MatCreateVecs(matrix, &solution, &rhs));
@@ -174,7 +166,11 @@ PetscSystem::Objects::Objects(const linear::SymmetricBlockMatrix& pattern, const
   check(KSPGetPC(solver, &preconditioner));
   check(PCSetType(preconditioner, PCSHELL));
   check(PCShellSetContext(preconditioner, this));
-  check(PCShellSetApply(preconditioner, applyFactors));
+  check(PCShellSetApply(preconditioner, [](PC shell, Vec from, Vec to) {
+    void* objects = nullptr;
+    const PetscErrorCode error = PCShellGetContext(shell, &objects);
+    return error != 0 ? error : static_cast<Objects*>(objects)->precondition(from, to);
+  }));
   check(PCShellSetName(preconditioner, "additive Schwarz with factors in single precision"));
   check(KSPSetFromOptions(solver));
   PetscBool is_ours = PETSC_FALSE;
@@ -227,7 +223,7 @@ PetscSolve PetscSystem::solve(linear::BlockVector& solution) {
   check(KSPGetConvergedReason(o.solver, &reason));
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(o.solver, &iterations));
-  o.bring(o.solution, solution.data());
+  check(o.bring(o.solution, solution.data()));
   return {reason > 0, static_cast<int>(iterations)};
 }
 
@@ -240,7 +236,7 @@ double PetscSystem::product() const {
 void PetscSystem::share(std::vector<Eigen::Vector3d>& vectors) {
   Objects& o = *objects_;
   o.put(vectors[o.place.own_begin].data(), o.solution);
-  o.bring(o.solution, vectors.front().data());
+  check(o.bring(o.solution, vectors.front().data()));
 }
 
 double PetscSystem::sum(double number) {

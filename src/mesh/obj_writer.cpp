@@ -29,17 +29,17 @@ void requireNames(const ClothMesh& mesh, const std::vector<std::string>& names) 
   }
 }
 
-void writePlaces(const std::vector<Eigen::Vector3d>& places, std::ostream& out) {
+}  // namespace
+
+void writeObjPositions(const std::vector<Eigen::Vector3d>& positions, std::ostream& out) {
   out.precision(std::numeric_limits<double>::max_digits10);
-  for (const Eigen::Vector3d& place : places) {
-    out << "v " << place.x() << ' ' << place.y() << ' ' << place.z() << '\n';
+  for (const Eigen::Vector3d& at : positions) {
+    out << "v " << at.x() << ' ' << at.y() << ' ' << at.z() << '\n';
   }
 }
 
-}  // namespace
-
 void writeObj(const ObstacleMesh& surface, std::ostream& out) {
-  writePlaces(surface.vertices, out);
+  writeObjPositions(surface.vertices, out);
   for (const auto& [a, b, c] : surface.triangles) {
     out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
   }
@@ -47,7 +47,7 @@ void writeObj(const ObstacleMesh& surface, std::ostream& out) {
 
 void writeObj(const ClothMesh& mesh, const std::vector<std::string>& names, std::ostream& out) {
   requireNames(mesh, names);
-  writePlaces(mesh.initial_positions, out);
+  writeObjPositions(mesh.initial_positions, out);
   int textures = 0;
   for (int panel = 0; panel < mesh.panelCount(); ++panel) {
     out << "g " << names[panel] << '\n';

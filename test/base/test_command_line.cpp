@@ -31,6 +31,21 @@ TEST(CommandLine, NamesWhatIsNotAllowedAndWhatIs) {
   EXPECT_EQ(refusalOf({"a", "--edge"}, {"--edge"}), "--edge needs a value");
 }
 
+TEST(CommandLine, ReadsNumbersThatARuleAllows) {
+  const CommandLine line = readCommandLine({"--a", "3", "--b", "0.5", "--c", "-1", "--d", "nan"},
+                                           {"--a", "--b", "--c", "--d"});
+  const auto is_positive = [](auto number) { return number > 0; };
+  const auto refused = [&](const std::string& option) {
+    return test::refusalOf([&] { line.number(option, 1, is_positive, "are counts"); });
+  };
+  EXPECT_EQ(line.number("--a", 1, is_positive, ""), 3);
+  EXPECT_EQ(line.number("--b", 1.0, is_positive, ""), 0.5);
+  EXPECT_EQ(line.number("--e", 1, is_positive, ""), 1);
+  EXPECT_EQ(refused("--b"), "--b is '0.5': allowed are counts");
+  EXPECT_EQ(refused("--c"), "--c is '-1': allowed are counts");
+  EXPECT_THROW(line.number("--d", 1.0, is_positive, ""), std::invalid_argument);
+}
+
 TEST(RunProgram, TellsArgumentsThatAreRefusedFromWorkThatFails) {
   const auto fails = [] { throw std::runtime_error("because"); };
   std::ostringstream err;

@@ -4,8 +4,13 @@
 #include <functional>
 #include <iosfwd>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "haptex/base/parse_number.h"
+#include "haptex/base/quoted.h"
+#include "haptex/base/require.h"
 
 namespace haptex::base {
 
@@ -16,6 +21,21 @@ struct CommandLine {
 
   /// @returns the value of an option, or `otherwise` if it is not there
   std::string value(const std::string& option, const std::string& otherwise = "") const;
+
+  /// @param is_allowed a function of the number @param allowed what it lets pass, in words
+  /// @returns the number that an option's value is, or `otherwise` if it is not there
+  /// @throws std::invalid_argument naming option, value and what is allowed
+  template <typename Number, typename Rule>
+  Number number(const std::string& option, Number otherwise, const Rule& is_allowed,
+                const std::string& allowed) const {
+    const auto found = options.find(option);
+    if (found == options.end()) return otherwise;
+    const std::optional<Number> number = parseNumber<Number>(found->second);
+    if (!number || !is_allowed(*number)) {
+      refuse(option, " is ", quoted(found->second), ": allowed ", allowed);
+    }
+    return *number;
+  }
 };
 
 /// @param options that are allowed, such as "--edge", at least one; each has a value

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <iosfwd>
-#include <memory>
 #include <optional>
 
 #include "haptex/large/petsc_system.h"

@@ -33,13 +33,13 @@ class PetscSystem {
   PetscSystem(const PetscSystem&) = delete;
   PetscSystem& operator=(const PetscSystem&) = delete;
 
-  /// @param matrix is used up
+  /// @param matrix kg, is used up @param rhs N s
   void take(linear::SymmetricBlockMatrix& matrix, const linear::BlockVector& rhs);
-  double rhsNorm() const;
-  /// @param solution of all particles of the strip
+  double rhsNorm() const;  ///< N s
+  /// @param solution m/s, of all particles of the strip
   /// @returns not converged, and without a solution, if the matrix is not positive definite
   PetscSolve solve(linear::BlockVector& solution);
-  /// Of right-hand side and solution.
+  /// Of right-hand side and solution (J).
   double product() const;
 
   /// Gives each particle of the strip the vector that the process has which owns it.
@@ -47,9 +47,8 @@ class PetscSystem {
   /// Of all processes.
   static double sum(double number);
 
-  struct Objects;
-
  private:
+  struct Objects;
   std::unique_ptr<Objects> objects_;
 };
 

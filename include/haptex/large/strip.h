@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "haptex/cloth/dynamics/recent_motion.h"
+#include "haptex/cloth/dynamics/stage.h"
 #include "haptex/large/sheet.h"
 
 namespace haptex::large {
@@ -31,18 +31,19 @@ class Strip {
   /// Its result() is the end of the step.
   void endStep();
 
-  double a() const { return a_; }                                   ///< s, of the stage
+  double a() const { return stage_.a; }                             ///< s, of the stage
   cloth::Velocities& baseVelocities() { return base_.velocities; }  ///< m/s, v*
   const cloth::Velocities& baseVelocities() const { return base_.velocities; }
-  /// Of the stage, as far as it is known.
+  /// Of the stage: at first where it is linearised, then as far as it is known.
   const cloth::ClothState& result() const { return result_; }
   cloth::ClothState& result() { return result_; }
 
   /// Takes the result to where earlier instants lead. @returns false if too few are known
   bool predict();
-  /// The system of the stage that is linearised about the last instant. What is held is eliminated.
+  /// The system of the stage that is linearised about its first result(). What is held is
+  /// eliminated.
   void linearise(linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
-  /// The result by the solution of that system.
+  /// Changes the result by the solution of that system.
   void takeLinearised(const linear::BlockVector& solution);
   /// What Newton iterations hold fixed is that of the result.
   void hold();
@@ -55,19 +56,14 @@ class Strip {
  private:
   cloth::ForceState of(const cloth::Positions& positions,
                        const cloth::Velocities& velocities) const;
-  void addInertia(const cloth::Velocities& velocities, linear::SymmetricBlockMatrix& matrix,
-                  linear::BlockVector& rhs) const;
   void eliminate(linear::SymmetricBlockMatrix& matrix, linear::BlockVector& rhs) const;
 
   cloth::Cloth cloth_;
   cloth::RecentMotion motion_;
   cloth::ClothState begin_, base_, result_;
-  cloth::Positions guess_positions_;             // m, where a stage is linearised
-  cloth::Velocities guess_velocities_;           // m/s, likewise
-  cloth::StrainPast past_;                       // of the stage
+  cloth::StageStart stage_;
   const cloth::Positions* predicted_ = nullptr;  // m; null: too little is known
-  double a_ = 0.0;                               // s
-  double ahead_ = 0.0;                           // s, from the guess to the end of the stage
+  double ahead_ = 0.0;                           // s, of a stage from where it is linearised
   double first_ = 0.0, second_ = 0.0;            // s, of both stages
   std::vector<char> held_particles_;             // nonzero: the particle stays
   linear::BlockVector unchanged_;                // m/s, of what is held: zero

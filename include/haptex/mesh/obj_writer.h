@@ -1,6 +1,7 @@
 // Cloth as a Wavefront OBJ file.
 #pragma once
 
+#include <Eigen/Core>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ namespace haptex::mesh {
 /// @throws std::invalid_argument if there are not as many names as panels, or one is empty or has a
 ///   blank or a control character
 void writeObj(const ClothMesh& mesh, const std::vector<std::string>& names, std::ostream& out);
+
+/// Writes positions ("v", m) alone, with as many digits as give them back; the stream keeps these.
+void writeObjPositions(const std::vector<Eigen::Vector3d>& positions, std::ostream& out);
 
 /// Writes a surface: its vertices ("v", m) and triangles.
 void writeObj(const ObstacleMesh& surface, std::ostream& out);

@@ -96,8 +96,8 @@ Integrator::Integrator(const Cloth& cloth, const StepSettings& settings)
   balance_.emplace(cloth, motion_.has_value(), stages_->pool());
   if (cloth.selfContact() != nullptr) untangling_.emplace(cloth);
   if (method == IntegrationMethod::kBackwardEuler) return;
-  forces_.resize(cloth.particleCount());
-  if (method != IntegrationMethod::kBackwardMidpoint) base_ = end_;
+  if (method == IntegrationMethod::kBackwardMidpoint) forces_.resize(cloth.particleCount());
+  if (two_instants) base_ = end_;
   if (method == IntegrationMethod::kBdf2) history_ = History{end_, end_};
 }
 
@@ -340,27 +340,13 @@ void Integrator::extrapolate(const Cloth& cloth, const ClothState& begin, double
 /// gamma = 2 - sqrt 2 both stages have the same a (Bank et al. 1985).
 void Integrator::runTrBdf2(const Cloth& cloth, const ClothState& begin, double h,
                            StepReport& report) {
-  const double first = (2.0 - std::sqrt(2.0)) * h;
-  const double a = 0.5 * first;
+  const double first = trapezoidPart(h);
   base_.memory = begin.memory;
-  const bool goes_on = motion_ && motion_->leadsTo(begin);
-  ForceState at_begin = begin.ofForces();
-  StrainPast strains, stage_strains;
-  if (goes_on) {
-    strains = motion_->strains();
-    at_begin.past = &strains;
-    stage_strains = motion_->strainsAfter(begin, a);
-  }
-  std::fill(forces_.begin(), forces_.end(), Vector3d::Zero());
-  cloth.forces().addForces(at_begin, forces_);
-  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    base_.positions[i] = begin.positions[i] + a * begin.velocities[i];
-    base_.velocities[i] = begin.velocities[i] + a / cloth.masses()[i] * forces_[i];
-  }
-  cloth.ties().carry(begin.time, base_.velocities);  // they have no mass
+  const StageStart start =
+      startTrapezoid(cloth, begin, first, motion_ ? &*motion_ : nullptr, base_);
   const Positions* predicted =
-      goes_on && predicts() ? motion_->predictAfter(begin, first) : nullptr;
-  stages_->solve(cloth, {base_, a, begin.time + first, 1.0, stage_strains},
+      start.goes_on && predicts() ? motion_->predictAfter(begin, first) : nullptr;
+  stages_->solve(cloth, {base_, start.a, begin.time + first, 1.0, start.past},
                  {begin.positions, begin.velocities, first, predicted}, end_, report);
   settle(end_.velocities);
   runBdf2(cloth, begin, end_, first, h - first, report);
@@ -370,28 +356,14 @@ void Integrator::runTrBdf2(const Cloth& cloth, const ClothState& begin, double h
 /// velocities of the guess are the mean ones between `before` and `middle`.
 void Integrator::runBdf2(const Cloth& cloth, const ClothState& before, const ClothState& middle,
                          double first, double second, StepReport& report) {
-  const double ratio = second / first;
-  const double divisor = 1.0 + 2.0 * ratio;
-  const double of_before = ratio * ratio / divisor;
-  for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-    const Vector3d way = middle.positions[i] - before.positions[i];
-    base_.positions[i] = middle.positions[i] + of_before * way;
-    base_.velocities[i] =
-        middle.velocities[i] + of_before * (middle.velocities[i] - before.velocities[i]);
-    end_.velocities[i] = way / first;
-  }
+  const StageStart start = startBdf2(before, middle, first, second, motion_ ? &*motion_ : nullptr,
+                                     base_, end_.velocities);
   // A velocity from before an impact would make what touches rebound.
   settle(base_.velocities);
-  const double a = second * (1.0 + ratio) / divisor;
-  StrainPast strains;
-  const Positions* predicted = nullptr;
-  if (motion_) {
-    const double time = end_.time - second - first;
-    motion_->takeBdf2(before, time, first, middle.positions, of_before, a);
-    strains = motion_->strains();
-    if (predicts()) predicted = motion_->predict(before, middle.positions, first, second);
-  }
-  stages_->solve(cloth, {base_, a, end_.time, 1.0, strains},
+  const Positions* predicted = start.goes_on && predicts()
+                                   ? motion_->predict(before, middle.positions, first, second)
+                                   : nullptr;
+  stages_->solve(cloth, {base_, start.a, end_.time, 1.0, start.past},
                  {middle.positions, end_.velocities, second, predicted}, end_, report);
 }
 

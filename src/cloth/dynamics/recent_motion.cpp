@@ -7,11 +7,11 @@ RecentMotion::RecentMotion(const Cloth& cloth)
   positions_.fill(last_);
 }
 
-void RecentMotion::takeBdf2(const ClothState& before, double time, double first,
-                            const Positions& middle, double of_before, double a) {
+void RecentMotion::takeBdf2(const ClothState& before, double first, const Positions& middle,
+                            double of_before, double a) {
   positions_[0] = middle;
   positions_[1] = before.positions;
-  times_ = {time + first, time};
+  times_ = {before.time + first, before.time};
   weights_ = {1.0 + of_before, -of_before};
   count_ = 2;
   a_ = a;

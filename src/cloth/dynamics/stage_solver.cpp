@@ -243,17 +243,8 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
   return potential;
 }
 
-void StageSolver::addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities) {
-  matrix_.setZero(pool_.get());
-  for (int i = 0; i < matrix_.size(); ++i) {
-    const double mass = cloth.masses()[i];
-    matrix_.diagonal(i).diagonal().setConstant(mass);
-    rhs_.col(i) = -mass * (velocities[i] - stage.base.velocities[i]);
-  }
-}
-
 void StageSolver::linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
-  addInertia(cloth, stage, guess.velocities);
+  setInertia(cloth, stage.base, guess.velocities, pool_.get(), matrix_, rhs_);
   cloth.forces().assembleLinearised(forceState(stage, guess.positions, guess.velocities),
                                     {stage.a, guess.ahead}, matrix_, rhs_);
   prescribe(cloth, stage, guess);
@@ -386,7 +377,7 @@ double StageSolver::incrementalPotential(const Cloth& cloth, const Stage& stage,
 void StageSolver::assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at,
                                  Hessian hessian, StepReport& report) {
   const Clock::time_point start = Clock::now();
-  addInertia(cloth, stage, at.velocities);
+  setInertia(cloth, stage.base, at.velocities, pool_.get(), matrix_, rhs_);
   cloth.forces().assembleNewton(forceState(stage, at.positions, at.velocities), held_.data(),
                                 stage.a, hessian, matrix_, rhs_);
   if (!touching()) eliminate();

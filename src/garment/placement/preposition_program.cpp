@@ -5,8 +5,6 @@
 #include <stdexcept>
 
 #include "haptex/base/command_line.h"
-#include "haptex/base/parse_number.h"
-#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/garment/body/body_file.h"
 #include "haptex/garment/pattern/outfit.h"
@@ -27,21 +25,16 @@ struct Request {
   double edge = 0.0;  // m
 };
 
-double readEdge(const std::string& text) {
-  const auto edge = base::parseNumber<double>(text);
-  if (!edge || !(*edge >= 1e-3 && *edge <= 1.0)) {
-    base::refuse("--edge is ", base::quoted(text), ": allowed are 0.001 to 1 m");
-  }
-  return *edge;
-}
-
 Request parse(const std::vector<std::string>& arguments) {
   const base::CommandLine line = base::readCommandLine(arguments, {"--edge", "--body"});
   if (line.files.size() != 3) {
     base::refuse(line.files.size(),
                  " files: needed are three, the garment, the body and the one to write");
   }
-  return {line.files, line.value("--body"), readEdge(line.value("--edge", "0.01"))};
+  const double edge = line.number(
+      "--edge", 0.01, [](double length) { return length >= 1e-3 && length <= 1.0; },
+      "are 0.001 to 1 m");
+  return {line.files, line.value("--body"), edge};
 }
 
 std::ofstream openToWrite(const std::string& path) {

@@ -5,9 +5,9 @@
 #include <memory>
 #include <ostream>
 #include <stdexcept>
+#include <string>
 
 #include "haptex/base/command_line.h"
-#include "haptex/base/parse_number.h"
 #include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/base/whole_file.h"
@@ -37,14 +37,9 @@ struct Request {
 template <typename Number>
 Number numberOf(const base::CommandLine& line, const std::string& option, Number otherwise,
                 Number least) {
-  if (line.options.count(option) == 0) return otherwise;
-  const std::string text = line.value(option);
-  const auto number = base::parseNumber<Number>(text);
-  if (!number || *number < least) {
-    base::refuse(option, " is ", base::quoted(text), ": allowed are whole numbers from ", least,
-                 " on");
-  }
-  return *number;
+  return line.number(
+      option, otherwise, [&](Number number) { return number >= least; },
+      "are whole numbers from " + std::to_string(least) + " on");
 }
 
 std::unique_ptr<Study> studyOf(const base::CommandLine& line, const std::string& package) {

@@ -95,7 +95,7 @@ class Integrator {
   std::optional<ExplicitStep> explicit_step_;
   std::optional<EnergyBalance> balance_;  // of implicit methods
   ClothState base_;                       // of a stage that does not start at the beginning
-  std::vector<Eigen::Vector3d> forces_;   // N
+  std::vector<Eigen::Vector3d> forces_;   // N, of the midpoint method
   std::optional<History> history_;
   std::optional<Untangling> untangling_;  // of a cloth that collides with itself
   std::optional<RecentMotion> motion_;    // of TR-BDF2 and BDF-2 where Newton iterations need it

@@ -25,10 +25,9 @@ class RecentMotion {
 
   /// Takes over the formula of a BDF-2 stage,
   ///   a e' = e - (1 + of_before) e(middle) + of_before e(before).
-  /// @param time of `before` (s, simulated) @param first s, from there to `middle`
-  /// @param middle its positions are copied
-  void takeBdf2(const ClothState& before, double time, double first, const Positions& middle,
-                double of_before, double a);
+  /// @param first s, from `before` to `middle` @param middle its positions are copied
+  void takeBdf2(const ClothState& before, double first, const Positions& middle, double of_before,
+                double a);
   /// After a step taken anew, which need not have converged: what its strains have changed by is no
   /// rate to go on with. The next step starts with none, e' = e - e(end).
   void startAnew(const ClothState& end);

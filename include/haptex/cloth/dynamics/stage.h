@@ -1,7 +1,10 @@
 // What a stage of an implicit step is to find, and where its first solve starts.
 #pragma once
 
+#include <cmath>
+
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/cloth/dynamics/recent_motion.h"
 
 namespace haptex::cloth {
 
@@ -29,5 +32,33 @@ struct StageGuess {
   /// start, unless something touches, without the first solve. Null: nothing is known.
   const Positions* predicted = nullptr;
 };
+
+/// What a stage of TR-BDF2 (Bank et al. 1985) or BDF-2 has beside its x* and v*.
+struct StageStart {
+  double a = 0.0;        ///< s
+  StrainPast past;       ///< of the stage; it refers to the RecentMotion and to the step's begin
+  bool goes_on = false;  ///< the motion is known, and leads here
+};
+
+/// The seconds of a step of h that are the trapezoidal rule's: then both stages have the same a.
+inline double trapezoidPart(double h) { return (2.0 - std::sqrt(2.0)) * h; }
+
+/// The trapezoidal rule over `first` seconds:
+///   x* = x + a v,  v* = v + a M^-1 F(x, v),  a = first / 2.
+/// @param motion null: not needed @param base gets x* and v*
+StageStart startTrapezoid(const Cloth& cloth, const ClothState& begin, double first,
+                          const RecentMotion* motion, ClothState& base);
+
+/// BDF-2 to `second` seconds after `middle`, which is `first` seconds after `before`.
+/// @param motion null: not needed @param base gets x* and v*
+/// @param velocities gets the mean ones between `before` and `middle` (m/s); may be the latter's
+StageStart startBdf2(const ClothState& before, const ClothState& middle, double first,
+                     double second, RecentMotion* motion, ClothState& base, Velocities& velocities);
+
+/// The system of a solve without forces, for the change of the velocities: M, -M (v - v*).
+/// @param pool null: one thread
+void setInertia(const Cloth& cloth, const ClothState& base, const Velocities& velocities,
+                linear::ThreadPool* pool, linear::SymmetricBlockMatrix& matrix,
+                linear::BlockVector& rhs);
 
 }  // namespace haptex::cloth

@@ -123,7 +123,6 @@ class StageSolver {
   bool isSmallError(double force, double decrease) const;
   Descent searchLine(const Cloth& cloth, const Stage& stage, ClothState& result, double& potential,
                      StepReport& report);
-  void addInertia(const Cloth& cloth, const Stage& stage, const Velocities& velocities);
   double incrementalPotential(const Cloth& cloth, const Stage& stage, const ClothState& at) const;
 
   StepSettings settings_;
