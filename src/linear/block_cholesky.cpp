@@ -37,10 +37,12 @@ BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern, T
 
 template <typename T>
 BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern,
-                                          const Elimination& elimination, ThreadPool* pool)
+                                          const Elimination& elimination, ThreadPool* pool,
+                                          std::vector<T> memory)
     : elimination_(elimination),
       pool_(pool),
       cost_(factorisationCost(elimination_)),
+      panels_(std::move(memory)),
       permuted_(3, pattern.size()) {
   const std::size_t count = elimination_.supernodes.size();
   makePanels();
@@ -65,7 +67,8 @@ BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern,
   }
 }
 
-/// Panels lie in memory in the order in which they are factorised.
+/// Panels lie in memory in the order in which they are factorised. What is there does not matter:
+/// load() begins with zeros.
 template <typename T>
 void BasicBlockCholesky<T>::makePanels() {
   std::size_t size = 0;
@@ -74,6 +77,11 @@ void BasicBlockCholesky<T>::makePanels() {
     const int leading = 3 * (supernode.width() + below);
     panel_of_.push_back({size, leading, 0, 0, below});
     size += static_cast<std::size_t>(leading) * 3 * supernode.width();
+  }
+  if (panels_.capacity() < size) {
+    const bool grows = !panels_.empty();
+    panels_ = std::vector<T>();  // nothing to be copied
+    if (grows) panels_.reserve(size + size / 8);
   }
   panels_.resize(size);
 }

@@ -1,6 +1,8 @@
 #include "haptex/linear/kept_factor.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "haptex/linear/ordering.h"
 
@@ -58,7 +60,10 @@ void KeptFactor::analyseWhole(const SymmetricBlockMatrix& matrix) {
   whole_->takeValues(matrix);
   // Nested dissection takes four times as long and saves nothing where couplings tie layers.
   const Elimination elimination = analyse(*whole_, minimumDegreeOrder(*whole_));
-  factor_ = std::make_unique<BasicBlockCholesky<float>>(*whole_, elimination, pool_);
+  std::vector<float> memory;
+  if (factor_) memory = factor_->releaseMemory();
+  factor_ =
+      std::make_unique<BasicBlockCholesky<float>>(*whole_, elimination, pool_, std::move(memory));
   setCosts(factor_->cost(), factor_->numbers());
   analysis_cost_ = kAnalysedNumberOverBlock * factor_->numbers();
   cost_ += analysis_cost_;
@@ -68,6 +73,7 @@ bool KeptFactor::makeFactor(const SymmetricBlockMatrix& matrix) {
   ++factorisations_;
   solves_ = 0;
   cost_ = 0.0;
+  is_kept_ = false;
   if (knows_couplings_ && !(whole_ && whole_->takeValues(matrix))) analyseWhole(matrix);
   cost_ += factor_cost_;
   is_kept_ = factor_->factorise(knows_couplings_ ? *whole_ : matrix);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "haptex/linear/block_matrix.h"
@@ -28,8 +29,12 @@ class BasicBlockCholesky {
 
   /// With the symbolic part of another factor of the same pattern, which costs most of the
   /// construction.
+  /// @param memory of a factor that is no more, to be used again: new memory costs page faults
   BasicBlockCholesky(const SymmetricBlockMatrix& pattern, const Elimination& elimination,
-                     ThreadPool* pool);
+                     ThreadPool* pool, std::vector<T> memory = {});
+
+  /// What the constructor takes as `memory`; the factor is then unusable.
+  std::vector<T> releaseMemory() { return std::move(panels_); }
 
   const Elimination& elimination() const { return elimination_; }
 

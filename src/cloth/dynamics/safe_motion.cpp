@@ -67,8 +67,8 @@ MotionCut SafeMotion::go(NearPairs& near, NearObstacles* obstacles,
     if (longest == 0.0) break;
     // Short ways need no new search: they bring nothing to the margin from farther away.
     const double reach = kOfReach * kKnown * near.searched();
-    known_ = std::min(kKnown * near.searched(), 2.0 * std::sqrt(longest) + margin_);
-    if (!near.find(place_, known_, pool_)) break;
+    const double known = std::min(kKnown * near.searched(), 2.0 * std::sqrt(longest) + margin_);
+    if (!near.find(place_, known, pool_)) break;
     chooseWays(reach, true);
     if (obstacles != nullptr && !chooseObstaclePairs(*obstacles)) {
       chooseWays(reach, false);
@@ -121,11 +121,14 @@ void SafeMotion::chooseWays(double reach, bool common) {
   }
   constexpr double kLess = 0.25;
   if (stopped || most_beyond > kLess * kLess * most) common_.setZero();
+  longest_ = 0.0;
   for (std::size_t i = 0; i < left_.size(); ++i) {
     way_[i] = left_[i] - common_;
     const double length = way_[i].norm();
     if (length > reach) way_[i] *= reach / length;
+    longest_ = std::max(longest_, way_[i].squaredNorm());
   }
+  longest_ = std::sqrt(longest_);
 }
 
 /// On a common way the whole cloth goes up to where it would touch an obstacle.
@@ -133,12 +136,12 @@ void SafeMotion::chooseWays(double reach, bool common) {
 bool SafeMotion::chooseObstaclePairs(NearObstacles& obstacles) {
   obstacle_way_.assign(obstacle_place_.size(), -common_);
   if (common_.isZero(0.0)) {
-    obstacles.find(place_, obstacle_place_, known_);
+    obstacles.find(place_, obstacle_place_, 0.5 * margin_ + longest_, pool_);
     obstacle_pairs_ = &obstacles.pairs();
     return true;
   }
   obstacle_pairs_ =
-      &obstacles.onWays(place_, common_, way_, obstacle_place_, nullptr, 0.5 * margin_);
+      &obstacles.onWays(place_, common_, way_, obstacle_place_, nullptr, 0.5 * margin_, pool_);
   const Pair* first = nullptr;
   const double time = firstTouch(*obstacle_pairs_, &first);
   if (first == nullptr) return true;
@@ -146,6 +149,7 @@ bool SafeMotion::chooseObstaclePairs(NearObstacles& obstacles) {
   const double share = kOfTime * time;
   if (share < kWorthWhile) return false;
   common_ *= share;
+  longest_ *= share;
   for (Vector3d& way : way_) way *= share;
   obstacle_way_.assign(obstacle_place_.size(), -common_);
   return true;
@@ -157,9 +161,6 @@ bool SafeMotion::stopOnWay(const NearPairs& near, const NearObstacles* obstacles
   static const std::vector<Pair> none;
   const std::vector<Pair>& at_obstacles = obstacles != nullptr ? *obstacle_pairs_ : none;
   const bool is_common = !common_.isZero(0.0);
-  longest_ = 0.0;
-  for (const Vector3d& way : way_) longest_ = std::max(longest_, way.squaredNorm());
-  longest_ = std::sqrt(longest_);
   stops_.assign(near.pairs().size(), 0);
   asides_.assign(near.pairs().size(), {});
   neighbour_stops_.assign(near.neighbours().size(), 0);

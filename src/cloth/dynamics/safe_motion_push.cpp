@@ -26,9 +26,9 @@ MotionCut SafeMotion::push(NearPairs& near, NearObstacles& obstacles, const Vect
   common_.setZero();
   way_.assign(place_.size(), Vector3d::Zero());
   const Pair* first = nullptr;
-  const double time = firstTouch(
-      obstacles.onWays(place_, common_, way_, obstacle_place_, &obstacle_way_, 0.5 * margin_),
-      &first);
+  const double time = firstTouch(obstacles.onWays(place_, common_, way_, obstacle_place_,
+                                                  &obstacle_way_, 0.5 * margin_, pool_),
+                                 &first);
   advanceObstacles(first == nullptr ? 1.0 : kOfTime * time, end);
   MotionCut cut;
   int conflicts = 0;
@@ -63,7 +63,7 @@ double SafeMotion::pushOn(NearPairs& near, NearObstacles& obstacles, MotionCut& 
   const Vectors& end = obstacles.surfaces().atEnd();
   const double known = kKnown * near.searched();
   if (!near.find(place_, known, pool_)) return 0.0;
-  obstacles.find(place_, obstacle_place_, known);
+  obstacles.find(place_, obstacle_place_, known, pool_);
   double longest = 0.0;
   for (std::size_t k = 0; k < end.size(); ++k) {
     obstacle_way_[k] = end[k] - obstacle_place_[k];

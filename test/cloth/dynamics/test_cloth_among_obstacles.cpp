@@ -293,5 +293,38 @@ TEST(NearObstacles, FindsThePairsOfAskingAll) {
   }
 }
 
+TEST(NearObstacles, FindsTheSamePairsInTheSameOrderOnSeveralThreads) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  Cloth one(sheet(20), fabricNamed("wool"), effects()),
+      three(sheet(20), fabricNamed("wool"), effects());
+  one.setObstacles(shapes());
+  three.setObstacles(shapes());
+  ClothState state = one.initialState();
+  linear::ThreadPool pool(3);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<Vector3d> ways = state.positions;
+    for (Vector3d& way : ways) way = 2e-3 * Vector3d(any(random), any(random), any(random));
+    const auto found = [&](Cloth& cloth, linear::ThreadPool* threads) {
+      NearObstacles& near = *cloth.selfContact()->obstacles();
+      const auto& places = near.surfaces().atEnd();
+      near.find(state.positions, places, 0.9 * near.searched(), threads);
+      std::vector<NearObstacles::Pair> pairs = near.pairs();
+      const auto& on_ways = near.onWays(state.positions, Vector3d(0.0, 0.0, -2e-3), ways, places,
+                                        nullptr, 1e-3, threads);
+      pairs.insert(pairs.end(), on_ways.begin(), on_ways.end());
+      return pairs;
+    };
+    const auto alone = found(one, nullptr), shared = found(three, &pool);
+    ASSERT_EQ(alone.size(), shared.size());
+    EXPECT_GT(alone.size(), 0u);
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      EXPECT_EQ(alone[i].vertices, shared[i].vertices);
+      EXPECT_EQ(alone[i].distance, shared[i].distance);
+    }
+    for (std::size_t i = 0; i < ways.size(); ++i) state.positions[i] += ways[i];
+  }
+}
+
 }  // namespace
 }  // namespace haptex::cloth::test_cloth_among_obstacles

@@ -116,14 +116,13 @@ class SafeMotion {
   const NearPairs* near_ = nullptr;
   const NearObstacles* obstacles_ = nullptr;  // null if there are none
   double reach_ = 0.0;                        // m, of a pass of push()
-  double known_ = 0.0;      // m, distance up to which all pairs are known on this way
-  Vectors to_;              // m, where the particles are to go
-  Vectors place_;           // m, reached
-  Vectors left_;            // m, of the way of each particle that is not stopped
-  Vectors way_;             // m, beyond the common one
-  Eigen::Vector3d common_;  // m
-  Vectors obstacle_place_;  // m
-  Vectors obstacle_way_;    // m, beyond the common one of the cloth
+  Vectors to_;                                // m, where the particles are to go
+  Vectors place_;                             // m, reached
+  Vectors left_;                              // m, of the way of each particle that is not stopped
+  Vectors way_;                               // m, beyond the common one
+  Eigen::Vector3d common_;                    // m
+  Vectors obstacle_place_;                    // m
+  Vectors obstacle_way_;                      // m, beyond the common one of the cloth
   const std::vector<Pair>* obstacle_pairs_ = nullptr;  // of this way; null: there are none
   std::vector<std::array<int, 4>> stopped_by_;         // per particle; -1: not stopped
   std::vector<int> changed_;                           // round in which the way last did

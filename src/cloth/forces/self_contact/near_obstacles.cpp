@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "haptex/linear/thread_pool.h"
+
 namespace haptex::cloth {
 namespace {
 
@@ -10,6 +12,8 @@ using Eigen::Vector3d;
 using Places = NearObstacles::Places;
 using Box = proximity::BoxTree::Box;
 using proximity::ElementPairKind;
+
+constexpr int kTriangles = 128;  // of the cloth, that a thread takes at a time
 
 std::vector<Box> emptyBoxes(std::size_t count) {
   return std::vector<Box>(count, Box(Vector3d::Zero(), Vector3d::Zero()));
@@ -58,12 +62,17 @@ NearObstacles::NearObstacles(const std::vector<std::array<int, 3>>& triangles,
       own_of_obstacles_(surfaces_->elements()),
       corner_boxes_(emptyBoxes(particles + surfaces_->vertexCount())),
       boxes_(emptyBoxes(surfaces_->elements().triangles.size())),
-      tree_(boxes_) {
+      tree_(boxes_),
+      found_((triangles.size() + kTriangles - 1) / kTriangles) {
   fitObstacleBoxes(surfaces_->atEnd(), nullptr);
   tree_ = proximity::BoxTree(boxes_);
 }
 
+/// Those of obstacles at rest stay.
 void NearObstacles::fitObstacleBoxes(const Places& places, const Places* ways) {
+  if (ways == nullptr && places == fitted_at_) return;
+  fitted_at_.clear();
+  if (ways == nullptr) fitted_at_ = places;
   for (std::size_t i = 0; i < places.size(); ++i) {
     Box& box = corner_boxes_[particles_ + i];
     box = Box(places[i]);
@@ -78,17 +87,42 @@ void NearObstacles::fitObstacleBoxes(const Places& places, const Places* ways) {
   tree_.refit(boxes_);
 }
 
-/// All whose boxes are at most a distance apart.
-void NearObstacles::visit(double distance, std::vector<Pair>& found) {
+/// All whose boxes are at most a distance apart, without those that are far, in order.
+/// @param is_far of a pair, which it may change
+template <typename IsFar>
+void NearObstacles::visit(double distance, linear::ThreadPool* pool, const IsFar& is_far,
+                          std::vector<Pair>& found) {
+  const int triangles = static_cast<int>(cloth_.triangles.size());
+  linear::runTasks(pool, static_cast<int>(found_.size()), [&](int part, int) {
+    std::vector<Pair>& its = found_[part];
+    its.clear();
+    const int end = std::min(triangles, kTriangles * (part + 1));
+    for (int t = kTriangles * part; t < end; ++t) {
+      const Box box = around(corner_boxes_, cloth_.triangles[t], 0, 3);
+      tree_.visit(grown(box, distance), [&](int other) { addPairs(t, other, distance, its); });
+    }
+    its.erase(std::remove_if(its.begin(), its.end(), is_far), its.end());
+  });
   found.clear();
-  for (std::size_t t = 0; t < cloth_.triangles.size(); ++t) {
-    const Box box = around(corner_boxes_, cloth_.triangles[t], 0, 3);
-    tree_.visit(grown(box, distance),
-                [&](int other) { addPairs(static_cast<int>(t), other, distance, found); });
-  }
+  for (const std::vector<Pair>& its : found_) found.insert(found.end(), its.begin(), its.end());
+  std::sort(found.begin(), found.end());
 }
 
-void NearObstacles::find(const Places& positions, const Places& places, double distance) {
+/// m, of the surfaces, or beyond searched_.
+double NearObstacles::distanceOf(const Pair& pair, const Places& positions,
+                                 const Places& places) const {
+  std::array<Vector3d, 4> at;
+  for (int i = 0; i < 4; ++i) {
+    const int vertex = pair.vertices[i];
+    at[i] = vertex < particles_ ? positions[vertex] : places[vertex - particles_];
+  }
+  return proximity::isSurelyApart(pair.kind, at, pair.radius + searched_)
+             ? 2.0 * searched_
+             : proximity::distanceOf(pair.kind, at).distance - pair.radius;
+}
+
+void NearObstacles::find(const Places& positions, const Places& places, double distance,
+                         linear::ThreadPool* pool) {
   if (!searched_at_.empty()) {
     const double moved = NearPairs::farthest(positions, searched_at_) +
                          NearPairs::farthest(places, places_searched_at_);
@@ -99,22 +133,11 @@ void NearObstacles::find(const Places& positions, const Places& places, double d
   }
   for (std::size_t i = 0; i < positions.size(); ++i) corner_boxes_[i] = Box(positions[i]);
   fitObstacleBoxes(places, nullptr);
-  visit(searched_, pairs_);
-  const auto measure = [&](Pair& pair) {
-    std::array<Vector3d, 4> at;
-    for (int i = 0; i < 4; ++i) {
-      const int vertex = pair.vertices[i];
-      at[i] = vertex < particles_ ? positions[vertex] : places[vertex - particles_];
-    }
-    const double reach = pair.radius + searched_;
-    pair.distance = proximity::isSurelyApart(pair.kind, at, reach)
-                        ? 2.0 * searched_
-                        : proximity::distanceOf(pair.kind, at).distance - pair.radius;
+  const auto is_far = [&](Pair& pair) {
+    pair.distance = distanceOf(pair, positions, places);
+    return pair.distance > searched_;
   };
-  std::for_each(pairs_.begin(), pairs_.end(), measure);
-  const auto is_far = [&](const Pair& pair) { return pair.distance > searched_; };
-  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), is_far), pairs_.end());
-  std::sort(pairs_.begin(), pairs_.end());
+  visit(searched_, pool, is_far, pairs_);
   moved_ = 0.0;
   searched_at_ = positions;
   places_searched_at_ = places;
@@ -122,15 +145,15 @@ void NearObstacles::find(const Places& positions, const Places& places, double d
 
 const std::vector<NearObstacles::Pair>& NearObstacles::onWays(
     const Places& positions, const Vector3d& common, const Places& ways, const Places& places,
-    const Places* place_ways, double distance) {
+    const Places* place_ways, double distance, linear::ThreadPool* pool) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     corner_boxes_[i] = Box(positions[i]);
     corner_boxes_[i].extend(positions[i] + common);
     corner_boxes_[i].extend(positions[i] + common + ways[i]);
   }
   fitObstacleBoxes(places, place_ways);
-  visit(distance, on_ways_);
-  std::sort(on_ways_.begin(), on_ways_.end());
+  visit(
+      distance, pool, [](const Pair&) { return false; }, on_ways_);
   return on_ways_;
 }
 

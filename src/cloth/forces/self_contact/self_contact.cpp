@@ -133,7 +133,7 @@ const std::vector<PairEnergy>& SelfContact::touching(const Positions& positions,
   if (obstacles_) {
     const ObstacleSurfaces& surfaces = obstacles_->surfaces();
     obstacles_->find(positions, at_end ? surfaces.atEnd() : surfaces.atBegin(),
-                     0.5 * layers().thickness());
+                     0.5 * layers().thickness(), pool);
     energies_.findOfObstacles(positions, *obstacles_, at_end, touching_);
   }
   touching_at_ = positions;

@@ -26,6 +26,7 @@ class NearObstacles {
   using Places = std::vector<Eigen::Vector3d>;  // m
 
   /// @param searched m, up to which pairs can be asked for, > 0
+  /// With a pool functions share their work, to the same pairs.
   NearObstacles(const std::vector<std::array<int, 3>>& triangles, std::size_t particles,
                 std::shared_ptr<ObstacleSurfaces> surfaces, double searched);
 
@@ -35,7 +36,8 @@ class NearObstacles {
   /// Afterwards pairs() has all whose surfaces are at most `distance` apart.
   /// @param positions, places m, of the particles and of the vertices of the obstacles, finite
   /// @param distance  m, below the one searched for
-  void find(const Places& positions, const Places& places, double distance);
+  void find(const Places& positions, const Places& places, double distance,
+            linear::ThreadPool* pool = nullptr);
   /// As NearPairs::leastDistance() and isBeyond(), of the surfaces.
   double leastDistance(const Pair& pair) const { return pair.distance - moved_ - kRounding; }
   bool isBeyond(const Pair& pair, double distance) const { return leastDistance(pair) > distance; }
@@ -49,7 +51,8 @@ class NearObstacles {
   ///   rest
   const std::vector<Pair>& onWays(const Places& positions, const Eigen::Vector3d& common,
                                   const Places& ways, const Places& places,
-                                  const Places* place_ways, double distance);
+                                  const Places* place_ways, double distance,
+                                  linear::ThreadPool* pool = nullptr);
 
  private:
   using Box = proximity::BoxTree::Box;
@@ -62,7 +65,10 @@ class NearObstacles {
   static constexpr double kRounding = 1e-12;  // m, more than that of distances
 
   void fitObstacleBoxes(const Places& places, const Places* ways);
-  void visit(double distance, std::vector<Pair>& found);
+  template <typename IsFar>
+  void visit(double distance, linear::ThreadPool* pool, const IsFar& is_far,
+             std::vector<Pair>& found);
+  double distanceOf(const Pair& pair, const Places& positions, const Places& places) const;
   void addPairs(int of_cloth, int of_obstacle, double distance, std::vector<Pair>& found) const;
 
   std::shared_ptr<ObstacleSurfaces> surfaces_;
@@ -73,6 +79,8 @@ class NearObstacles {
   std::vector<Box> corner_boxes_;  // of the ways of all vertices, without radius
   std::vector<Box> boxes_;         // of the obstacles' triangles
   proximity::BoxTree tree_;
+  Places fitted_at_;                      // m, of the obstacles whose boxes these are at rest
+  std::vector<std::vector<Pair>> found_;  // by part of the cloth
   std::vector<Pair> pairs_, on_ways_;
   Places searched_at_, places_searched_at_;  // m; empty before the first find()
   double moved_ = 0.0;                       // m, farthest of both since, together
