@@ -66,7 +66,7 @@ void printFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome) {
   std::fprintf(stderr, "seed %llu: %s %s, growth %g, return error %g, shrunk to\n  %s\n",
                static_cast<unsigned long long>(extreme.seed), nameOf(outcome.failure),
                outcome.message.c_str(), outcome.growth, outcome.return_error,
-               toText(shrinkFailure(extreme, outcome.failure)).c_str());
+               toText(shrinkFailure(extreme, outcome)).c_str());
 }
 
 class Cases {

@@ -38,14 +38,13 @@ BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern, T
 template <typename T>
 BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern,
                                           const Elimination& elimination, ThreadPool* pool,
-                                          std::vector<T> memory)
+                                          std::vector<T>* memory)
     : elimination_(elimination),
       pool_(pool),
       cost_(factorisationCost(elimination_)),
-      panels_(std::move(memory)),
       permuted_(3, pattern.size()) {
   const std::size_t count = elimination_.supernodes.size();
-  makePanels();
+  makePanels(memory);
   cutTree();
   makeEntries(pattern);
   first_descendant_.resize(count);
@@ -68,9 +67,9 @@ BasicBlockCholesky<T>::BasicBlockCholesky(const SymmetricBlockMatrix& pattern,
 }
 
 /// Panels lie in memory in the order in which they are factorised. What is there does not matter:
-/// load() begins with zeros.
+/// load() begins with zeros. Lent memory gets an eighth more than is needed, for later factors.
 template <typename T>
-void BasicBlockCholesky<T>::makePanels() {
+void BasicBlockCholesky<T>::makePanels(std::vector<T>* lent) {
   std::size_t size = 0;
   for (const Supernode& supernode : elimination_.supernodes) {
     const int below = static_cast<int>(supernode.rows.size());
@@ -78,12 +77,14 @@ void BasicBlockCholesky<T>::makePanels() {
     panel_of_.push_back({size, leading, 0, 0, below});
     size += static_cast<std::size_t>(leading) * 3 * supernode.width();
   }
-  if (panels_.capacity() < size) {
-    const bool grows = !panels_.empty();
-    panels_ = std::vector<T>();  // nothing to be copied
-    if (grows) panels_.reserve(size + size / 8);
+  std::vector<T>& memory = lent ? *lent : own_memory_;
+  if (memory.capacity() < size) {
+    memory = std::vector<T>();  // nothing to be copied
+    memory.reserve(lent ? size + size / 8 : size);
   }
-  panels_.resize(size);
+  memory.resize(size);
+  panels_ = memory.data();
+  numbers_ = size;
 }
 
 /// Takes the root off the costliest subtree until none is too large, and puts the subtrees into
@@ -201,7 +202,7 @@ bool BasicBlockCholesky<T>::computeScales(const SymmetricBlockMatrix& matrix) {
 template <typename T>
 void BasicBlockCholesky<T>::load(const SymmetricBlockMatrix& matrix, int target, T shift) {
   const Panel& panel = panel_of_[target];
-  T* const base = panels_.data() + panel.offset;
+  T* const base = panels_ + panel.offset;
   const int columns = 3 * elimination_.supernodes[target].width();
   std::fill_n(base, static_cast<std::size_t>(panel.leading) * columns, T(0));
   const auto block_of = [&matrix](const Entry& entry) -> const Eigen::Matrix3d& {
@@ -238,7 +239,7 @@ bool BasicBlockCholesky<T>::factoriseNarrow(int target) {
   const Panel& panel = panel_of_[target];
   const int columns = 3 * elimination_.supernodes[target].width();
   const int ld = panel.leading;
-  T* const base = panels_.data() + panel.offset;
+  T* const base = panels_ + panel.offset;
   for (int c = 0; c < columns; c += 3) {
     T* const top = base + static_cast<std::size_t>(ld) * c + c;
     if (c > 0) subtractProduct(ld - c, 3, c, base + c, ld, base + c, ld, top, ld);
@@ -253,7 +254,7 @@ template <typename T>
 bool BasicBlockCholesky<T>::factoriseWide(int target) {
   const int columns = 3 * elimination_.supernodes[target].width();
   const int ld = panel_of_[target].leading;
-  T* const base = panels_.data() + panel_of_[target].offset;
+  T* const base = panels_ + panel_of_[target].offset;
   const auto at = [&](int row, int column) {
     return base + static_cast<std::size_t>(ld) * column + row;
   };

@@ -19,8 +19,7 @@ void BasicBlockCholesky<T>::forward(int s, T* outside, std::vector<T>& front) {
   T* const own = values + 3 * supernode.first;
   std::copy_n(own, width, front.data());
   std::fill(front.data() + width, front.data() + panel.leading, T(0));
-  substituteForward(panel.leading, width, panels_.data() + panel.offset, panel.leading,
-                    front.data());
+  substituteForward(panel.leading, width, panels_ + panel.offset, panel.leading, front.data());
   std::copy_n(front.data(), width, own);
   const T* change = front.data() + width;
   const auto add = [&change](T* to) {
@@ -52,8 +51,7 @@ void BasicBlockCholesky<T>::backward(int s, std::vector<T>& front) {
     below[2] = other[2];
     below += 3;
   }
-  substituteBackward(panel.leading, width, panels_.data() + panel.offset, panel.leading,
-                     front.data());
+  substituteBackward(panel.leading, width, panels_ + panel.offset, panel.leading, front.data());
   std::copy_n(front.data(), width, own);
 }
 

@@ -47,8 +47,8 @@ void BasicBlockCholesky<T>::applyDescendant(int descendant, int target, int firs
   int columns_last = begin;
   while (columns_last < last && source.rows[columns_last] < sink.end) ++columns_last;
   if (first == last) return;
-  const T* const rows = panels_.data() + from.offset + 3 * source.width();
-  T* const panel = panels_.data() + to.offset;
+  const T* const rows = panels_ + from.offset + 3 * source.width();
+  T* const panel = panels_ + to.offset;
   for (int b = begin; b < columns_last; b += kUpdateColumns) {
     const int columns_end = std::min(columns_last, b + kUpdateColumns);
     const int top = std::max(first, b);
@@ -93,8 +93,8 @@ void BasicBlockCholesky<T>::applyDirectly(int descendant, int target, int first,
   const Panel& from = panel_of_[descendant];
   const Panel& to = panel_of_[target];
   const int depth = 3 * source.width();
-  const T* const rows = panels_.data() + from.offset + depth;
-  T* const panel = panels_.data() + to.offset;
+  const T* const rows = panels_ + from.offset + depth;
+  T* const panel = panels_ + to.offset;
   const auto place = [&](int row) { return panel_row[source.rows[row]]; };
   const auto run_end = [&](int begin, int most) {
     int end = begin + 1;

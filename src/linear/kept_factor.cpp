@@ -1,8 +1,6 @@
 #include "haptex/linear/kept_factor.h"
 
 #include <algorithm>
-#include <utility>
-#include <vector>
 
 #include "haptex/linear/ordering.h"
 
@@ -60,10 +58,8 @@ void KeptFactor::analyseWhole(const SymmetricBlockMatrix& matrix) {
   whole_->takeValues(matrix);
   // Nested dissection takes four times as long and saves nothing where couplings tie layers.
   const Elimination elimination = analyse(*whole_, minimumDegreeOrder(*whole_));
-  std::vector<float> memory;
-  if (factor_) memory = factor_->releaseMemory();
-  factor_ =
-      std::make_unique<BasicBlockCholesky<float>>(*whole_, elimination, pool_, std::move(memory));
+  factor_.reset();  // it is done with the memory
+  factor_ = std::make_unique<BasicBlockCholesky<float>>(*whole_, elimination, pool_, &memory_);
   setCosts(factor_->cost(), factor_->numbers());
   analysis_cost_ = kAnalysedNumberOverBlock * factor_->numbers();
   cost_ += analysis_cost_;

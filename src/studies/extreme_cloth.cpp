@@ -192,26 +192,27 @@ double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& 
 }
 
 Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
-                const cloth::ClothState& rest, IntersectionWatch& intersections,
-                cloth::ClothState& state) {
-  constexpr int kMaxSteps = 200, kMaxSolvedSteps = 20000;
+                const cloth::ClothState& rest, int most_solved_steps,
+                IntersectionWatch& intersections, cloth::ClothState& state) {
+  constexpr int kMaxSteps = 200;
   Settling settling;
   const double period = slowestPeriod(extreme, extentOf(rest));
   settling.slow = !settleBy(settingsOf(extreme), kMaxSteps, period, cloth, rest, intersections,
                             state, settling);
   if (settling.slow && !extreme.self_collision) {
-    settleBy(kes::solvedSettings(kNewtonTolerance), kMaxSolvedSteps, period, cloth, rest,
+    settleBy(kes::solvedSettings(kNewtonTolerance), most_solved_steps, period, cloth, rest,
              intersections, state, settling);
   }
   return settling;
 }
 
 void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
-                    const cloth::ClothState& rest, IntersectionWatch& intersections,
-                    cloth::ClothState& state, ExtremeOutcome& outcome) {
+                    const cloth::ClothState& rest, int most_solved_steps,
+                    IntersectionWatch& intersections, cloth::ClothState& state,
+                    ExtremeOutcome& outcome) {
   Settling settling;
   const auto comes_to_rest_elsewhere = [&] {
-    settling = settle(extreme, cloth, rest, intersections, state);
+    settling = settle(extreme, cloth, rest, most_solved_steps, intersections, state);
     outcome.growth = base::largerOrNaN(outcome.growth, settling.growth);
     outcome.rejected += settling.rejected;
     outcome.settling_steps += settling.steps;

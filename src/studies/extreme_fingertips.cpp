@@ -28,8 +28,9 @@ oracles::HapticLoopSettings loopSettings(const ExtremeCase& extreme, const mesh:
 
 class TouchedRun {
  public:
-  explicit TouchedRun(const ExtremeCase& extreme)
+  TouchedRun(const ExtremeCase& extreme, int most_solved_steps)
       : extreme_(extreme),
+        most_solved_steps_(most_solved_steps),
         random_(extreme.seed + 2),
         mesh_(meshOf(extreme)),
         untouched_(clothOf(extreme, mesh_, std::nullopt)),
@@ -46,7 +47,8 @@ class TouchedRun {
     for (int i = 0; i < extreme_.free_steps && !failed(); ++i) watch();
     if (failed()) return outcome_;
     cloth::ClothState state = loop_.state();
-    settleAndJudge(extreme_, untouched_, rest_, intersections_, state, outcome_);
+    settleAndJudge(extreme_, untouched_, rest_, most_solved_steps_, intersections_, state,
+                   outcome_);
     return outcome_;
   }
 
@@ -133,6 +135,7 @@ class TouchedRun {
   }
 
   const ExtremeCase& extreme_;
+  int most_solved_steps_;
   RepeatableRandom random_;
   mesh::ClothMesh mesh_;
   cloth::Cloth untouched_;
@@ -146,6 +149,8 @@ class TouchedRun {
 
 }  // namespace
 
-ExtremeOutcome runTouchedCase(const ExtremeCase& extreme) { return TouchedRun(extreme).run(); }
+ExtremeOutcome runTouchedCase(const ExtremeCase& extreme, int most_solved_steps) {
+  return TouchedRun(extreme, most_solved_steps).run();
+}
 
 }  // namespace haptex::studies

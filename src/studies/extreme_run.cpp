@@ -32,8 +32,9 @@ std::optional<cloth::Air> airOf(const ExtremeCase& extreme, bool windy) {
 
 class Run {
  public:
-  explicit Run(const ExtremeCase& extreme)
+  Run(const ExtremeCase& extreme, int most_solved_steps)
       : extreme_(extreme),
+        most_solved_steps_(most_solved_steps),
         random_(extreme.seed + 2),
         mesh_(meshOf(extreme)),
         cloth_(clothOf(extreme, mesh_, airOf(extreme, false))),
@@ -52,7 +53,7 @@ class Run {
       outcome_.failure = ExtremeFailure::kStuck;
       return outcome_;
     }
-    settleAndJudge(extreme_, cloth_, rest_, intersections_, state_, outcome_);
+    settleAndJudge(extreme_, cloth_, rest_, most_solved_steps_, intersections_, state_, outcome_);
     return outcome_;
   }
 
@@ -153,6 +154,7 @@ class Run {
   }
 
   const ExtremeCase& extreme_;
+  int most_solved_steps_;
   RepeatableRandom random_;
   mesh::ClothMesh mesh_;
   cloth::Cloth cloth_;
@@ -187,10 +189,10 @@ const char* nameOf(ExtremeFailure failure) {
   return "none";
 }
 
-ExtremeOutcome runExtremeCase(const ExtremeCase& extreme) {
+ExtremeOutcome runExtremeCase(const ExtremeCase& extreme, int most_solved_steps) {
   try {
-    if (extreme.kind == ExtremeKind::kFingertips) return runTouchedCase(extreme);
-    return Run(extreme).run();
+    if (extreme.kind == ExtremeKind::kFingertips) return runTouchedCase(extreme, most_solved_steps);
+    return Run(extreme, most_solved_steps).run();
   } catch (const std::exception& error) {
     ExtremeOutcome outcome;
     outcome.failure = ExtremeFailure::kThrew;

@@ -96,11 +96,17 @@ ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
   return smallest;
 }
 
-ExtremeCase shrinkFailure(const ExtremeCase& extreme, ExtremeFailure failure) {
-  constexpr int kMaxRuns = 100;  // of seconds each, where cloth does not return
+ExtremeCase shrinkFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome) {
+  constexpr int kMaxRuns = 100;
   int runs = 0;
+  int left = kMostSolvedSteps;  // for all of them
   return shrinkExtremeCase(extreme, [&](const ExtremeCase& candidate) {
-    return ++runs <= kMaxRuns && runExtremeCase(candidate).failure == failure;
+    if (++runs > kMaxRuns || left <= 0) return false;
+    // One that goes on for longer might return later.
+    const int most = std::min(left, 2 * outcome.settling_steps);
+    const ExtremeOutcome its = runExtremeCase(candidate, most);
+    left -= its.settling_steps;
+    return its.failure == outcome.failure && (most == 0 || its.settling_steps < most);
   });
 }
 

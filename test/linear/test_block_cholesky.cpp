@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "../cloth/fixtures.h"
 #include "haptex/linear/block_cholesky.h"
@@ -180,6 +181,23 @@ TEST(BlockCholesky, IsTheSameWithTheSymbolicPartOfAnother) {
   own.solve(x);
   shared.solve(y);
   EXPECT_EQ(x, y);
+}
+
+TEST(BlockCholesky, IsTheSameInUsedMemory) {
+  std::vector<float> memory;
+  for (const int cells : {20, 21, 8, 30, 20}) {  // what is lent fits, or has to grow
+    SCOPED_TRACE(cells);
+    const SymmetricBlockMatrix matrix = cloth::randomDefinite(cloth::square(cells), 40.0);
+    BasicBlockCholesky<float> own(matrix), lent(matrix, own.elimination(), nullptr, &memory);
+    BlockVector x = BlockVector::Random(3, matrix.size()), y = x;
+    ASSERT_TRUE(own.factorise(matrix));
+    ASSERT_TRUE(lent.factorise(matrix));
+    own.solve(x);
+    lent.solve(y);
+    EXPECT_EQ(x, y);
+    EXPECT_EQ(own.numbers(), lent.numbers());
+    std::fill(memory.begin(), memory.end(), std::numeric_limits<float>::quiet_NaN());
+  }
 }
 
 TEST(BlockCholesky, PreconditionsInSinglePrecisionWhateverTheScale) {

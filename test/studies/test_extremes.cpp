@@ -178,6 +178,15 @@ TEST(ExtremeShrink, LeavesWhatThePlantedFailureNeeds) {
   EXPECT_LE(small.longest_step, 0.5);
 }
 
+/// What is still on its way after twice as many steps might return.
+TEST(ExtremeShrink, TakesNothingForAFailureThatIsCutShort) {
+  ExtremeOutcome outcome;
+  outcome.failure = ExtremeFailure::kNoReturn;
+  outcome.settling_steps = 1;
+  const ExtremeCase extreme = drawExtremeCase(3, ExtremeKind::kScrambled);
+  EXPECT_EQ(toText(shrinkFailure(extreme, outcome)), toText(extreme));
+}
+
 TEST(StabilityMap, KnowsWhatIsStable) {
   constexpr double kStiffness = 1e3;
   const double frequency = highestFrequency(kStiffness);

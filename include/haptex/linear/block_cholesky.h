@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <utility>
 #include <vector>
 
 #include "haptex/linear/block_matrix.h"
@@ -29,12 +28,14 @@ class BasicBlockCholesky {
 
   /// With the symbolic part of another factor of the same pattern, which costs most of the
   /// construction.
-  /// @param memory of a factor that is no more, to be used again: new memory costs page faults
+  /// @param memory where the factor's numbers are to lie, instead of in its own; it has to outlive
+  ///   this, and whatever it had goes. For one factor after another: new memory costs page faults.
   BasicBlockCholesky(const SymmetricBlockMatrix& pattern, const Elimination& elimination,
-                     ThreadPool* pool, std::vector<T> memory = {});
-
-  /// What the constructor takes as `memory`; the factor is then unusable.
-  std::vector<T> releaseMemory() { return std::move(panels_); }
+                     ThreadPool* pool, std::vector<T>* memory = nullptr);
+  BasicBlockCholesky(const BasicBlockCholesky&) = delete;
+  BasicBlockCholesky& operator=(const BasicBlockCholesky&) = delete;
+  BasicBlockCholesky(BasicBlockCholesky&&) = default;
+  BasicBlockCholesky& operator=(BasicBlockCholesky&&) = default;
 
   const Elimination& elimination() const { return elimination_; }
 
@@ -52,7 +53,7 @@ class BasicBlockCholesky {
   /// Multiply-add operations of one factorisation.
   double cost() const { return cost_; }
   /// Numbers in the factor.
-  double numbers() const { return static_cast<double>(panels_.size()); }
+  double numbers() const { return static_cast<double>(numbers_); }
 
  private:
   static constexpr int kGroups = 8;         // of subtrees, shared by any number of threads
@@ -82,7 +83,7 @@ class BasicBlockCholesky {
     bool positive = true;
   };
   void cutTree();
-  void makePanels();
+  void makePanels(std::vector<T>* lent);
   void makeEntries(const SymmetricBlockMatrix& pattern);
   Entry entryOf(int row, int column, int slot) const;
   bool computeScales(const SymmetricBlockMatrix& matrix);
@@ -112,7 +113,9 @@ class BasicBlockCholesky {
   ThreadPool* pool_;
   double cost_;
   std::vector<Panel> panel_of_;
-  std::vector<T> panels_;
+  std::vector<T> own_memory_;  // empty if it was lent
+  T* panels_ = nullptr;
+  std::size_t numbers_ = 0;
   std::vector<Entry> entries_;
   std::vector<Subtree> subtrees_;
   std::vector<int> top_;        // supernodes, ascending

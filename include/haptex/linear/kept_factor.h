@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "haptex/linear/backoff.h"
 #include "haptex/linear/block_cholesky.h"
@@ -24,6 +25,8 @@ class KeptFactor {
   /// Of the fixed pattern: couplings are left out. Allocates in the constructor only.
   /// @param pool shares the work of a factor if it is given; has to outlive this
   KeptFactor(const SymmetricBlockMatrix& pattern, ThreadPool* pool);
+  KeptFactor(const KeptFactor&) = delete;
+  KeptFactor& operator=(const KeptFactor&) = delete;
 
   /// One whose factors know all couplings, for matrices of the same fixed pattern. It allocates
   /// when it makes a factor of a matrix with a coupling that the one before had no room for: an
@@ -57,6 +60,7 @@ class KeptFactor {
   ThreadPool* pool_;
   bool knows_couplings_ = false;
   std::optional<SymmetricBlockMatrix> whole_;  // the last matrix, if couplings are known
+  std::vector<float> memory_;                  // of factors of whole matrices
   std::unique_ptr<BasicBlockCholesky<float>> factor_;
   bool is_kept_ = false;  // the factor, for the next solve
   double block_iteration_cost_;

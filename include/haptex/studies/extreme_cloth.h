@@ -36,6 +36,7 @@ double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& 
 /// step needs. What a linearised step stretches while it turns resists the turning, so stiff light
 /// cloth creeps. Cloth that collides with itself is let go for as long as its own solves may need:
 /// friction and layers on layers let it rest in many ways, and how is not judged.
+/// @param most_solved_steps with as many solves as needed
 struct Settling {
   double error = 0.0;       ///< distanceBetween() state and rest at the end
   double growth = 0.0;      ///< largest of EnergyWatch
@@ -47,11 +48,12 @@ struct Settling {
   double unbalanced = 0.0;
 };
 Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
-                const cloth::ClothState& rest, IntersectionWatch& intersections,
-                cloth::ClothState& state);
+                const cloth::ClothState& rest, int most_solved_steps,
+                IntersectionWatch& intersections, cloth::ClothState& state);
 /// Lets it settle and tells what came out.
 void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
-                    const cloth::ClothState& rest, IntersectionWatch& intersections,
-                    cloth::ClothState& state, ExtremeOutcome& outcome);
+                    const cloth::ClothState& rest, int most_solved_steps,
+                    IntersectionWatch& intersections, cloth::ClothState& state,
+                    ExtremeOutcome& outcome);
 
 }  // namespace haptex::studies

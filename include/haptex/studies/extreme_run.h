@@ -6,6 +6,8 @@
 
 namespace haptex::studies {
 
+constexpr int kMostSolvedSteps = 20000;  // in which cloth is expected to return
+
 /// Runs a case: the cloth at rest, the disturbance, free steps with the energy watched, then larger
 /// steps until it is at rest. An explicit method is held to finite numbers only, whatever number of
 /// its steps is rejected.
@@ -15,6 +17,8 @@ namespace haptex::studies {
 /// folds may lock each other as in crumpled paper. A disturbance that turns elements over may leave
 /// it there; it counts as at rest if its forces are balanced. In a taut sheet only needles stay
 /// turned over: it counts as at rest elsewhere if it also comes back there after a push.
-ExtremeOutcome runExtremeCase(const ExtremeCase& extreme);
+/// @param most_solved_steps of the last ones, where those with the case's own solves did not
+/// suffice
+ExtremeOutcome runExtremeCase(const ExtremeCase& extreme, int most_solved_steps = kMostSolvedSteps);
 
 }  // namespace haptex::studies

@@ -16,8 +16,10 @@ namespace haptex::studies {
 ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
                               const std::function<bool(const ExtremeCase&)>& fails);
 
-/// A case that runExtremeCase() has found to fail, as small as a hundred runs make it.
-/// @param failure how it fails, and the smaller one, too
-ExtremeCase shrinkFailure(const ExtremeCase& extreme, ExtremeFailure failure);
+/// A case that runExtremeCase() has found to fail, as small as a hundred runs make it, which come
+/// to rest in as many steps together as the slowest case may take.
+/// @param outcome of the case; the smaller one fails in the same way, and comes to rest in twice as
+///   many steps at most
+ExtremeCase shrinkFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome);
 
 }  // namespace haptex::studies

@@ -40,7 +40,6 @@ Request parse(const std::vector<std::string>& arguments) {
 std::ofstream openToWrite(const std::string& path) {
   std::ofstream file(path);
   if (!file) throw std::runtime_error(path + ": cannot be written");
-  file.precision(9);
   return file;
 }
 
@@ -60,10 +59,7 @@ void writePanels(const Pattern& pattern, const std::vector<PanelMesh>& meshes,
 void writeBody(const Body& body, const std::string& path) {
   std::ofstream file = openToWrite(path);
   file << "g body\n";
-  for (const auto& vertex : body.vertices) file << "v " << vertex.transpose() << '\n';
-  for (const auto& [a, b, c] : body.triangles) {
-    file << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
-  }
+  mesh::writeObj(mesh::ObstacleMesh{body.vertices, body.triangles}, file);
   requireWritten(file, path);
 }
 

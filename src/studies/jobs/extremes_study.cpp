@@ -83,8 +83,7 @@ std::string ExtremesStudy::run(std::size_t unit) const {
     record += '\t' + std::to_string(number);
   }
   if (outcome.failure == ExtremeFailure::kNone) return record;
-  return record + '\t' + asField(outcome.message) + '\t' +
-         toText(shrinkFailure(extreme, outcome.failure));
+  return record + '\t' + asField(outcome.message) + '\t' + toText(shrinkFailure(extreme, outcome));
 }
 
 void ExtremesStudy::summarise(const std::vector<std::string>& records, std::ostream& out) const {

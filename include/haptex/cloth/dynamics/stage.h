@@ -1,4 +1,5 @@
-// What a stage of an implicit step is to find, and where its first solve starts.
+// Stages of an implicit step: what each is to find, where its first solve starts, and the stages of
+// TR-BDF2 and BDF-2.
 #pragma once
 
 #include <cmath>
@@ -49,7 +50,9 @@ inline double trapezoidPart(double h) { return (2.0 - std::sqrt(2.0)) * h; }
 StageStart startTrapezoid(const Cloth& cloth, const ClothState& begin, double first,
                           const RecentMotion* motion, ClothState& base);
 
-/// BDF-2 to `second` seconds after `middle`, which is `first` seconds after `before`.
+/// BDF-2 from (x0, v0), `before`, over (x1, v1), `middle`, `first` seconds later, to `second`
+/// seconds after that; with r = second / first and w = r^2 / (1 + 2 r)
+///   x* = x1 + w (x1 - x0),  v* = v1 + w (v1 - v0),  a = second (1 + r) / (1 + 2 r).
 /// @param motion null: not needed @param base gets x* and v*
 /// @param velocities gets the mean ones between `before` and `middle` (m/s); may be the latter's
 StageStart startBdf2(const ClothState& before, const ClothState& middle, double first,

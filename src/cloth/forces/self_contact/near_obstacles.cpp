@@ -87,11 +87,10 @@ void NearObstacles::fitObstacleBoxes(const Places& places, const Places* ways) {
   tree_.refit(boxes_);
 }
 
-/// All whose boxes are at most a distance apart, without those that are far, in order.
-/// @param is_far of a pair, which it may change
-template <typename IsFar>
-void NearObstacles::visit(double distance, linear::ThreadPool* pool, const IsFar& is_far,
-                          std::vector<Pair>& found) {
+/// All whose boxes are at most a distance apart, into found_.
+/// @param finish called for the pairs of each part of the cloth, by the thread that found them
+template <typename Function>
+void NearObstacles::collect(double distance, linear::ThreadPool* pool, const Function& finish) {
   const int triangles = static_cast<int>(cloth_.triangles.size());
   linear::runTasks(pool, static_cast<int>(found_.size()), [&](int part, int) {
     std::vector<Pair>& its = found_[part];
@@ -101,11 +100,15 @@ void NearObstacles::visit(double distance, linear::ThreadPool* pool, const IsFar
       const Box box = around(corner_boxes_, cloth_.triangles[t], 0, 3);
       tree_.visit(grown(box, distance), [&](int other) { addPairs(t, other, distance, its); });
     }
-    its.erase(std::remove_if(its.begin(), its.end(), is_far), its.end());
+    finish(its);
   });
-  found.clear();
-  for (const std::vector<Pair>& its : found_) found.insert(found.end(), its.begin(), its.end());
-  std::sort(found.begin(), found.end());
+}
+
+/// What found_ has, in order.
+void NearObstacles::join(std::vector<Pair>& pairs) const {
+  pairs.clear();
+  for (const std::vector<Pair>& its : found_) pairs.insert(pairs.end(), its.begin(), its.end());
+  std::sort(pairs.begin(), pairs.end());
 }
 
 /// m, of the surfaces, or beyond searched_.
@@ -137,7 +140,10 @@ void NearObstacles::find(const Places& positions, const Places& places, double d
     pair.distance = distanceOf(pair, positions, places);
     return pair.distance > searched_;
   };
-  visit(searched_, pool, is_far, pairs_);
+  collect(searched_, pool, [&](std::vector<Pair>& its) {
+    its.erase(std::remove_if(its.begin(), its.end(), is_far), its.end());
+  });
+  join(pairs_);
   moved_ = 0.0;
   searched_at_ = positions;
   places_searched_at_ = places;
@@ -152,8 +158,8 @@ const std::vector<NearObstacles::Pair>& NearObstacles::onWays(
     corner_boxes_[i].extend(positions[i] + common + ways[i]);
   }
   fitObstacleBoxes(places, place_ways);
-  visit(
-      distance, pool, [](const Pair&) { return false; }, on_ways_);
+  collect(distance, pool, [](const std::vector<Pair>&) {});
+  join(on_ways_);
   return on_ways_;
 }
 

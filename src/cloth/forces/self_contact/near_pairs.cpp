@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "haptex/base/require.h"
 #include "haptex/linear/shared_rows.h"
@@ -84,17 +85,11 @@ bool NearPairs::find(const std::vector<Vector3d>& positions, double distance,
   self_.find(found_, nullptr, nullptr, pool);
   searched_at_ = positions;
   moved_ = 0.0;
-  keys_.clear();
-  for (std::size_t place = 0; place < found_.size(); ++place) {
-    const auto& [kind, first, second] = found_[place].elements;
-    const auto number = [](auto value) { return static_cast<std::uint64_t>(value); };
-    keys_.push_back({number(kind) << 62 | number(first) << 31 | number(second), place});
-  }
-  sortKeys(pool);
-  pairs_.resize(keys_.size());
-  linear::shareRows(pool, static_cast<int>(keys_.size()), [&](int begin, int end) {
+  sortFound(pool);
+  pairs_.resize(sorted_.size());
+  linear::shareRows(pool, static_cast<int>(sorted_.size()), [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      const proximity::NearPair& pair = found_[keys_[i].place];
+      const proximity::NearPair& pair = found_[sorted_[i].place];
       pairs_[i] = named(pair.elements);
       pairs_[i].distance = pair.nearest.distance;
     }
@@ -106,30 +101,30 @@ bool NearPairs::find(const std::vector<Vector3d>& positions, double distance,
   return true;
 }
 
-/// Threads sort parts of them, and merge these two by two.
-void NearPairs::sortKeys(linear::ThreadPool* pool) {
-  constexpr std::size_t kParts = 8;
-  const auto less = [](const Key& a, const Key& b) { return a.elements < b.elements; };
-  if (pool == nullptr) {
-    std::sort(keys_.begin(), keys_.end(), less);
-    return;
+int NearPairs::bucketOf(const proximity::ElementPair& pair) const {
+  const bool are_edges = pair.kind == proximity::ElementPairKind::kEdgeEdge;
+  return pair.first + (are_edges ? static_cast<int>(particleCount()) : 0);
+}
+
+/// Counts the pairs of each first element, of which none has many.
+void NearPairs::sortFound(linear::ThreadPool* pool) {
+  const std::size_t buckets = particleCount() + self_.elements().edges.size();
+  std::vector<int>& end = end_of_bucket_;  // their beginnings, until they have been filled
+  end.assign(buckets + 1, 0);
+  for (const proximity::NearPair& pair : found_) ++end[bucketOf(pair.elements) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  sorted_.resize(found_.size());
+  for (std::size_t place = 0; place < found_.size(); ++place) {
+    const proximity::ElementPair& pair = found_[place].elements;
+    sorted_[end[bucketOf(pair)]++] = {pair.second, static_cast<int>(place)};
   }
-  const auto at = [&](std::size_t part) {
-    return static_cast<std::ptrdiff_t>(keys_.size() * part / kParts);
-  };
-  pool->run(kParts, [&](int part, int) {
-    std::sort(keys_.begin() + at(part), keys_.begin() + at(part + 1), less);
+  linear::shareRows(pool, static_cast<int>(buckets), [&](int first, int last) {
+    const auto less = [](const Found& a, const Found& b) { return a.second < b.second; };
+    for (int bucket = first; bucket < last; ++bucket) {
+      const int begin = bucket == 0 ? 0 : end[bucket - 1];
+      std::sort(sorted_.begin() + begin, sorted_.begin() + end[bucket], less);
+    }
   });
-  merged_.resize(keys_.size());
-  for (std::size_t sorted = 1; sorted < kParts; sorted *= 2) {  // parts, in a row
-    pool->run(static_cast<int>(kParts / sorted / 2), [&](int task, int) {
-      const std::size_t first = 2 * sorted * task;
-      const auto begin = keys_.begin();
-      std::merge(begin + at(first), begin + at(first + sorted), begin + at(first + sorted),
-                 begin + at(first + 2 * sorted), merged_.begin() + at(first), less);
-    });
-    keys_.swap(merged_);
-  }
 }
 
 /// Infinite where one is not a number.

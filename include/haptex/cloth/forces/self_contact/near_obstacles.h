@@ -18,7 +18,8 @@ namespace haptex::cloth {
 /// cloth's is the first.
 ///
 /// Finds them through boxes around all triangles, those of the obstacles in a tree, those of the
-/// cloth one after the other, and then around their vertices and edges. Allocates nothing once its
+/// cloth one after the other, and then around their vertices and edges. The threads of a pool, if
+/// one is given, share that, and find the same pairs in the same order. Allocates nothing once its
 /// buffers have had the size that they need.
 class NearObstacles {
  public:
@@ -26,7 +27,6 @@ class NearObstacles {
   using Places = std::vector<Eigen::Vector3d>;  // m
 
   /// @param searched m, up to which pairs can be asked for, > 0
-  /// With a pool functions share their work, to the same pairs.
   NearObstacles(const std::vector<std::array<int, 3>>& triangles, std::size_t particles,
                 std::shared_ptr<ObstacleSurfaces> surfaces, double searched);
 
@@ -65,9 +65,9 @@ class NearObstacles {
   static constexpr double kRounding = 1e-12;  // m, more than that of distances
 
   void fitObstacleBoxes(const Places& places, const Places* ways);
-  template <typename IsFar>
-  void visit(double distance, linear::ThreadPool* pool, const IsFar& is_far,
-             std::vector<Pair>& found);
+  template <typename Function>
+  void collect(double distance, linear::ThreadPool* pool, const Function& function);
+  void join(std::vector<Pair>& pairs) const;
   double distanceOf(const Pair& pair, const Places& positions, const Places& places) const;
   void addPairs(int of_cloth, int of_obstacle, double distance, std::vector<Pair>& found) const;
 

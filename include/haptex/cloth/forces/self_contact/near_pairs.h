@@ -87,12 +87,13 @@ class NearPairs {
 
  private:
   static constexpr double kRounding = 1e-12;  // m, more than that of distances
-  struct Key {  // in whose order pairs are sorted: faster than these themselves
-    std::uint64_t elements;
-    std::size_t place;
+  struct Found {                              // of one first element
+    int second;
+    int place;  // in found_
   };
 
-  void sortKeys(linear::ThreadPool* pool);
+  int bucketOf(const proximity::ElementPair& pair) const;
+  void sortFound(linear::ThreadPool* pool);
   Pair named(const proximity::ElementPair& pair) const;
   bool isInTangle(const Pair& pair) const;
 
@@ -102,7 +103,8 @@ class NearPairs {
   proximity::KdopHierarchy hierarchy_;
   proximity::SelfProximity self_;
   std::vector<proximity::NearPair> found_;
-  std::vector<Key> keys_, merged_;  // of found_
+  std::vector<Found> sorted_;       // found_ by kind, first and second
+  std::vector<int> end_of_bucket_;  // in sorted_, of the pairs of one kind and first element
   std::vector<Pair> pairs_, neighbours_;
   std::vector<Pair> all_neighbours_;          // those in tangles, too
   TangleSides sides_;                         // empty if there are no tangles
