@@ -11,6 +11,7 @@
 #include <iostream>
 #include <sstream>
 #include <string>
+#include <thread>
 
 #include "haptex/base/command_line.h"
 #include "haptex/base/require.h"
@@ -110,15 +111,22 @@ int main(int argc, char** argv) {
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   // All processes refuse the same arguments; one says so.
-  std::ostringstream silent;
+  std::ostringstream unsaid;
   Request request;
   const int status = base::runProgram(
-      kUsage, rank == 0 ? std::cerr : silent, [&] { request = readRequest(arguments); },
+      kUsage, rank == 0 ? std::cerr : unsaid, [&] { request = readRequest(arguments); },
       [&] {
         run(request, rank == 0);
         return 0;
       });
-  if (status == 1) MPI_Abort(PETSC_COMM_WORLD, 1);  // the others may wait for this one
+  if (status == 1) {
+    if (rank != 0) {
+      // Mostly the first one has failed, too, and says why before it ends all.
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+      std::cerr << "process " << rank << ": " << unsaid.str();
+    }
+    MPI_Abort(PETSC_COMM_WORLD, 1);  // the others may wait for this one
+  }
   PetscFinalize();
   return status;
 }

@@ -31,12 +31,7 @@ cloth::ClothState restOf(const cloth::Cloth& cloth);
 /// the other.
 double distanceBetween(const cloth::ClothState& state, const cloth::ClothState& other);
 
-/// Lets the state come to rest by backward Euler, in steps that grow up to a sixth of the cloth's
-/// slowest period: with the solves per step of the case, and if that is too slow with as many as a
-/// step needs. What a linearised step stretches while it turns resists the turning, so stiff light
-/// cloth creeps. Cloth that collides with itself is let go for as long as its own solves may need:
-/// friction and layers on layers let it rest in many ways, and how is not judged.
-/// @param most_solved_steps with as many solves as needed
+/// How a cloth has come to rest, or not.
 struct Settling {
   double error = 0.0;       ///< distanceBetween() state and rest at the end
   double growth = 0.0;      ///< largest of EnergyWatch
@@ -47,9 +42,17 @@ struct Settling {
   /// Largest force on a free particle at the end, over the largest on an attached one.
   double unbalanced = 0.0;
 };
+
+/// Lets the state come to rest by backward Euler, in steps that grow up to a sixth of the cloth's
+/// slowest period: with the solves per step of the case, and if that is too slow with as many as a
+/// step needs. What a linearised step stretches while it turns resists the turning, so stiff light
+/// cloth creeps. Cloth that collides with itself is let go for as long as its own solves may need:
+/// friction and layers on layers let it rest in many ways, and how is not judged.
+/// @param most_solved_steps with as many solves as a step needs
 Settling settle(const ExtremeCase& extreme, const cloth::Cloth& cloth,
                 const cloth::ClothState& rest, int most_solved_steps,
                 IntersectionWatch& intersections, cloth::ClothState& state);
+
 /// Lets it settle and tells what came out.
 void settleAndJudge(const ExtremeCase& extreme, const cloth::Cloth& cloth,
                     const cloth::ClothState& rest, int most_solved_steps,

@@ -66,7 +66,7 @@ class NearObstacles {
 
   void fitObstacleBoxes(const Places& places, const Places* ways);
   template <typename Function>
-  void collect(double distance, linear::ThreadPool* pool, const Function& function);
+  void collect(double distance, linear::ThreadPool* pool, const Function& finish);
   void join(std::vector<Pair>& pairs) const;
   double distanceOf(const Pair& pair, const Places& positions, const Places& places) const;
   void addPairs(int of_cloth, int of_obstacle, double distance, std::vector<Pair>& found) const;
