@@ -102,11 +102,13 @@ ExtremeCase shrinkFailure(const ExtremeCase& extreme, const ExtremeOutcome& outc
   int left = kMostSolvedSteps;  // for all of them
   return shrinkExtremeCase(extreme, [&](const ExtremeCase& candidate) {
     if (++runs > kMaxRuns || left <= 0) return false;
-    // One that goes on for longer might return later.
     const int most = std::min(left, 2 * outcome.settling_steps);
     const ExtremeOutcome its = runExtremeCase(candidate, most);
     left -= its.settling_steps;
-    return its.failure == outcome.failure && (most == 0 || its.settling_steps < most);
+    // One that was cut short might return later.
+    const bool is_open = its.failure == ExtremeFailure::kNoReturn && most < kMostSolvedSteps &&
+                         its.settling_steps >= most;
+    return its.failure == outcome.failure && !is_open;
   });
 }
 

@@ -178,12 +178,12 @@ TEST(ExtremeShrink, LeavesWhatThePlantedFailureNeeds) {
   EXPECT_LE(small.longest_step, 0.5);
 }
 
-/// What is still on its way after twice as many steps might return.
+/// What is still on its way after twice as many steps might return. This case does not.
 TEST(ExtremeShrink, TakesNothingForAFailureThatIsCutShort) {
   ExtremeOutcome outcome;
   outcome.failure = ExtremeFailure::kNoReturn;
   outcome.settling_steps = 1;
-  const ExtremeCase extreme = drawExtremeCase(3, ExtremeKind::kScrambled);
+  const ExtremeCase extreme = drawExtremeCase(30749);
   EXPECT_EQ(toText(shrinkFailure(extreme, outcome)), toText(extreme));
 }
 

@@ -16,10 +16,11 @@ namespace haptex::studies {
 ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
                               const std::function<bool(const ExtremeCase&)>& fails);
 
-/// A case that runExtremeCase() has found to fail, as small as a hundred runs make it, which come
-/// to rest in as many steps together as the slowest case may take.
-/// @param outcome of the case; the smaller one fails in the same way, and comes to rest in twice as
-///   many steps at most
+/// A case that runExtremeCase() has found to fail, as small as runs make it: a hundred at most,
+/// begun as long as those before have taken fewer steps until they were at rest than the slowest
+/// case may.
+/// @param outcome of the case; the smaller one fails in the same way. One that does not return is
+///   known to only if it is at rest somewhere in twice as many steps as the case
 ExtremeCase shrinkFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome);
 
 }  // namespace haptex::studies

@@ -88,9 +88,7 @@ void NearObstacles::fitObstacleBoxes(const Places& places, const Places* ways) {
 }
 
 /// All whose boxes are at most a distance apart, into found_.
-/// @param finish called for the pairs of each part of the cloth, by the thread that found them
-template <typename Function>
-void NearObstacles::collect(double distance, linear::ThreadPool* pool, const Function& finish) {
+void NearObstacles::collect(double distance, linear::ThreadPool* pool) {
   const int triangles = static_cast<int>(cloth_.triangles.size());
   linear::runTasks(pool, static_cast<int>(found_.size()), [&](int part, int) {
     std::vector<Pair>& its = found_[part];
@@ -100,7 +98,6 @@ void NearObstacles::collect(double distance, linear::ThreadPool* pool, const Fun
       const Box box = around(corner_boxes_, cloth_.triangles[t], 0, 3);
       tree_.visit(grown(box, distance), [&](int other) { addPairs(t, other, distance, its); });
     }
-    finish(its);
   });
 }
 
@@ -140,7 +137,9 @@ void NearObstacles::find(const Places& positions, const Places& places, double d
     pair.distance = distanceOf(pair, positions, places);
     return pair.distance > searched_;
   };
-  collect(searched_, pool, [&](std::vector<Pair>& its) {
+  collect(searched_, pool);
+  linear::runTasks(pool, static_cast<int>(found_.size()), [&](int part, int) {
+    std::vector<Pair>& its = found_[part];
     its.erase(std::remove_if(its.begin(), its.end(), is_far), its.end());
   });
   join(pairs_);
@@ -158,7 +157,7 @@ const std::vector<NearObstacles::Pair>& NearObstacles::onWays(
     corner_boxes_[i].extend(positions[i] + common + ways[i]);
   }
   fitObstacleBoxes(places, place_ways);
-  collect(distance, pool, [](const std::vector<Pair>&) {});
+  collect(distance, pool);
   join(on_ways_);
   return on_ways_;
 }

@@ -65,8 +65,7 @@ class NearObstacles {
   static constexpr double kRounding = 1e-12;  // m, more than that of distances
 
   void fitObstacleBoxes(const Places& places, const Places* ways);
-  template <typename Function>
-  void collect(double distance, linear::ThreadPool* pool, const Function& finish);
+  void collect(double distance, linear::ThreadPool* pool);
   void join(std::vector<Pair>& pairs) const;
   double distanceOf(const Pair& pair, const Places& positions, const Places& places) const;
   void addPairs(int of_cloth, int of_obstacle, double distance, std::vector<Pair>& found) const;
