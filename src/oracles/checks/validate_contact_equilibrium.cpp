@@ -20,9 +20,11 @@ constexpr double kOpen = 4e-3;          // m, gap in which nothing touches
 /// The bar lets go; the sample falls over, swings, and hangs from the fingertips when it rests.
 void validateWeight(const material::Fabric& fabric, double rate, const Sink& sink) {
   constexpr double kShortest = 5.0, kLongest = 30.0, kMean = 0.5;  // s
-  // At rest: neither ripple nor creep, without looking at the weight.
+  // At rest: neither ripple nor creep, without looking at the weight, for longer than it takes to
+  // turn round in a swing.
   constexpr double kStillRipple = 1e-3;  // N, RMS
   constexpr double kStillCreep = 2e-5;   // N, of the mean from one interval to the next
+  constexpr int kStillIntervals = 3;
   const HapticLoopSettings sample = hangingSample(fabric, kes::Direction::kWarp, rate);
   HapticLoop loop(sample);
   Hand hand;
@@ -33,8 +35,8 @@ void validateWeight(const material::Fabric& fabric, double rate, const Sink& sin
   move(hand, kStill, 0.0, 0.3, 1e-3, step);
   loop.releaseAll();
   double mean = 0.0, ripple = 0.0;
-  bool rests = false;
-  while (!rests && loop.time() < kLongest) {
+  int still = 0;  // intervals in a row
+  while (still < kStillIntervals && loop.time() < kLongest) {
     double sum = 0.0, squares = 0.0;
     int count = 0;
     move(hand, kStill, 0.0, kMean, 1e-3, [&](const Fingertips& fingertips) {
@@ -47,7 +49,8 @@ void validateWeight(const material::Fabric& fabric, double rate, const Sink& sin
     const double creep = std::abs(sum / count - mean);
     mean = sum / count;
     ripple = std::sqrt(std::max(0.0, squares / count - mean * mean));
-    rests = loop.time() > kShortest && ripple < kStillRipple && creep < kStillCreep;
+    const bool rests = loop.time() > kShortest && ripple < kStillRipple && creep < kStillCreep;
+    still = rests ? still + 1 : 0;
   }
   const std::string name = std::to_string(std::lround(rate)) + "Hz";
   sink(base::relativeTo(weight(sample), "contact/weight/" + name, weight(sample), mean,

@@ -5,7 +5,7 @@
 #include "fixtures.h"
 #include "force_fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
-#include "haptex/cloth/dynamics/stage_solver.h"
+#include "haptex/cloth/dynamics/stages/stage_solver.h"
 
 namespace haptex::cloth::test_backward_euler {
 namespace {

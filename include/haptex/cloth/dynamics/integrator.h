@@ -9,7 +9,7 @@
 #include "haptex/cloth/dynamics/energy_balance.h"
 #include "haptex/cloth/dynamics/explicit_step.h"
 #include "haptex/cloth/dynamics/recent_motion.h"
-#include "haptex/cloth/dynamics/stage_solver.h"
+#include "haptex/cloth/dynamics/stages/stage_solver.h"
 #include "haptex/cloth/dynamics/step.h"
 #include "haptex/cloth/dynamics/untangling/untangling.h"
 
@@ -29,9 +29,10 @@ namespace haptex::cloth {
 /// Implicit methods gain no energy beyond the work that is done on the cloth and what it lost in
 /// the last steps (EnergyBalance). What a linearised stage, a buckling element or a solver's
 /// tolerance adds beyond is taken out of the velocities. Where that would be more than a tenth of
-/// the kinetic energy, or a number is not finite, the step is taken anew by backward Euler: Newton
-/// iterations from the linearised stage, cut short where rest would be better, until it is less;
-/// with every further solve twice as much may be taken, up to all (StageSolver::descend()).
+/// the kinetic energy, or a number is not finite, the step is taken anew by backward Euler: what
+/// moves apart in the linearised stage is slowed down, and Newton iterations go on from there until
+/// it is less; with every further one twice as much may be taken, up to all
+/// (StageSolver::descend()).
 ///
 /// Backward Euler keeps a cloth that collides with itself free of intersections, if it was
 /// (StageSolver), and pulls it apart if it was not (Untangling); the other methods refuse it.

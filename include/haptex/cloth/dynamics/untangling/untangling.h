@@ -6,7 +6,7 @@
 
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/safe_motion.h"
-#include "haptex/cloth/dynamics/stage_solver.h"
+#include "haptex/cloth/dynamics/stages/stage_solver.h"
 #include "haptex/cloth/dynamics/step.h"
 #include "haptex/cloth/dynamics/untangling/contours.h"
 #include "haptex/cloth/dynamics/untangling/regions.h"

@@ -63,10 +63,13 @@ class StageSolver {
                        ClothState& result, StepReport& report);
 
   /// Newton iterations whatever the settings say, from the result of the last solve() or
-  /// solveLinearised(), which was of this stage; or, if rest has a lower incremental potential,
-  /// from where the straight way there first has: so that of the result is at most that of rest.
-  /// What forces hold is of the base, and passive (NewtonStart). Where contacts hold, rest is none
-  /// of their states, and is not looked at.
+  /// solveLinearised(), which was of this stage, with relative motion limited where that is nearly
+  /// all that was wrong (limitRelativeMotion()). If a few of them are not enough and rest has a
+  /// lower incremental potential, they go on from where the straight way there first has: so that
+  /// of the result is at most that of rest, unless it is enough. What forces hold is of the base,
+  /// and passive (NewtonStart). Of cloth that collides with itself no motion is limited; where it
+  /// was cut, rest is looked at before anything else. Where contacts hold, nothing is limited
+  /// either, and rest, which is none of their states, is not looked at.
   /// @param enough of a result: it needs no more iterations
   /// @return whether that ended them, so that `enough` was last asked of the result
   bool descend(const Cloth& cloth, const Stage& stage, const std::function<bool()>& enough,
@@ -99,6 +102,7 @@ class StageSolver {
   void moveObstacles(const Cloth& cloth, const StageGuess& guess, StepReport& report);
   MotionCut keepApart(const Cloth& cloth, const Stage& stage, const Positions& from,
                       ClothState& at);
+  bool calmEdges(const Cloth& cloth, const Stage& stage, double& potential, ClothState& result);
   double retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result,
                             StepReport& report);
   void linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess);
@@ -115,6 +119,8 @@ class StageSolver {
                          linear::LinearSolver::Definiteness::kPositive);
   void moveBodies(linear::LinearSolver::Definiteness definiteness, StepReport& report);
   bool touching() const { return contacts_ && !contacts_->empty(); }
+  /// Nothing but its forces holds the cloth: no contact, and no other layer.
+  bool movesFreely() const { return !touching() && !motion_; }
   bool iterateNewton(const Cloth& cloth, const Stage& stage, double potential, int most_solves,
                      const std::function<bool()>& enough, ClothState& result, StepReport& report);
   void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at, Hessian hessian,

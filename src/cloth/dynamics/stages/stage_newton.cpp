@@ -3,7 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "haptex/cloth/dynamics/stage_solver.h"
+#include "haptex/cloth/dynamics/stages/relative_motion.h"
+#include "haptex/cloth/dynamics/stages/stage_solver.h"
 
 namespace haptex::cloth {
 namespace {
@@ -114,7 +115,8 @@ bool StageSolver::isSmallError(double force, double decrease) const {
   return force <= force_error_ && 0.5 * decrease <= energy_error_;
 }
 
-/// Moves the result along solution_ to a lower potential.
+/// Moves the result along solution_ to a lower potential. If the whole way is too far, what moves
+/// apart on it is slowed down before all of it is shortened.
 StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& stage,
                                              ClothState& result, double& potential,
                                              StepReport& report) {
@@ -124,27 +126,35 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
   const double descent = decrease();
   const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
   if (!(descent > 0.0)) return below_rounding ? Descent::kBelowRounding : Descent::kNone;
-  double step = 1.0;
-  for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
+  const auto goes = [&](double step, bool limited) {
     for (int i = 0; i < matrix_.size(); ++i) {
       const Eigen::Vector3d change = step * solution_.col(i);
       trial_.velocities[i] = result.velocities[i] + change;
       trial_.positions[i] = result.positions[i] + stage.a * change;
     }
+    if (limited && !limitRelativeMotion(cloth, fixed_, stage.base.positions, stage.a, trial_)) {
+      return false;
+    }
     sew(cloth, stage, trial_);
     const MotionCut cut = keepApart(cloth, stage, result.positions, trial_);
     if (touching()) contacts_->moveBodies(step);
     const double trial = incrementalPotential(cloth, stage, trial_);
-    // What was cut has not gone along the line: any decrease will do.
-    const double sufficient = cut.particles > 0 ? 0.0 : kSufficientDecrease * step * descent;
-    if (trial <= potential - sufficient || below_rounding) {
-      report.self_cut = cut;
-      std::swap(result.positions, trial_.positions);
-      std::swap(result.velocities, trial_.velocities);
-      potential = trial;
-      if (touching()) contacts_->shorten(step);
-      return below_rounding ? Descent::kBelowRounding : Descent::kFound;
-    }
+    // What was limited or cut has not gone along the line: any decrease will do.
+    const bool on_line = !limited && cut.particles == 0;
+    const double sufficient = on_line ? kSufficientDecrease * step * descent : 0.0;
+    if (!(trial <= potential - sufficient || below_rounding)) return false;
+    report.self_cut = cut;
+    std::swap(result.positions, trial_.positions);
+    std::swap(result.velocities, trial_.velocities);
+    potential = trial;
+    if (touching()) contacts_->shorten(step);
+    return true;
+  };
+  const Descent found = below_rounding ? Descent::kBelowRounding : Descent::kFound;
+  if (goes(1.0, false) || (movesFreely() && goes(1.0, true))) return found;
+  double step = 0.5;
+  for (int halving = 1; halving < kMaxHalvings; ++halving, step *= 0.5) {
+    if (goes(step, false)) return found;
   }
   if (touching()) contacts_->shorten(0.0);
   return Descent::kNone;

@@ -1,4 +1,4 @@
-#include "haptex/cloth/dynamics/stage_solver.h"
+#include "haptex/cloth/dynamics/stages/stage_solver.h"
 
 #include <algorithm>
 #include <chrono>
@@ -115,20 +115,6 @@ void StageSolver::startFrom(const Cloth& cloth, const Stage& stage, const StageG
   sew(cloth, stage, result);
 }
 
-bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
-                          const std::function<bool()>& enough, ClothState& result,
-                          StepReport& report) {
-  // Where the cloth touches, a Newton iteration takes several; with 20 of them impacts of wool
-  // gained up to 0.4 mJ (3 % of weight by size).
-  constexpr int kMinSolves = 20, kMinTouchingSolves = 60;
-  hold(cloth, stage, stage.base, true);
-  const double potential = touching() ? incrementalPotential(cloth, stage, result)
-                                      : retreatTowardsRest(cloth, stage, result, report);
-  const int least = touching() ? kMinTouchingSolves : kMinSolves;
-  return iterateNewton(cloth, stage, potential, std::max(least, settings_.newton_iterations),
-                       enough, result, report);
-}
-
 void StageSolver::solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& given,
                                   ClothState& result, StepReport& report) {
   const Clock::time_point start = Clock::now();
@@ -210,37 +196,6 @@ void StageSolver::hold(const Cloth& cloth, const Stage& stage, const ClothState&
   ForceState state = forceState(stage, at.positions, at.velocities);
   if (stage.past.count > 0) state.past = &stage.past;
   cloth.forces().hold({stage.base.positions, state, stage.a, passive}, held_.data());
-}
-
-/// If the potential of the free particles at x*, without velocity, is lower, halves their way from
-/// there until it is not.
-/// @return the incremental potential of the result
-double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result,
-                                       StepReport& report) {
-  constexpr double kMinShare = 1e-9;
-  const auto place_at = [&](double share) {
-    for (int i = 0; i < matrix_.size(); ++i) {
-      const Vector3d velocity = result.velocities[i];
-      trial_.velocities[i] = fixed_[i] ? velocity : Vector3d::Zero();
-      if (!fixed_[i] && share > 0.0) trial_.velocities[i] = share * velocity;
-      trial_.positions[i] = fixed_[i] ? result.positions[i]
-                                      : stage.base.positions[i] + stage.a * trial_.velocities[i];
-    }
-    sew(cloth, stage, trial_);
-    report.self_cut = keepApart(cloth, stage, start_, trial_);
-    return incrementalPotential(cloth, stage, trial_);
-  };
-  const double at_rest = place_at(0.0);
-  double potential = incrementalPotential(cloth, stage, result);
-  if (potential <= at_rest) return potential;
-  double share = 1.0;
-  do {
-    share = share > kMinShare ? 0.5 * share : 0.0;
-    potential = place_at(share);
-  } while (!(potential <= at_rest) && share > 0.0);
-  std::swap(result.positions, trial_.positions);
-  std::swap(result.velocities, trial_.velocities);
-  return potential;
 }
 
 void StageSolver::linearise(const Cloth& cloth, const Stage& stage, const StageGuess& guess) {
