@@ -1,6 +1,7 @@
 // How far from the truth is a sheet that falls in steps of a few solves, and at what price? The
 // sheet of held_sheet.h falls and swings for half a second by backward Euler in steps of 12.5 ms.
-// Most of its steps gain energy in a few elements, and are taken anew (docs/stability.md).
+// Some of its steps, of wool most, gain energy in a few elements, and are taken anew
+// (docs/stability.md).
 //
 // Printed are, by fabric ("linear": 1000 N/m), linear solves asked for per step and triangles: the
 // root mean square of the particles' distances from those of a reference, in the mean over the
@@ -80,7 +81,8 @@ double distanceOf(const Motion& motion, const Motion& reference) {
   return 1e3 * sum / static_cast<double>(motion.size());
 }
 
-void measure(const std::string& name, const material::Fabric& fabric, std::vector<int> meshes) {
+void measure(const std::string& name, const material::Fabric& fabric,
+             const std::vector<int>& meshes) {
   for (const int cells : meshes) {
     const std::string triangles = "/" + std::to_string(2 * cells * cells);
     const Motion reference = referenceOf(fabric, cells, kFinerReference);

@@ -184,6 +184,7 @@ TEST(ExtremeShrink, TakesNothingForAFailureThatIsCutShort) {
   outcome.failure = ExtremeFailure::kNoReturn;
   outcome.settling_steps = 1;
   const ExtremeCase extreme = drawExtremeCase(30749);
+  ASSERT_EQ(runExtremeCase(extreme, 2).failure, ExtremeFailure::kNoReturn);
   EXPECT_EQ(toText(shrinkFailure(extreme, outcome)), toText(extreme));
 }
 

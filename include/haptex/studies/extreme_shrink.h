@@ -19,8 +19,9 @@ ExtremeCase shrinkExtremeCase(const ExtremeCase& extreme,
 /// A case that runExtremeCase() has found to fail, as small as runs make it: a hundred at most,
 /// begun as long as those before have taken fewer steps until they were at rest than the slowest
 /// case may.
-/// @param outcome of the case; the smaller one fails in the same way. One that does not return is
-///   known to only if it is at rest somewhere in twice as many steps as the case
+/// @param outcome of the case; the smaller one fails in the same way. If the case does not return,
+///   neither does the smaller one, and is still in twice as many steps, unless it had all that the
+///   slowest case may take
 ExtremeCase shrinkFailure(const ExtremeCase& extreme, const ExtremeOutcome& outcome);
 
 }  // namespace haptex::studies

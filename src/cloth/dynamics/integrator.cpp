@@ -159,9 +159,10 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
     gained = balance_->excess(cloth, begin, end_, contactReactions());
     return gained <= 0.0 || gained <= most_taken * balance_->kineticAtEnd();
   };
+  int solves = 0;
   const auto is_small_enough = [&] {
     const bool small = is_small();
-    most_taken = std::min(1.0, 2.0 * most_taken);
+    if (report.newton_iterations > solves) most_taken = std::min(1.0, 2.0 * most_taken);
     return small;
   };
   if (!is_small()) {
@@ -171,6 +172,7 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
       stages_->forget();
       stages_->solveLinearised(cloth, stage, {begin.positions, begin.velocities, h}, end_, report);
     }
+    solves = report.newton_iterations;
     const bool judged = stages_->descend(cloth, stage, std::ref(is_small_enough), end_, report);
     stages_->forget();
     settle(end_.velocities);

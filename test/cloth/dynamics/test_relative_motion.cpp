@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
+#include <vector>
 
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
@@ -56,7 +59,7 @@ TEST_F(RelativeMotion, OfOneParticleIsSpreadOverItsNeighbours) {
   const double energy = cloth_.kineticEnergy(at_);
   ASSERT_GT(fastest(), kMost);
   EXPECT_TRUE(limit());
-  EXPECT_LT(at_.velocities[24].norm(), 50.0);
+  EXPECT_LT(at_.velocities[24].norm(), 0.5 * Vector3d(3.0, -40.0, 100.0).norm());
   EXPECT_LT((momentum() - before).norm(), 1e-12 * before.norm());
   EXPECT_LT(cloth_.kineticEnergy(at_), energy);
 }
@@ -122,7 +125,9 @@ TEST(StepTakenAnew, LetsTheClothFall) {
     ClothState state = cloth.initialState();
     anew = 0;
     for (int step = 0; step < 29; ++step) {
-      anew += integrator.step(cloth, state, 0.0125).taken_anew;
+      const StepReport report = integrator.step(cloth, state, 0.0125);
+      EXPECT_TRUE(report.accepted);
+      anew += report.taken_anew;
     }
     double height = 0.0;
     for (const Vector3d& position : state.positions) height += position.z();
@@ -132,7 +137,7 @@ TEST(StepTakenAnew, LetsTheClothFall) {
   const double by_one = mean_height(1, anew);
   EXPECT_GT(anew, 10);
   const double by_many = mean_height(20, anew);
-  EXPECT_LT(by_many, -0.24);
+  EXPECT_LT(by_many, -0.24);  // flat at 0, straight down -0.25
   EXPECT_NEAR(by_one, by_many, 0.03 * 0.5);
 }
 

@@ -30,8 +30,8 @@ namespace haptex::cloth {
 /// the last steps (EnergyBalance). What a linearised stage, a buckling element or a solver's
 /// tolerance adds beyond is taken out of the velocities. Where that would be more than a tenth of
 /// the kinetic energy, or a number is not finite, the step is taken anew by backward Euler: what
-/// moves apart in the linearised stage is slowed down, and Newton iterations go on from there until
-/// it is less; with every further one twice as much may be taken, up to all
+/// moves apart in what was solved is slowed down, and Newton iterations go on from there until it
+/// is less; with every one but the first twice as much may be taken, up to all
 /// (StageSolver::descend()).
 ///
 /// Backward Euler keeps a cloth that collides with itself free of intersections, if it was

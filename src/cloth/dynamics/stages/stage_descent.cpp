@@ -26,14 +26,17 @@ bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
   // What collides is ahead of obstacles, and a way back to lower potentials may lead around them.
   if (std::isfinite(potential) && report.self_cut.particles == 0) {
     if (movesFreely() && calmEdges(cloth, stage, potential, result) && enough()) return true;
+    const bool converged = report.newton_converged;
     if (iterate(kSolvesBeforeRetreat)) return true;
+    report.newton_converged = converged;  // the iterations that follow tell
   }
   potential = retreatTowardsRest(cloth, stage, result, report);
   return iterate(std::max(kMinSolves, settings_.newton_iterations));
 }
 
-/// Limits relative motion if that alone takes away nearly all of what the solve has added to the
-/// potential: then it went wrong in a few places only, and all others can stay where they are.
+/// Limits relative motion if that alone takes away nearly all by which the potential is above that
+/// of the step's beginning: then the solve went wrong in a few places only, and all others can stay
+/// where they are.
 /// @param potential incremental one of the result (J); changed with it
 bool StageSolver::calmEdges(const Cloth& cloth, const Stage& stage, double& potential,
                             ClothState& result) {
@@ -42,9 +45,9 @@ bool StageSolver::calmEdges(const Cloth& cloth, const Stage& stage, double& pote
   trial_.velocities = result.velocities;
   if (!limitRelativeMotion(cloth, fixed_, stage.base.positions, stage.a, trial_)) return false;
   sew(cloth, stage, trial_);
-  const double without_motion = incrementalPotential(cloth, stage, stage.base);
+  const double at_begin = incrementalPotential(cloth, stage, stage.base);
   const double calm = incrementalPotential(cloth, stage, trial_);
-  if (!(calm - without_motion < kMostLeft * (potential - without_motion))) return false;
+  if (!(potential > at_begin && calm - at_begin < kMostLeft * (potential - at_begin))) return false;
   potential = calm;
   std::swap(result.positions, trial_.positions);
   std::swap(result.velocities, trial_.velocities);

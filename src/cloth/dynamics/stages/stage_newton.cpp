@@ -84,12 +84,13 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     // Of the projected Hessian an inexact solution will do: the line search judges it.
     const Descent descent =
         solved || !exact ? searchLine(cloth, stage, result, potential, report) : Descent::kNone;
-    if (descent == Descent::kFound) {
+    if (descent == Descent::kFound || descent == Descent::kLimited) {
       const bool enters =
           touching() && contacts_->enter(result.velocities, 2.0 * kContactPenetration);
       is_enough = enough && !enters && enough();
       if (is_enough) break;
-      converged = is_last && !enters && report.self_cut.particles == 0;
+      converged =
+          is_last && descent == Descent::kFound && !enters && report.self_cut.particles == 0;
       if (converged) break;
       hessian = norm <= near ? Hessian::kExact : Hessian::kProjected;
     } else if (descent == Descent::kNone && exact) {  // not positive definite here
@@ -126,14 +127,15 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
   const double descent = decrease();
   const bool below_rounding = std::abs(descent) <= kRounding * std::abs(potential);
   if (!(descent > 0.0)) return below_rounding ? Descent::kBelowRounding : Descent::kNone;
-  const auto goes = [&](double step, bool limited) {
+  const auto try_step = [&](double step, bool limited) {
     for (int i = 0; i < matrix_.size(); ++i) {
       const Eigen::Vector3d change = step * solution_.col(i);
       trial_.velocities[i] = result.velocities[i] + change;
       trial_.positions[i] = result.positions[i] + stage.a * change;
     }
-    if (limited && !limitRelativeMotion(cloth, fixed_, stage.base.positions, stage.a, trial_)) {
-      return false;
+    if (limited) {
+      sew(cloth, stage, trial_);
+      if (!limitRelativeMotion(cloth, fixed_, stage.base.positions, stage.a, trial_)) return false;
     }
     sew(cloth, stage, trial_);
     const MotionCut cut = keepApart(cloth, stage, result.positions, trial_);
@@ -151,10 +153,11 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
     return true;
   };
   const Descent found = below_rounding ? Descent::kBelowRounding : Descent::kFound;
-  if (goes(1.0, false) || (movesFreely() && goes(1.0, true))) return found;
+  if (try_step(1.0, false)) return found;
+  if (movesFreely() && try_step(1.0, true)) return Descent::kLimited;
   double step = 0.5;
   for (int halving = 1; halving < kMaxHalvings; ++halving, step *= 0.5) {
-    if (goes(step, false)) return found;
+    if (try_step(step, false)) return found;
   }
   if (touching()) contacts_->shorten(0.0);
   return Descent::kNone;

@@ -133,13 +133,11 @@ void NearObstacles::find(const Places& positions, const Places& places, double d
   }
   for (std::size_t i = 0; i < positions.size(); ++i) corner_boxes_[i] = Box(positions[i]);
   fitObstacleBoxes(places, nullptr);
-  const auto is_far = [&](Pair& pair) {
-    pair.distance = distanceOf(pair, positions, places);
-    return pair.distance > searched_;
-  };
+  const auto is_far = [&](const Pair& pair) { return pair.distance > searched_; };
   collect(searched_, pool);
   linear::runTasks(pool, static_cast<int>(found_.size()), [&](int part, int) {
     std::vector<Pair>& its = found_[part];
+    for (Pair& pair : its) pair.distance = distanceOf(pair, positions, places);
     its.erase(std::remove_if(its.begin(), its.end(), is_far), its.end());
   });
   join(pairs_);

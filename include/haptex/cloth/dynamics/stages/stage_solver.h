@@ -24,9 +24,10 @@ namespace haptex::cloth {
 /// every state and a (Baraff and Witkin 1998). With more than one Newton iteration it goes on from
 /// there to the minimum of the incremental potential
 ///   |M^(1/2) (v - v*)|^2 / 2 + Force::incrementalPotential(x, v) of all forces,
-/// by Newton iterations with a backtracking line search. They use the projected Hessian as long as
-/// the residual is large, and then the exact one where it is positive definite. What forces hold
-/// fixed meanwhile is that of the first solve, right to the second order.
+/// by Newton iterations with a backtracking line search, which first limits the relative motion on
+/// a whole step that does not lower it (limitRelativeMotion()). They use the projected Hessian as
+/// long as the residual is large, and then the exact one where it is positive definite. What forces
+/// hold fixed meanwhile is that of the first solve, right to the second order.
 ///
 /// With xg and vg right to the first order in time the first solve is right to the second where
 /// nothing had to be projected. It linearises about a state that has been reached, not about
@@ -91,7 +92,7 @@ class StageSolver {
   ActiveSetContactSolver* contacts() { return contacts_ ? &*contacts_ : nullptr; }
 
  private:
-  enum class Descent { kFound, kBelowRounding, kNone };
+  enum class Descent { kFound, kLimited, kBelowRounding, kNone };
 
   ForceState forceState(const Stage& stage, const Positions& positions,
                         const Velocities& velocities) const;
@@ -119,7 +120,7 @@ class StageSolver {
                          linear::LinearSolver::Definiteness::kPositive);
   void moveBodies(linear::LinearSolver::Definiteness definiteness, StepReport& report);
   bool touching() const { return contacts_ && !contacts_->empty(); }
-  /// Nothing but its forces holds the cloth: no contact, and no other layer.
+  /// Neither contacts nor other layers of the cloth are in its way.
   bool movesFreely() const { return !touching() && !motion_; }
   bool iterateNewton(const Cloth& cloth, const Stage& stage, double potential, int most_solves,
                      const std::function<bool()>& enough, ClothState& result, StepReport& report);
