@@ -183,7 +183,7 @@ TEST(ExtremeShrink, TakesNothingForAFailureThatIsCutShort) {
   ExtremeOutcome outcome;
   outcome.failure = ExtremeFailure::kNoReturn;
   outcome.settling_steps = 1;
-  const ExtremeCase extreme = drawExtremeCase(30749);
+  const ExtremeCase extreme = drawExtremeCase(46149);
   ASSERT_EQ(runExtremeCase(extreme, 2).failure, ExtremeFailure::kNoReturn);
   EXPECT_EQ(toText(shrinkFailure(extreme, outcome)), toText(extreme));
 }
