@@ -178,14 +178,20 @@ TEST(ExtremeShrink, LeavesWhatThePlantedFailureNeeds) {
   EXPECT_LE(small.longest_step, 0.5);
 }
 
-/// What is still on its way after twice as many steps might return. This case does not.
+/// What is still on its way after twice as many steps might return. These cases take hundreds of
+/// steps; whether one of them happens to need a few only is a matter of rounding.
 TEST(ExtremeShrink, TakesNothingForAFailureThatIsCutShort) {
   ExtremeOutcome outcome;
   outcome.failure = ExtremeFailure::kNoReturn;
   outcome.settling_steps = 1;
-  const ExtremeCase extreme = drawExtremeCase(46149);
-  ASSERT_EQ(runExtremeCase(extreme, 2).failure, ExtremeFailure::kNoReturn);
-  EXPECT_EQ(toText(shrinkFailure(extreme, outcome)), toText(extreme));
+  int on_their_way = 0;
+  for (const int seed : {773, 1651}) {
+    const ExtremeCase extreme = drawExtremeCase(seed);
+    if (runExtremeCase(extreme, 2).failure != ExtremeFailure::kNoReturn) continue;
+    ++on_their_way;
+    EXPECT_EQ(toText(shrinkFailure(extreme, outcome)), toText(extreme)) << seed;
+  }
+  EXPECT_GE(on_their_way, 1);
 }
 
 TEST(StabilityMap, KnowsWhatIsStable) {
