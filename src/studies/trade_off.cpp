@@ -129,7 +129,7 @@ class MotionRun {
     const int cycles = cyclesOf(motion_);
     for (int cycle = 0; cycle < cycles; ++cycle) {
       direct(cycle);
-      const Vector3d momentum = momentumNow();
+      const Vector3d momentum = cloth_.momentum(state_);
       trajectory.accepted = advance(trajectory);
       if (!trajectory.accepted) break;
       trajectory.simulated_seconds = (cycle + 1) * kCycle;
@@ -270,19 +270,11 @@ class MotionRun {
     return sum;
   }
 
-  Vector3d momentumNow() const {
-    Vector3d momentum = Vector3d::Zero();
-    for (std::size_t i = 0; i < cloth_.particleCount(); ++i) {
-      momentum += cloth_.masses()[i] * state_.velocities[i];
-    }
-    return momentum;
-  }
-
   /// Mean over the last cycle of what the sphere exerts.
   Vector3d forceSince(const Vector3d& momentum) const {
     Vector3d weight = Vector3d::Zero();
     for (double mass : cloth_.masses()) weight += mass * cloth_.effects().gravity;
-    return (momentumNow() - momentum) / kCycle - weight;
+    return (cloth_.momentum(state_) - momentum) / kCycle - weight;
   }
 
   void addShare(double share, ClothState& mean) const {

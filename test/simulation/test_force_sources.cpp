@@ -150,10 +150,7 @@ TEST(ForceSources, GiveTheMomentumOfTheirForcesAndNoMoreEnergyThanTheirWork) {
       work += kPush.dot(simulation.state().positions[particle] - before[particle]) * (i < 10);
     }
   }
-  Vector3d momentum = Vector3d::Zero();
-  for (std::size_t i = 0; i < kSmallParticles; ++i) {
-    momentum += simulation.cloth().masses()[i] * simulation.state().velocities[i];
-  }
+  const Vector3d momentum = simulation.cloth().momentum(simulation.state());
   const Vector3d expected = 2.0 * 10.0 * kStep * kPush;
   EXPECT_LT((momentum - expected).norm(), 1e-9 * expected.norm());  // of the solver
   const double energy = simulation.cloth().kineticEnergy(simulation.state()) +

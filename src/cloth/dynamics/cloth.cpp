@@ -201,6 +201,13 @@ double Cloth::kineticEnergy(const ClothState& state) const {
   return energy;
 }
 
+Eigen::Vector3d Cloth::momentum(const ClothState& state) const {
+  requireState(state);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < particleCount(); ++i) sum += masses_[i] * state.velocities[i];
+  return sum;
+}
+
 std::vector<JacobianBlock> Cloth::jacobian(const ClothState& state,
                                            const std::vector<int>& particles) const {
   requireState(state);

@@ -170,7 +170,7 @@ void Integrator::keepEnergy(const Cloth& cloth, const ClothState& begin, double 
     const Stage stage{begin, h, end_.time, 1.0, StrainPast::since(begin.positions, h)};
     if (settings_.method != IntegrationMethod::kBackwardEuler) {
       stages_->forget();
-      stages_->solveLinearised(cloth, stage, {begin.positions, begin.velocities, h}, end_, report);
+      stages_->beginAnew(cloth, stage, {begin.positions, begin.velocities, h}, end_, report);
     }
     solves = report.newton_iterations;
     const bool judged = stages_->descend(cloth, stage, std::ref(is_small_enough), end_, report);

@@ -57,10 +57,7 @@ struct Sheet {
   bool step(double h) { return collision.step(cloth, integrator, state, h).accepted; }
 
   Vector3d momentum() const {
-    Vector3d sum = Vector3d::Zero();
-    for (std::size_t i = 0; i < cloth.particleCount(); ++i) {
-      sum += cloth.masses()[i] * state.velocities[i];
-    }
+    Vector3d sum = cloth.momentum(state);
     for (const FreeBody& body : collision.bodies()) sum += body.momentum();
     return sum;
   }

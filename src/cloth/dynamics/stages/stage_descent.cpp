@@ -10,6 +10,22 @@ namespace haptex::cloth {
 
 using Eigen::Vector3d;
 
+void StageSolver::beginAnew(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                            ClothState& result, StepReport& report) {
+  std::swap(trial_.positions, result.positions);
+  solveLinearised(cloth, stage, guess, result, report);
+  if (touching() || settings_.newton_iterations == 1) return;
+  for (int i = 0; i < matrix_.size(); ++i) {
+    trial_.velocities[i] = (trial_.positions[i] - stage.base.positions[i]) / stage.a;
+  }
+  hold(cloth, stage, stage.base, true);
+  const double linearised = incrementalPotential(cloth, stage, result);
+  if (!(incrementalPotential(cloth, stage, trial_) < linearised)) return;
+  std::swap(trial_.positions, result.positions);
+  std::swap(trial_.velocities, result.velocities);
+  report.self_cut = {};
+}
+
 bool StageSolver::descend(const Cloth& cloth, const Stage& stage,
                           const std::function<bool()>& enough, ClothState& result,
                           StepReport& report) {
@@ -60,6 +76,7 @@ bool StageSolver::calmEdges(const Cloth& cloth, const Stage& stage, double& pote
 double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, ClothState& result,
                                        StepReport& report) {
   constexpr double kMinShare = 1e-9;
+  MotionCut cut;
   const auto place_at = [&](double share) {
     for (int i = 0; i < matrix_.size(); ++i) {
       const Vector3d velocity = result.velocities[i];
@@ -69,7 +86,7 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
                                       : stage.base.positions[i] + stage.a * trial_.velocities[i];
     }
     sew(cloth, stage, trial_);
-    report.self_cut = keepApart(cloth, stage, start_, trial_);
+    cut = keepApart(cloth, stage, start_, trial_);
     return incrementalPotential(cloth, stage, trial_);
   };
   const double at_rest = place_at(0.0);
@@ -82,6 +99,7 @@ double StageSolver::retreatTowardsRest(const Cloth& cloth, const Stage& stage, C
   } while (!(potential <= at_rest) && share > 0.0);
   std::swap(result.positions, trial_.positions);
   std::swap(result.velocities, trial_.velocities);
+  report.self_cut = cut;
   return potential;
 }
 

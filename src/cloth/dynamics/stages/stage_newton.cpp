@@ -44,8 +44,10 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
   constexpr double kNearer = 0.1;        // of the residual where it was not positive definite
   double reference = linearised_norm_;   // of a start without first solve, its own residual
   double near = kNearMinimum * reference;
-  constexpr int kMostWhileCut = 20;  // iterations beyond, as long as the last one was cut
-  constexpr int kLeastTurning = 5;   // solves where cloth turns that touches
+  // Iterations beyond, of cloth that collides with itself: as long as the last one was cut, and to
+  // the error that is asked for. Short of it, stiff layers hook into each other.
+  constexpr int kMostWhileCut = 20, kMostForError = 40;
+  constexpr int kLeastTurning = 5;  // solves where cloth turns that touches
   const int last_solve = report.newton_iterations + most_solves;
   int beyond = 0;
   prescribed_.setZero();  // the fixed particles have reached their places
@@ -62,10 +64,12 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     converged = norm <= settings_.newton_tolerance * reference || is_small;
     if (converged) break;
     if (report.newton_iterations >= last_solve) {
-      const bool was_cut = report.self_cut.particles > 0 && beyond++ < kMostWhileCut;
+      const bool misses = motion_ && settings_.newton_error > 0.0;
+      const int while_cut = report.self_cut.particles > 0 ? kMostWhileCut : 0;
+      const bool goes_on = beyond++ < (misses ? kMostForError : while_cut);
       const bool turns = solves < kLeastTurning && touching() &&
                          touchingTurns(cloth, contacts_->reactions(), matrix_, stage.a, result);
-      if (!was_cut && !turns) break;
+      if (!goes_on && !turns) break;
     }
     solution_.setZero();
     ++solves;

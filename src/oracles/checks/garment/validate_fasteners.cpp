@@ -195,13 +195,7 @@ void checkFlight(FastenedPieces pieces, double speed, const std::string& name, c
     return flight.cloth().kineticEnergy(flight.state()) +
            flight.cloth().potentialEnergy(flight.state());
   };
-  const auto momentum = [&] {
-    Vector3d sum = Vector3d::Zero();
-    for (std::size_t i = 0; i < 2 * half; ++i) {
-      sum += flight.cloth().masses()[i] * flight.state().velocities[i];
-    }
-    return sum;
-  };
+  const auto momentum = [&] { return flight.cloth().momentum(flight.state()); };
   const double energy_before = energy();
   const double momentum_at_start = momentum().norm();
   double gained = 0.0, drift = 0.0;

@@ -102,13 +102,7 @@ void validateMomentum(const material::Fabric& fabric, const Sink& sink) {
                                         flatSheet({0.04, 0.04}, 4, 4, oblique)}),
                              0.0},
                             {fabric}, settings);
-  const auto momentum = [&] {
-    Vector3d sum = Vector3d::Zero();
-    for (std::size_t i = 0; i < sheets.cloth.particleCount(); ++i) {
-      sum += sheets.cloth.masses()[i] * sheets.state.velocities[i];
-    }
-    return sum;
-  };
+  const auto momentum = [&] { return sheets.cloth.momentum(sheets.state); };
   double scale = 0.0;
   for (std::size_t i = 0; i < sheets.cloth.particleCount(); ++i) {
     sheets.state.velocities[i] = i < 49 ? Vector3d(0.0, 0.02, 0.1) : Vector3d(0.0, 0.0, -0.4);

@@ -12,7 +12,7 @@ namespace haptex::cloth {
 /// 0.12 of it is left, edge after edge and again until there is none, ten times at most. Where
 /// both ends are free, their momentum stays as it is and their kinetic energy does not grow;
 /// angular momentum is not kept. Smooth motion stays as it is as far as it turns or stretches the
-/// cloth by less than that in a stage.
+/// cloth by less than that in a stage. Ends at the same place of the base get the same velocity.
 ///
 /// A limit on the strain rate (Bridson, Fedkiw and Anderson 2002 allow 0.1 per step) would leave
 /// what moves across the edges, which is most of what a solve gets wrong: it takes elements under

@@ -59,12 +59,15 @@ class StageSolver {
   void solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess, ClothState& result,
              StepReport& report);
 
-  /// The linearised stage alone.
-  void solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
-                       ClothState& result, StepReport& report);
+  /// The linearised stage alone, of a step that another method has taken to `result`, unless that
+  /// has the lower incremental potential: then its positions are the result, with the velocities of
+  /// this stage. They are never with a single solve per stage, which may have gone anywhere, nor
+  /// where contacts hold, which know the last solve alone.
+  void beginAnew(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                 ClothState& result, StepReport& report);
 
   /// Newton iterations whatever the settings say, from the result of the last solve() or
-  /// solveLinearised(), which was of this stage, with relative motion limited where that is nearly
+  /// beginAnew(), which was of this stage, with relative motion limited where that is nearly
   /// all that was wrong (limitRelativeMotion()). If a few of them are not enough and rest has a
   /// lower incremental potential, they go on from where the straight way there first has: so that
   /// of the result is at most that of rest, unless it is enough. What forces hold is of the base,
@@ -98,6 +101,8 @@ class StageSolver {
                         const Velocities& velocities) const;
   void startFrom(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                  ClothState& result);
+  void solveLinearised(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
+                       ClothState& result, StepReport& report);
 
   void hold(const Cloth& cloth, const Stage& stage, const ClothState& at, bool passive);
   void moveObstacles(const Cloth& cloth, const StageGuess& guess, StepReport& report);
