@@ -147,6 +147,16 @@ TEST(Cloth, RefusesAStateOfAnotherSize) {
   EXPECT_THROW(cloth.jacobian(state, {0}), std::invalid_argument);
   EXPECT_THROW(cloth.potentialEnergy(state), std::invalid_argument);
   EXPECT_THROW(cloth.kineticEnergy(state), std::invalid_argument);
+  EXPECT_THROW(cloth.momentum(state), std::invalid_argument);
+}
+
+TEST(Cloth, MomentumIsThatOfAllParticles) {
+  Cloth cloth(square(2, 0.1), linearFabric(), {});
+  ClothState state = cloth.initialState();
+  cloth.attach(0, {state.positions[0]});
+  const Eigen::Vector3d velocity(1.0, -2.0, 3.0);
+  for (Eigen::Vector3d& of_particle : state.velocities) of_particle = velocity;
+  EXPECT_LT((cloth.momentum(state) - 0.1 * 0.1 * 0.1 * velocity).norm(), 1e-15);  // 0.1 kg/m2
 }
 
 TEST(Cloth, JacobianRowsAreSortedAndHoldEveryNeighbour) {

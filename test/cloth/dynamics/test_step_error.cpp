@@ -7,6 +7,7 @@
 
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
+#include "haptex/material/fabric_file.h"
 #include "integrator_fixtures.h"
 
 namespace haptex::cloth::test_step_error {
@@ -113,6 +114,28 @@ TEST(StepError, IsRefusedOutsideItsRange) {
     EXPECT_THROW(Integrator(cloth, settings), std::invalid_argument) << error;
   }
   EXPECT_EQ(StepSettings{}.newton_error, 0.0);
+}
+
+/// Cloth that collides with itself is not left short of its error, or its layers hook into each
+/// other; but not for ever either.
+TEST(StepError, IsSoughtBeyondTheIterationsOfClothThatCollidesWithItself) {
+  const material::Fabric wool = material::loadFabric(HAPTEX_CONFIG_DIRECTORY "/fabrics/wool.yaml");
+  for (const bool self_collision : {false, true}) {
+    ModelledEffects effects;
+    effects.self_collision = self_collision;
+    const Cloth cloth(square(8), wool, effects);
+    ClothState state = randomState(cloth, 1e-3, 1.0);
+    StepSettings settings = settingsOf(IntegrationMethod::kBackwardEuler, 2);
+    settings.newton_error = 1e-9;
+    const StepReport report = Integrator(cloth, settings).step(cloth, state, 0.0125);
+    ASSERT_FALSE(report.taken_anew);
+    if (self_collision) {
+      EXPECT_GT(report.newton_iterations, 5);
+      EXPECT_LE(report.newton_iterations, 42);
+    } else {
+      EXPECT_EQ(report.newton_iterations, 2);
+    }
+  }
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ class Cloth {
   /// @param pool shares the work if it is given
   double potentialEnergy(const ClothState& state, linear::ThreadPool* pool = nullptr) const;
   double kineticEnergy(const ClothState& state) const;
-  Eigen::Vector3d momentum(const ClothState& state) const;  ///< kg m/s
+  Eigen::Vector3d momentum(const ClothState& state) const;  ///< kg m/s, of all particles
   /// Tells whether potentialEnergy() of a state may be another now: a number greater than 0 that no
   /// other cloth has, and that setFabric(), setExternalForce() and setPointLoads()
   /// change.

@@ -29,13 +29,15 @@ namespace haptex::cloth {
 /// Implicit methods gain no energy beyond the work that is done on the cloth and what it lost in
 /// the last steps (EnergyBalance). What a linearised stage, a buckling element or a solver's
 /// tolerance adds beyond is taken out of the velocities. Where that would be more than a tenth of
-/// the kinetic energy, or a number is not finite, the step is taken anew by backward Euler: what
-/// moves apart in what was solved is slowed down, and Newton iterations go on from there until it
+/// the kinetic energy, or a number is not finite, the step is taken anew by backward Euler, from
+/// what the method has found if that is better than a linearised step (StageSolver::beginAnew()):
+/// what moves apart in it is slowed down, and Newton iterations go on from there until it
 /// is less; with every one but the first twice as much may be taken, up to all
 /// (StageSolver::descend()).
 ///
 /// Backward Euler keeps a cloth that collides with itself free of intersections, if it was
-/// (StageSolver), and pulls it apart if it was not (Untangling); the other methods refuse it.
+/// (StageSolver), and pulls it apart if it was not (Untangling); so do TR-BDF2 and BDF-2 where
+/// there are no obstacles. The other methods refuse it.
 ///
 /// A step allocates nothing: all buffers are made by the constructor, and only those that the
 /// method needs.
@@ -43,8 +45,8 @@ class Integrator {
  public:
   /// @throws std::invalid_argument if the settings' tolerances are not in (0, 1),
   ///   newton_iterations is less than 1, threads is not from 1 to kMaxThreads, or the cloth
-  ///   collides with itself and the method is not backward Euler, or there are rigid bodies that
-  ///   the method does not know (knowsBodies())
+  ///   collides with itself and the method does not know that, or there are rigid bodies that
+  ///   it does not know (knowsBodies())
   Integrator(const Cloth& cloth, const StepSettings& settings);
 
   /// Advances `state` by `time_step` seconds; steps need not be uniform.

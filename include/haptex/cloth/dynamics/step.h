@@ -81,7 +81,8 @@ struct StepSettings {
   /// the stage falls below newton_tolerance times the right-hand side of the linearised one, or its
   /// error is small enough (newton_error), or rounding ends it, or this number is spent; where
   /// cloth that touches turns by more than 0.02 rad in a step, at least 5. Of cloth that collides
-  /// with itself up to 20 more where the last one was cut, and 40 where newton_error is missed.
+  /// with itself up to 20 more where the last one was cut, or 40 where newton_error is
+  /// missed.
   int newton_iterations = 1;
   double newton_tolerance = 1e-8;
   /// An error E of a stage that is small enough, relative; 0: none is. With weight = mass times

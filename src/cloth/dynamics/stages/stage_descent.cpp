@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 
 void StageSolver::beginAnew(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                             ClothState& result, StepReport& report) {
+  const MotionCut cut = report.self_cut;
   std::swap(trial_.positions, result.positions);
   solveLinearised(cloth, stage, guess, result, report);
   if (touching() || settings_.newton_iterations == 1) return;
@@ -19,11 +20,12 @@ void StageSolver::beginAnew(const Cloth& cloth, const Stage& stage, const StageG
     trial_.velocities[i] = (trial_.positions[i] - stage.base.positions[i]) / stage.a;
   }
   hold(cloth, stage, stage.base, true);
+  const double found = incrementalPotential(cloth, stage, trial_);
   const double linearised = incrementalPotential(cloth, stage, result);
-  if (!(incrementalPotential(cloth, stage, trial_) < linearised)) return;
+  if (!std::isfinite(found) || found >= linearised) return;
   std::swap(trial_.positions, result.positions);
   std::swap(trial_.velocities, result.velocities);
-  report.self_cut = {};
+  report.self_cut = cut;
 }
 
 bool StageSolver::descend(const Cloth& cloth, const Stage& stage,

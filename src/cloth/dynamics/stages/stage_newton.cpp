@@ -44,9 +44,6 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
   constexpr double kNearer = 0.1;        // of the residual where it was not positive definite
   double reference = linearised_norm_;   // of a start without first solve, its own residual
   double near = kNearMinimum * reference;
-  // Iterations beyond, of cloth that collides with itself: as long as the last one was cut, and to
-  // the error that is asked for. Short of it, stiff layers hook into each other.
-  constexpr int kMostWhileCut = 20, kMostForError = 40;
   constexpr int kLeastTurning = 5;  // solves where cloth turns that touches
   const int last_solve = report.newton_iterations + most_solves;
   int beyond = 0;
@@ -64,9 +61,8 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
     converged = norm <= settings_.newton_tolerance * reference || is_small;
     if (converged) break;
     if (report.newton_iterations >= last_solve) {
-      const bool misses = motion_ && settings_.newton_error > 0.0;
-      const int while_cut = report.self_cut.particles > 0 ? kMostWhileCut : 0;
-      const bool goes_on = beyond++ < (misses ? kMostForError : while_cut);
+      const bool goes_on = beyond < mostBeyond(report, !enough);
+      ++beyond;
       const bool turns = solves < kLeastTurning && touching() &&
                          touchingTurns(cloth, contacts_->reactions(), matrix_, stage.a, result);
       if (!goes_on && !turns) break;
@@ -107,6 +103,16 @@ bool StageSolver::iterateNewton(const Cloth& cloth, const Stage& stage, double p
   }
   report.newton_converged = report.newton_converged && converged;
   return is_enough;
+}
+
+/// Iterations beyond what was asked for, of cloth that collides with itself: to the error that is
+/// asked for, or as long as the last one was cut. Short of the error, stiff layers hook into each
+/// other. (Whether layers are near does not tell: one bad step before they are is enough.)
+int StageSolver::mostBeyond(const StepReport& report, bool to_error) const {
+  constexpr int kWhileCut = 20, kToError = 40;
+  if (!motion_) return 0;
+  if (to_error && settings_.newton_error > 0.0) return kToError;
+  return report.self_cut.particles > 0 ? kWhileCut : 0;
 }
 
 /// Of the incremental potential along the solution (J), to the first order: twice what a Newton

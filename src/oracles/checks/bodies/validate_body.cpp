@@ -102,14 +102,14 @@ void validateImpact(const Sink& sink) {
 }
 
 struct Together {
-  Vector3d momentum = Vector3d::Zero(), turning = Vector3d::Zero();
-  double energy = 0.0;
+  Vector3d momentum, turning = Vector3d::Zero();
+  double energy;
 
-  explicit Together(const CollidingCloth& scene) : energy(scene.energy()) {
+  explicit Together(const CollidingCloth& scene)
+      : momentum(scene.cloth.momentum(scene.state)), energy(scene.energy()) {
     for (std::size_t i = 0; i < scene.cloth.particleCount(); ++i) {
-      const Vector3d of_particle = scene.cloth.masses()[i] * scene.state.velocities[i];
-      momentum += of_particle;
-      turning += scene.state.positions[i].cross(of_particle);
+      turning +=
+          scene.cloth.masses()[i] * scene.state.positions[i].cross(scene.state.velocities[i]);
     }
     for (const FreeBody& body : scene.collision.bodies()) {
       momentum += body.momentum();

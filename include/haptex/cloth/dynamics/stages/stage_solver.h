@@ -39,9 +39,10 @@ namespace haptex::cloth {
 ///
 /// Where the cloth collides with itself, the first solve's result and every trial of a line search
 /// are taken as far only as they can be reached without passing through (SafeMotion), and
-/// velocities follow; Newton iterations go on for a while as long as something is cut, whatever the
-/// settings say. Obstacles go through the step before, and what they carry with them is where the
-/// first solve's way begins. That holds for stages from the beginning of a step, x* = x0, alone.
+/// velocities follow; Newton iterations go on for a while as long as something is cut, or
+/// StepSettings::newton_error is missed, whatever else the settings say. Obstacles go through the
+/// step before, and what they carry with them is where the first solve's way begins. That holds for
+/// stages from the beginning of a step, x* = x0, alone.
 ///
 /// Allocates nothing after construction, but where more of the cloth is near itself than before.
 class StageSolver {
@@ -59,10 +60,11 @@ class StageSolver {
   void solve(const Cloth& cloth, const Stage& stage, const StageGuess& guess, ClothState& result,
              StepReport& report);
 
-  /// The linearised stage alone, of a step that another method has taken to `result`, unless that
-  /// has the lower incremental potential: then its positions are the result, with the velocities of
-  /// this stage. They are never with a single solve per stage, which may have gone anywhere, nor
-  /// where contacts hold, which know the last solve alone.
+  /// Begins a step anew that another method has taken to `result`: with the linearised stage, or,
+  /// if that has the higher incremental potential, with the positions of the result and velocities
+  /// (x - x*) / a. Always with the linearised stage where a stage has one solve, which may have
+  /// gone anywhere, and where contacts are known, which remember the last solve alone.
+  /// @param result in and out; neither stage nor guess may refer to it
   void beginAnew(const Cloth& cloth, const Stage& stage, const StageGuess& guess,
                  ClothState& result, StepReport& report);
 
@@ -129,6 +131,7 @@ class StageSolver {
   bool movesFreely() const { return !touching() && !motion_; }
   bool iterateNewton(const Cloth& cloth, const Stage& stage, double potential, int most_solves,
                      const std::function<bool()>& enough, ClothState& result, StepReport& report);
+  int mostBeyond(const StepReport& report, bool to_error) const;
   void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at, Hessian hessian,
                       StepReport& report);
   double decrease() const;
@@ -157,7 +160,7 @@ class StageSolver {
   Positions start_;                    // m, likewise: that of the step beside moved obstacles
   linear::BlockVector response_;       // m, of respond()
   linear::BlockVector load_change_;    // of the solution, by other loads of friction
-  ClothState trial_;                   // of a line search; empty where there is none
+  ClothState trial_;                   // of a line search, and of beginAnew()
   std::vector<Eigen::Vector3d> held_;  // by the forces: Force::hold()
 };
 
