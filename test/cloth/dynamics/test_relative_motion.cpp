@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <random>
 #include <vector>
 
 #include "fixtures.h"
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/cloth/dynamics/stages/relative_motion.h"
+#include "haptex/cloth/dynamics/stages/stage_solver.h"
 #include "haptex/material/fabric_file.h"
 
 namespace haptex::cloth::test_relative_motion {
@@ -94,6 +96,41 @@ TEST_F(RelativeMotion, DoesNotMoveWhatIsFixed) {
   EXPECT_TRUE(limit());
   EXPECT_EQ(at_.velocities[24], Vector3d(0.0, 0.0, 10.0));
   EXPECT_GT(at_.velocities[25].z(), 1.0);
+}
+
+/// Another method has come nearer to the end of the step than a linearised solve does, is not
+/// finite, or has made one solve per stage.
+TEST(StepTakenAnew, BeginsFromTheBetterOfWhatWasFoundAndALinearisedSolve) {
+  constexpr double kStep = 0.0125;  // s
+  const Cloth cloth(square(6), stiffeningFabric(), ModelledEffects{});
+  const ClothState begin = randomState(cloth, 1e-3, 0.5);
+  StepSettings settings;
+  settings.newton_iterations = 50;
+  ClothState found = begin;
+  ASSERT_TRUE(Integrator(cloth, settings).step(cloth, found, kStep).newton_converged);
+  const auto begins = [&](int newton_iterations, const ClothState& from) {
+    settings.newton_iterations = newton_iterations;
+    StageSolver stages(cloth, settings);
+    const Stage stage{begin, kStep, begin.time + kStep, 1.0,
+                      StrainPast::since(begin.positions, kStep)};
+    ClothState result = from;
+    StepReport report;
+    stages.beginAnew(cloth, stage, {begin.positions, begin.velocities, kStep}, result, report);
+    EXPECT_EQ(report.newton_iterations, 1);
+    for (std::size_t i = 0; i < begin.positions.size(); ++i) {
+      const Vector3d way = begin.positions[i] + kStep * result.velocities[i] - result.positions[i];
+      EXPECT_LT(way.norm(), 1e-15);
+    }
+    return result.positions;
+  };
+  const Positions linearised = begins(1, found);
+  EXPECT_NE(linearised, found.positions);
+  EXPECT_EQ(begins(2, found), found.positions);
+  ClothState worse = found;
+  worse.positions[24].z() += 0.1;
+  EXPECT_EQ(begins(2, worse), linearised);
+  worse.positions[24].z() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(begins(2, worse), linearised);
 }
 
 /// Most steps of wool with one solve are taken anew, because a few elements go wrong. That must not
