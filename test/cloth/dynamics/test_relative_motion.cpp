@@ -10,6 +10,7 @@
 #include "haptex/cloth/dynamics/integrator.h"
 #include "haptex/cloth/dynamics/stages/relative_motion.h"
 #include "haptex/cloth/dynamics/stages/stage_solver.h"
+#include "haptex/linear/thread_pool.h"
 #include "haptex/material/fabric_file.h"
 
 namespace haptex::cloth::test_relative_motion {
@@ -28,7 +29,9 @@ class RelativeMotion : public testing::Test {
       at_.positions[i] = base_.positions[i] + kStage * at_.velocities[i];
     }
   }
-  bool limit() { return limitRelativeMotion(cloth_, fixed_, base_.positions, kStage, at_); }
+  bool limit() {
+    return RelativeMotionLimit(cloth_).apply(cloth_, fixed_, base_.positions, kStage, at_);
+  }
   double fastest() const {
     double fastest = 0.0;
     for (const std::array<int, 3>& corners : cloth_.mesh().triangles) {
@@ -96,6 +99,47 @@ TEST_F(RelativeMotion, DoesNotMoveWhatIsFixed) {
   EXPECT_TRUE(limit());
   EXPECT_EQ(at_.velocities[24], Vector3d(0.0, 0.0, 10.0));
   EXPECT_GT(at_.velocities[25].z(), 1.0);
+}
+
+/// As the header says it: every edge of every triangle, in every sweep.
+void limitPlainly(const Cloth& cloth, const ClothState& base, ClothState& at) {
+  for (int sweep = 0; sweep < 10; ++sweep) {
+    for (const std::array<int, 3>& corners : cloth.mesh().triangles) {
+      for (int side = 0; side < 3; ++side) {
+        const int i = corners[side], j = corners[(side + 1) % 3];
+        const Vector3d relative = at.velocities[i] - at.velocities[j];
+        const double way = kStage * relative.norm();
+        const double most = kMost * (base.positions[i] - base.positions[j]).norm();
+        if (way <= most) continue;
+        const double mobilities = 1.0 / cloth.masses()[i] + 1.0 / cloth.masses()[j];
+        const Vector3d impulse = (1.0 - 0.8 * most / way) / mobilities * relative;
+        at.velocities[i] -= impulse / cloth.masses()[i];
+        at.velocities[j] += impulse / cloth.masses()[j];
+      }
+    }
+  }
+}
+
+TEST(RelativeMotionOfManyParticles, IsLimitedAlikeByAnyNumberOfThreadsAndEdgeByEdge) {
+  const Cloth cloth(square(60), material::linearFabric(100.0), ModelledEffects{});
+  const ClothState base = cloth.initialState();
+  ClothState at = base;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  for (std::size_t i = 0; i < at.velocities.size(); i += 7) {
+    at.velocities[i] = Vector3d(part(random), part(random), 3.0 * part(random));
+  }
+  ClothState shared = at, plain = at;
+  const std::vector<char> none_fixed(cloth.particleCount(), 0);
+  RelativeMotionLimit limit(cloth);
+  linear::ThreadPool pool(3);
+  EXPECT_TRUE(limit.apply(cloth, none_fixed, base.positions, kStage, at));
+  EXPECT_TRUE(limit.apply(cloth, none_fixed, base.positions, kStage, shared, &pool));
+  EXPECT_EQ(shared.velocities, at.velocities);
+  limitPlainly(cloth, base, plain);
+  for (std::size_t i = 0; i < at.velocities.size(); ++i) {
+    EXPECT_LT((plain.velocities[i] - at.velocities[i]).norm(), 1e-12);
+  }
 }
 
 /// Another method has come nearer to the end of the step than a linearised solve does, is not

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "haptex/cloth/dynamics/stages/relative_motion.h"
 #include "haptex/cloth/dynamics/stages/stage_solver.h"
 
 namespace haptex::cloth {
@@ -61,7 +60,7 @@ bool StageSolver::calmEdges(const Cloth& cloth, const Stage& stage, double& pote
   constexpr double kMostLeft = 0.05;
   trial_.positions = result.positions;
   trial_.velocities = result.velocities;
-  if (!limitRelativeMotion(cloth, fixed_, stage.base.positions, stage.a, trial_)) return false;
+  if (!limitRelativeMotion(cloth, stage, trial_)) return false;
   sew(cloth, stage, trial_);
   const double at_begin = incrementalPotential(cloth, stage, stage.base);
   const double calm = incrementalPotential(cloth, stage, trial_);

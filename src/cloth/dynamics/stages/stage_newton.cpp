@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "haptex/cloth/dynamics/stages/relative_motion.h"
 #include "haptex/cloth/dynamics/stages/stage_solver.h"
 
 namespace haptex::cloth {
@@ -126,6 +125,10 @@ bool StageSolver::isSmallError(double force, double decrease) const {
   return force <= force_error_ && 0.5 * decrease <= energy_error_;
 }
 
+bool StageSolver::limitRelativeMotion(const Cloth& cloth, const Stage& stage, ClothState& at) {
+  return relative_motion_.apply(cloth, fixed_, stage.base.positions, stage.a, at, pool_.get());
+}
+
 /// Moves the result along solution_ to a lower potential. If the whole way is too far, what moves
 /// apart on it is slowed down before all of it is shortened.
 StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& stage,
@@ -145,7 +148,7 @@ StageSolver::Descent StageSolver::searchLine(const Cloth& cloth, const Stage& st
     }
     if (limited) {
       sew(cloth, stage, trial_);
-      if (!limitRelativeMotion(cloth, fixed_, stage.base.positions, stage.a, trial_)) return false;
+      if (!limitRelativeMotion(cloth, stage, trial_)) return false;
     }
     sew(cloth, stage, trial_);
     const MotionCut cut = keepApart(cloth, stage, result.positions, trial_);

@@ -65,7 +65,8 @@ StageSolver::StageSolver(const Cloth& cloth, const StepSettings& settings)
       rhs_(3, cloth.particleCount()),
       solution_(linear::BlockVector::Zero(3, cloth.particleCount())),
       prescribed_(linear::BlockVector::Zero(3, cloth.particleCount())),
-      fixed_(cloth.particleCount(), 0) {
+      fixed_(cloth.particleCount(), 0),
+      relative_motion_(cloth) {
   if (cloth.effects().contacts && !cloth.effects().self_collision) {
     contacts_.emplace(matrix_, cloth.bodies());
     load_change_ = solution_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "haptex/cloth/dynamics/cloth.h"
+#include "haptex/linear/thread_pool.h"
 
 namespace haptex::cloth {
 
@@ -17,13 +18,24 @@ namespace haptex::cloth {
 /// A limit on the strain rate (Bridson, Fedkiw and Anderson 2002 allow 0.1 per step) would leave
 /// what moves across the edges, which is most of what a solve gets wrong: it takes elements under
 /// compression for free to move out of their plane.
-///
-/// @param fixed particles that stay as they are: those that are attached or tied
-/// @param base  m, x* of the stage, where edges have their lengths
-/// @param a     s, of the stage, > 0: positions are x* + a v
-/// @param at    m and m/s; changed
-/// @return whether there was such an edge
-bool limitRelativeMotion(const Cloth& cloth, const std::vector<char>& fixed, const Positions& base,
-                         double a, ClothState& at);
+class RelativeMotionLimit {
+ public:
+  /// Allocates here only.
+  explicit RelativeMotionLimit(const Cloth& cloth);
+
+  /// @param cloth that of the constructor
+  /// @param fixed particles that stay as they are: those that are attached or tied
+  /// @param base  m, x* of the stage, where edges have their lengths
+  /// @param a     s, of the stage, > 0: positions are x* + a v
+  /// @param at    m and m/s; changed
+  /// @param pool  shares the search for such edges if it is given
+  /// @return whether there was such an edge
+  bool apply(const Cloth& cloth, const std::vector<char>& fixed, const Positions& base, double a,
+             ClothState& at, linear::ThreadPool* pool = nullptr);
+
+ private:
+  std::vector<char> apart_;  // of triangles: whether an edge was beyond the limit at first
+  std::vector<char> moved_;  // of particles: the last sweep that gave it an impulse, from 1 on
+};
 
 }  // namespace haptex::cloth

@@ -11,6 +11,7 @@
 #include "haptex/cloth/dynamics/cloth.h"
 #include "haptex/cloth/dynamics/safe_motion.h"
 #include "haptex/cloth/dynamics/stage.h"
+#include "haptex/cloth/dynamics/stages/relative_motion.h"
 #include "haptex/cloth/dynamics/step.h"
 #include "haptex/linear/block_matrix.h"
 #include "haptex/linear/linear_solver.h"
@@ -25,7 +26,7 @@ namespace haptex::cloth {
 /// there to the minimum of the incremental potential
 ///   |M^(1/2) (v - v*)|^2 / 2 + Force::incrementalPotential(x, v) of all forces,
 /// by Newton iterations with a backtracking line search, which first limits the relative motion on
-/// a whole step that does not lower it (limitRelativeMotion()). They use the projected Hessian as
+/// a whole step that does not lower it (RelativeMotionLimit). They use the projected Hessian as
 /// long as the residual is large, and then the exact one where it is positive definite. What forces
 /// hold fixed meanwhile is that of the first solve, right to the second order.
 ///
@@ -70,7 +71,7 @@ class StageSolver {
 
   /// Newton iterations whatever the settings say, from the result of the last solve() or
   /// beginAnew(), which was of this stage, with relative motion limited where that is nearly
-  /// all that was wrong (limitRelativeMotion()). If a few of them are not enough and rest has a
+  /// all that was wrong (RelativeMotionLimit). If a few of them are not enough and rest has a
   /// lower incremental potential, they go on from where the straight way there first has: so that
   /// of the result is at most that of rest, unless it is enough. What forces hold is of the base,
   /// and passive (NewtonStart). Of cloth that collides with itself no motion is limited; where it
@@ -134,6 +135,7 @@ class StageSolver {
   int mostBeyond(const StepReport& report, bool to_error) const;
   void assembleNewton(const Cloth& cloth, const Stage& stage, const ClothState& at, Hessian hessian,
                       StepReport& report);
+  bool limitRelativeMotion(const Cloth& cloth, const Stage& stage, ClothState& at);
   double decrease() const;
   bool isSmallError(double force, double decrease) const;
   Descent searchLine(const Cloth& cloth, const Stage& stage, ClothState& result, double& potential,
@@ -155,12 +157,13 @@ class StageSolver {
   std::vector<char> fixed_;         // attached or tied
   bool any_fixed_ = false;
   std::optional<ActiveSetContactSolver> contacts_;
-  std::optional<SafeMotion> motion_;   // if the cloth collides with itself
-  Velocities sewn_velocities_;         // m/s, of sewn(); empty without ties
-  Positions start_;                    // m, likewise: that of the step beside moved obstacles
-  linear::BlockVector response_;       // m, of respond()
-  linear::BlockVector load_change_;    // of the solution, by other loads of friction
-  ClothState trial_;                   // of a line search, and of beginAnew()
+  std::optional<SafeMotion> motion_;  // if the cloth collides with itself
+  Velocities sewn_velocities_;        // m/s, of sewn(); empty without ties
+  Positions start_;                   // m, likewise: that of the step beside moved obstacles
+  linear::BlockVector response_;      // m, of respond()
+  linear::BlockVector load_change_;   // of the solution, by other loads of friction
+  ClothState trial_;                  // of a line search, and of beginAnew()
+  RelativeMotionLimit relative_motion_;
   std::vector<Eigen::Vector3d> held_;  // by the forces: Force::hold()
 };
 
