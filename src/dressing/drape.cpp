@@ -41,14 +41,19 @@ constexpr int kSlowSteps = 2;                 // at least, of what is at rest
 /// A way to close seams, and what is done where they would be sewn through themselves.
 struct Closing {
   double onwards;    // see SeamPull::loads()
+  bool glides;       // whether what touches the body may take its time to glide along it
   bool thins;        // whether panels get thinner
   bool pulls_apart;  // whether they are sewn all the same, and then pulled apart
 };
 
 // What is expected to go on reaches its seam in a few steps, and mostly is sewn there. Where the
-// sides of a seam come to lie over each other instead, all begins anew and goes slower. Where that
-// does not help either, the first way is gone once more and what it leads to is pulled apart.
-constexpr Closing kClosings[] = {{1.0, false, false}, {0.2, true, true}, {1.0, false, true}};
+// sides of a seam come to lie over each other instead, all begins anew and goes slower, and then
+// slower still. Where that does not help either, the first way is gone once more and what it leads
+// to is pulled apart.
+constexpr Closing kClosings[] = {{1.0, false, false, false},
+                                 {0.5, true, false, false},
+                                 {0.2, true, true, true},
+                                 {1.0, false, false, true}};
 
 // Panels whose seams do not close get thinner by so much each time, down to (m).
 constexpr double kThinnerOpen = 0.5, kThinnestOpen = 0.5e-3;
@@ -227,7 +232,7 @@ class Dressing {
       if (is_late && (is_last || !is_near)) refuseGap(closed.pull, closed.positions);
       // What intersects itself alone does not get better; what touches the body mostly glides on.
       const bool glides =
-          closing.thins && outcome_.with_body > 0 && closed.time - moved_at < settings_.patience;
+          closing.glides && outcome_.with_body > 0 && closed.time - moved_at < settings_.patience;
       if (is_late || (closed.time - tried_at >= settings_.patience && !glides)) return false;
       cloth.cloth().setPointLoads(closed.pull.loads(closed.positions, farthest, closing.onwards));
       step(cloth, settings_.time_step, closed.time);

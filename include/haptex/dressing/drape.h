@@ -76,11 +76,11 @@ struct DrapeOutcome {
 /// Sews a garment on a body that stands still, and lets it come to rest under gravity.
 ///
 /// 1. The sides of seams are pulled together without friction, and with a lift instead of weight.
-///    Panels touch the body and each other and pass through neither. There are three ways, of which
+///    Panels touch the body and each other and pass through neither. There are four ways, of which
 ///    the next begins anew where one does not lead to what can be sewn. The middle of a seam is
-///    expected to go on as in the last step; or by a fifth of that, which takes longer, but sides
-///    of seams do not come to lie over each other, and panels get thinner where they would
-///    intersect themselves; or the first one again.
+///    expected to go on as in the last step; or by half of that, which takes longer, but sides of
+///    seams rarely come to lie over each other; or by a fifth, and panels get thinner where they
+///    would intersect themselves; or the first one again.
 /// 2. As soon as all are near, and what is sewn together there intersects neither itself nor the
 ///    body, or can be pulled apart, they become one mesh.
 /// 3. That comes to rest with weight, thickness and friction as they are.
