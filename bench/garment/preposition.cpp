@@ -96,5 +96,6 @@ int main() {
     measure("fitted_shirt", body, 0.0074);
     measure("fitted_dress", body, 0.01);
   }
+  measure("jacket", "figure", 0.0132);
   countClean();
 }

@@ -1,7 +1,10 @@
 #include "haptex/base/command_line.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 
 #include "haptex/base/require.h"
@@ -33,6 +36,8 @@ CommandLine readCommandLine(const std::vector<std::string>& arguments,
     const std::string& argument = arguments[i];
     if (argument.rfind("--", 0) != 0) {
       line.files.push_back(argument);
+    } else if (argument == "--help") {
+      throw HelpAsked();
     } else if (std::find(options.begin(), options.end(), argument) == options.end()) {
       refuse(argument, " is unknown; allowed ", options.size() == 1 ? "is " : "are ",
              listed(options));
@@ -53,10 +58,31 @@ void requireTwoFiles(const CommandLine& line, const char* what) {
   }
 }
 
+void requireOutput(const std::string& path, const std::vector<std::string>& inputs) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path directory = fs::absolute(path, error).parent_path();
+  if (!fs::is_directory(directory, error)) {
+    refuse(path, ": cannot be written: there is no directory ", directory.string());
+  }
+  if (fs::is_directory(path, error)) refuse(path, ": is a directory, not a file");
+  const std::string written = fs::exists(path, error) ? path : directory.string();
+  if (access(written.c_str(), W_OK) != 0) refuse(path, ": cannot be written");
+  for (const std::string& input : inputs) {
+    const bool same = fs::path(path).lexically_normal() == fs::path(input).lexically_normal();
+    if (same || fs::equivalent(path, input, error)) {
+      refuse(path, ": is read, too: allowed is another file");
+    }
+  }
+}
+
 int runProgram(const char* usage, std::ostream& err, const std::function<void()>& read,
                const std::function<int()>& work) {
   try {
     read();
+  } catch (const HelpAsked&) {
+    std::cout << usage;
+    return 0;
   } catch (const std::exception& error) {
     err << error.what() << '\n' << usage;
     return 2;

@@ -71,11 +71,12 @@ YamlValue::YamlValue(std::shared_ptr<const std::string> file, std::string key_pa
 
 YamlValue YamlValue::load(const std::string& path) { return parse(readTextFile(path), path); }
 
-YamlValue YamlValue::parse(const std::string& text, const std::string& name) {
-  requireSize(name, text.size(), kLargestYaml);
+YamlValue YamlValue::parse(const std::string& text, const std::string& name,
+                           const YamlLimits& limits) {
+  requireSize(name, text.size(), limits.bytes);
   std::vector<YAML::Node> documents;
   try {
-    requireSmallYaml(text);
+    requireSmallYaml(text, limits.values);
     documents = YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
     throw std::runtime_error(shortened(name) + ": line " + std::to_string(error.mark.line + 1) +

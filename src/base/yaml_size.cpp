@@ -16,6 +16,8 @@ namespace {
 
 class CountedValues : public YAML::EventHandler {
  public:
+  explicit CountedValues(std::size_t most) : most_(most) {}
+
   void OnDocumentStart(const YAML::Mark& /*mark*/) override { sizes_.clear(); }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { addScalar(mark, anchor); }
@@ -48,8 +50,8 @@ class CountedValues : public YAML::EventHandler {
 
   void add(const YAML::Mark& mark, std::size_t count) {
     values_ += count;
-    if (values_ > kMostYamlValues) {
-      refuse("line ", mark.line + 1, ": more than ", kMostYamlValues,
+    if (values_ > most_) {
+      refuse("line ", mark.line + 1, ": more than ", most_,
              " values, an alias counted as what it stands for");
     }
   }
@@ -74,6 +76,7 @@ class CountedValues : public YAML::EventHandler {
     open_.pop_back();
   }
 
+  std::size_t most_;
   std::size_t values_ = 0;
   std::vector<Open> open_;
   std::map<YAML::anchor_t, std::size_t> sizes_;  // in values, of what has an anchor and is complete
@@ -81,10 +84,10 @@ class CountedValues : public YAML::EventHandler {
 
 }  // namespace
 
-void requireSmallYaml(const std::string& text) {
+void requireSmallYaml(const std::string& text, std::size_t most_values) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
-  CountedValues counted;
+  CountedValues counted(most_values);
   while (parser.HandleNextDocument(counted)) {
   }
 }

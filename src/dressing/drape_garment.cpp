@@ -5,8 +5,6 @@
 #include <sstream>
 
 #include "haptex/base/command_line.h"
-#include "haptex/base/parse_number.h"
-#include "haptex/base/quoted.h"
 #include "haptex/base/require.h"
 #include "haptex/base/whole_file.h"
 #include "haptex/dressing/drape.h"
@@ -29,6 +27,8 @@ const char* const kUsage =
     "SCENE.yaml is a scene in which it is worn; beside it is the surface of a BODY.yaml, as "
     "SCENE_body.obj.\n";
 
+constexpr double kShortestEdge = 1e-3, kLongestEdge = 1.0;  // m
+
 struct Request {
   std::string garment, out, body;
   std::string scene;          // may be empty
@@ -40,15 +40,17 @@ Request parse(const std::vector<std::string>& arguments) {
   base::requireTwoFiles(line, "garment");
   Request request = {line.files[0], line.files[1], line.value("--body"), line.value("--scene")};
   if (request.body.empty()) base::refuse("a body is needed: --body BODY.obj or BODY.yaml");
-  if (line.options.count("--edge") > 0) {
-    const auto length = base::parseNumber<double>(line.value("--edge"));
-    if (!length) {
-      base::refuse("--edge ", base::quoted(line.value("--edge")),
-                   ": allowed is a number of metres");
-    }
-    request.edge_length = *length;
-  }
+  request.edge_length = line.number(
+      "--edge", request.edge_length,
+      [](double length) { return length >= kShortestEdge && length <= kLongestEdge; },
+      "are 0.001 to 1 m");
   return request;
+}
+
+void requireOutputs(const Request& request) {
+  base::requireOutput(request.out, {request.garment, request.body});
+  if (request.scene.empty()) return;
+  base::requireOutput(request.scene, {request.garment, request.body, request.out});
 }
 
 std::string fabricPath(const std::string& name, const std::string& garment,
@@ -107,6 +109,7 @@ int drapeGarment(const std::vector<std::string>& arguments, const std::string& f
   Request request;
   const auto read = [&] { request = parse(arguments); };
   return base::runProgram(kUsage, err, read, [&] {
+    requireOutputs(request);
     const CoarseStart start = coarseStart(request.edge_length);
     DrapeSettings settings;
     settings.halvings = start.halvings;

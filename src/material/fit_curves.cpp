@@ -75,13 +75,12 @@ void printReport(const FitReport& report, std::ostream& out) {
 }
 
 int fitCurves(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& notes) {
-  if (arguments == std::vector<std::string>{"--help"}) {
-    out << kFitCurvesUsage;
-    return 0;
-  }
   FitRequest request;
   try {
     request = parseFitRequest(arguments);
+  } catch (const base::HelpAsked&) {
+    out << kFitCurvesUsage;
+    return 0;
   } catch (const std::exception& error) {
     notes << "fit_curves: " << error.what() << '\n' << kFitCurvesUsage;
     return 2;

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -46,6 +49,28 @@ TEST(CommandLine, ReadsNumbersThatARuleAllows) {
   EXPECT_THROW(line.number("--d", 1.0, is_positive, ""), std::invalid_argument);
 }
 
+TEST(RequireOutput, RefusesWhereNoFileCanBeWrittenAndWhatIsRead) {
+  namespace fs = std::filesystem;
+  const fs::path directory = fs::temp_directory_path() / ("haptex_out_" + std::to_string(getpid()));
+  fs::create_directory(directory);
+  const std::string input = (directory / "in").string(), output = (directory / "out").string();
+  std::ofstream(input) << "kept";
+  const auto refusal = [&](const std::string& path) {
+    return test::refusalOf([&] { requireOutput(path, {input}); });
+  };
+  EXPECT_NO_THROW(requireOutput(output, {input}));
+  EXPECT_FALSE(fs::exists(output));
+  EXPECT_EQ(refusal(output + "/deep"),
+            output + "/deep: cannot be written: there is no directory " + output);
+  EXPECT_EQ(refusal(directory.string()), directory.string() + ": is a directory, not a file");
+  EXPECT_EQ(refusal(input), input + ": is read, too: allowed is another file");
+  const std::string other = (directory / "." / "in").string();
+  EXPECT_EQ(refusal(other), other + ": is read, too: allowed is another file");
+  fs::create_symlink(input, output);
+  EXPECT_EQ(refusal(output), output + ": is read, too: allowed is another file");
+  fs::remove_all(directory);
+}
+
 TEST(RunProgram, TellsArgumentsThatAreRefusedFromWorkThatFails) {
   const auto fails = [] { throw std::runtime_error("because"); };
   std::ostringstream err;
@@ -63,6 +88,15 @@ TEST(RunProgram, TellsArgumentsThatAreRefusedFromWorkThatFails) {
   EXPECT_EQ(runProgram(
                 "usage\n", err, [] {}, [] { return 3; }),
             3);
+}
+
+TEST(RunProgram, ShowsItsUsageWhenItIsAskedTo) {
+  std::ostringstream err;
+  const auto asks = [] { readCommandLine({"file", "--help"}, {"--edge"}); };
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(runProgram("usage\n", err, asks, [] { return 3; }), 0);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "usage\n");
+  EXPECT_EQ(err.str(), "");
 }
 
 TEST(RunPlainProgram, CountsItsArguments) {

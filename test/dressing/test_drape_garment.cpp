@@ -84,7 +84,10 @@ TEST_F(DrapeGarment, SaysWhatIsWrongWithItsArguments) {
       {{garment_, obj_}, "a body is needed"},
       {{garment_, obj_, "--body"}, "--body needs a value"},
       {{garment_, obj_, "third", "--body", body_}, "third: two files are allowed"},
-      {{garment_, obj_, "--body", body_, "--edge", "fine"}, "--edge 'fine'"},
+      {{garment_, obj_, "--body", body_, "--edge", "fine"},
+       "--edge is 'fine': allowed are 0.001 to 1 m"},
+      {{garment_, obj_, "--body", body_, "--edge", "nan"}, "--edge is 'nan'"},
+      {{garment_, obj_, "--body", body_, "--edge", "0"}, "--edge is '0'"},
       {{garment_, obj_, "--size", "3"}, "--size is unknown"}};
   for (const auto& [arguments, message] : refused) {
     EXPECT_EQ(run(arguments), 2);
@@ -96,8 +99,18 @@ TEST_F(DrapeGarment, SaysWhatIsWrongWithItsArguments) {
 TEST_F(DrapeGarment, RefusesFilesThatAreNotThereAndWritesNothing) {
   EXPECT_EQ(run({garment_, obj_, "--body", directory_ + "/none.obj"}), 1);
   EXPECT_NE(err_.find("none.obj"), std::string::npos);
-  EXPECT_EQ(run({garment_, obj_, "--body", body_, "--edge", "0"}), 1);
-  EXPECT_NE(err_.find("edge_length"), std::string::npos) << err_;
+  EXPECT_FALSE(std::filesystem::exists(obj_));
+}
+
+TEST_F(DrapeGarment, RefusesBeforeItWorksWhereItCannotWrite) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+      {{garment_, garment_, "--body", body_}, garment_ + ": is read, too"},
+      {{garment_, obj_, "--body", body_, "--scene", obj_}, obj_ + ": is read, too"},
+      {{garment_, obj_ + "/x", "--body", body_}, "there is no directory"}};
+  for (const auto& [arguments, message] : refused) {
+    EXPECT_EQ(run(arguments), 1);
+    EXPECT_NE(err_.find(message), std::string::npos) << err_;
+  }
   EXPECT_FALSE(std::filesystem::exists(obj_));
 }
 

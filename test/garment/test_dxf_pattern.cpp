@@ -206,6 +206,10 @@ TEST(DxfReader, NamesTheLine) {
   EXPECT_EQ(refused(begin + "5\n20"), "x.dxf: line 11: ends after the group code 20");
   EXPECT_EQ(refused("0\nSECTION\n2\nENTITIES\n0\nPOLYLINE\n8\n1\n0\nEOF\n"),
             "x.dxf: line 6: a POLYLINE without SEQEND");
+  const std::string line = "5\n20\n5\n11\n6\n21\n6\n";
+  EXPECT_EQ(refused(begin + line), "x.dxf: ends within the section ENTITIES, without ENDSEC");
+  EXPECT_EQ(refused("0\nSECTION\n2\nBLOCKS\n0\nBLOCK\n2\nA\n"),
+            "x.dxf: ends within the section BLOCKS, without ENDSEC");
   EXPECT_EQ(refused(""), "x.dxf: has no section BLOCKS or ENTITIES: is it a DXF file?");
   EXPECT_EQ(refused("AutoCAD Binary DXF\r\n"),
             "x.dxf: is a binary DXF file: allowed are those in ASCII");

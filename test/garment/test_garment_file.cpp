@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "garment_fixtures.h"
+#include "haptex/base/yaml_reader.h"
 
 namespace haptex::garment::test_garment_file {
 namespace {
@@ -83,6 +84,20 @@ TEST(GarmentFile, NamesMayHaveAnyCharacter) {
   pattern.panels[0].name = "left \"front\": {\\}\n#1";
   const Pattern again = parsePattern(writePattern(pattern), "again.yaml");
   EXPECT_EQ(again.panels[0].name, pattern.panels[0].name);
+}
+
+/// Longer than YAML files of other kinds may be.
+TEST(GarmentFile, MayHaveAHundredThousandPoints) {
+  Pattern pattern = parsePattern(kSmallGarment, "small.yaml");
+  pattern.seams.clear();
+  pattern.fastenings.clear();
+  Panel& panel = pattern.panels.front();
+  panel.outlines.resize(1);
+  panel.marks.assign(10, std::vector<Vector2d>(10'000, Vector2d(0.123456789, 0.2)));
+  const std::string text = writePattern(pattern);
+  EXPECT_GT(text.size(), base::kLargestYaml);
+  const Pattern again = parsePattern(text, "large.yaml");
+  EXPECT_EQ(again.panels.front().marks, panel.marks);
 }
 
 TEST(GarmentFile, TheExampleInItsDocumentationIsOne) {

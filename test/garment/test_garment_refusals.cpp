@@ -68,7 +68,11 @@ TEST(GarmentRefusals, NamePanelEdgeAndWhatIsAllowed) {
        "carrier 'torso' is there twice: names must differ"},
       {"along: 0.5", "along: 3.5",
        "panel 'back': lies at angle 3.14 rad, 3.5 along its carrier, turned by 0 rad: allowed are "
-       "finite angles and -2 to 3"},
+       "angles of -2 pi to 2 pi and -2 to 3"},
+      {"angle: 3.14", "angle: 1e300",
+       "panel 'back': lies at angle 1e+300 rad, 0.5 along its carrier, turned by 0 rad: allowed "
+       "are "
+       "angles of -2 pi to 2 pi and -2 to 3"},
       {"position: [0.2, 0, 1]", "position: [0.2, 0, 30]",
        "panel 'front': its position has a coordinate of 30 m: allowed are finite ones up to 20 m"},
   };

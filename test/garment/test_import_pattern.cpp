@@ -76,7 +76,8 @@ TEST_F(ImportPattern, SaysWhatItRefusesAndWritesNothing) {
   EXPECT_EQ(err_, path("none.dxf") + ": there is no such file\n");
   write("two.json", kTwoSquares);
   EXPECT_EQ(run({file, path("none/two.yaml")}), 1);
-  EXPECT_EQ(err_, path("none/two.yaml") + ": cannot be written\n");
+  EXPECT_EQ(err_, path("none/two.yaml") + ": cannot be written: there is no directory " +
+                      path("none") + '\n');
 }
 
 TEST_F(ImportPattern, RefusesArgumentsThatItDoesNotKnow) {

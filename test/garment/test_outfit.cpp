@@ -54,6 +54,21 @@ TEST_F(Outfit, HasAllPanelsCarriersAndSeamsEachUnderTheNameOfItsGarment) {
   EXPECT_EQ(both.fastenings[1].places[1].panel, 1 + static_cast<int>(panels));
 }
 
+TEST_F(Outfit, NamesOfPanelsAreThoseThatGroupsOfObjFilesCanHave) {
+  std::string text = kSmallGarment;
+  const auto rename = [&](const std::string& name, const std::string& other) {
+    for (std::size_t at = 0; (at = text.find(name, at)) != text.npos; at += other.size()) {
+      text.replace(at, name.size(), other);
+    }
+    write("shirt", text);
+  };
+  rename("front", "the panel");
+  EXPECT_EQ(loadOutfit(directory_ + "/shirt.yaml").panels[0].name, "the_panel");
+  EXPECT_EQ(load("[shirt]").panels[0].name, "shirt/the_panel");
+  rename("back", "the_panel");
+  EXPECT_NE(refusal("[shirt]").find("panel 'shirt/the_panel' is there twice"), std::string::npos);
+}
+
 TEST_F(Outfit, LayersFollowTheOrderOfDressingAlone) {
   const std::size_t panels = parsePattern(kSmallGarment, "small.yaml").panels.size();
   for (const char* order : {"[trousers, shirt]", "[shirt, trousers]"}) {

@@ -38,9 +38,13 @@ struct CommandLine {
   }
 };
 
+/// What readCommandLine() throws if it finds --help, and runProgram() catches.
+struct HelpAsked {};
+
 /// @param options that are allowed, such as "--edge", at least one; each has a value
 /// @throws std::invalid_argument naming an option that is not allowed and those that are, or one
 ///   without a value
+/// @throws HelpAsked
 CommandLine readCommandLine(const std::vector<std::string>& arguments,
                             const std::vector<std::string>& options);
 
@@ -49,9 +53,16 @@ CommandLine readCommandLine(const std::vector<std::string>& arguments,
 /// @throws std::invalid_argument naming what lacks or is too much, unless there are two files
 void requireTwoFiles(const CommandLine& line, const char* what);
 
+/// Before work that takes long.
+/// @throws std::invalid_argument naming the path if no file can be written there, or if it is one
+/// of
+///   the inputs
+void requireOutput(const std::string& path, const std::vector<std::string>& inputs);
+
 /// A program that first reads its arguments and then works.
-/// @returns its exit status: 2 if `read` throws, which `err` tells with the usage, 1 if `work`
-///   throws, which `err` tells, otherwise what `work` returns
+/// @returns its exit status: 0 if `read` throws HelpAsked, and the usage is shown; 2 if it throws
+///   something else, which `err` tells with the usage; 1 if `work` throws, which `err` tells;
+///   otherwise what `work` returns
 int runProgram(const char* usage, std::ostream& err, const std::function<void()>& read,
                const std::function<int()>& work);
 

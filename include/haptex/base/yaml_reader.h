@@ -18,6 +18,12 @@ constexpr std::size_t kLargestYaml = std::size_t{256} << 10;
 constexpr std::size_t kMostYamlValues = 100'000;
 constexpr std::size_t kDeepestYaml = 32;
 
+/// For files that may be larger than most.
+struct YamlLimits {
+  std::size_t bytes = kLargestYaml;
+  std::size_t values = kMostYamlValues;
+};
+
 /// @param largest bytes that are read at most
 /// @throws std::runtime_error naming the path if it cannot be read or is larger
 std::string readTextFile(const std::string& path, std::size_t largest = kLargestYaml);
@@ -33,7 +39,8 @@ class YamlValue {
   static YamlValue load(const std::string& path);
   /// The same of a text.
   /// @param name of it in messages, instead of a path
-  static YamlValue parse(const std::string& text, const std::string& name);
+  static YamlValue parse(const std::string& text, const std::string& name,
+                         const YamlLimits& limits = {});
 
   const std::string& file() const { return *file_; }
   const std::string& keyPath() const { return key_path_; }

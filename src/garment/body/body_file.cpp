@@ -68,6 +68,7 @@ class SurfaceReader {
                          std::to_string(kMostSegments));
     }
     for (const YamlValue& item : items) readSegment(item);
+    for (std::size_t i = 0; i < items.size(); ++i) requireOuterChain(items[i], body_.segments[i]);
   }
 
   void readSegment(const YamlValue& value) {
@@ -96,6 +97,16 @@ class SurfaceReader {
     }
     body_.segments.push_back(std::move(segment));
     parts_.push_back(std::move(part));
+  }
+
+  void requireOuterChain(const YamlValue& value, const Segment& segment) const {
+    if (segment.within.empty()) return;
+    const bool is_there =
+        std::any_of(body_.segments.begin(), body_.segments.end(),
+                    [&](const Segment& other) { return other.chain == segment.within; });
+    if (!is_there || segment.within == segment.chain) {
+      value.at("within").refuse("must be the chain of other segments");
+    }
   }
 
   int readParent(const YamlValue& value) const {

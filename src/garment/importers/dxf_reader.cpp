@@ -126,8 +126,10 @@ class DxfReader {
         readHeader();
       } else if (is(2, "BLOCKS")) {
         readBlocks();
+        requireEnd("BLOCKS");
       } else if (is(2, "ENTITIES")) {
         readEntities(drawing_.entities);
+        requireEnd("ENTITIES");
       }
     }
     if (!any_section_) refuse(name_, ": has no section BLOCKS or ENTITIES: is it a DXF file?");
@@ -138,6 +140,9 @@ class DxfReader {
   void advance() { group_ = groups_.next(); }
   bool is(int code, std::string_view value) const {
     return group_ && group_->code == code && group_->value == value;
+  }
+  void requireEnd(const char* section) const {
+    if (!group_) refuse(name_, ": ends within the section ", section, ", without ENDSEC");
   }
   bool atEntity() const { return group_ && group_->code == 0; }
 

@@ -113,6 +113,7 @@ int importPattern(const std::vector<std::string>& arguments, std::ostream& out, 
     requireOutput(request);
   };
   return base::runProgram(kUsage, err, read, [&] {
+    base::requireOutput(request.out, {request.file});
     const ImportedPattern imported = import(request);
     std::ofstream file(request.out);
     file << writePattern(imported.pattern) << std::flush;

@@ -69,12 +69,24 @@ Pattern readList(const base::YamlValue& file) {
   return all;
 }
 
+/// Of a panel, as a group of an OBJ file can have it.
+void makePlain(std::string& name) {
+  for (char& c : name) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code <= ' ' || code == 0x7f) c = '_';
+  }
+}
+
 }  // namespace
 
 Pattern loadOutfit(const std::string& path) {
   const std::string text = readPatternText(path);
-  const base::YamlValue file = base::YamlValue::parse(text, path);
-  return file.isMap() && file.has("garments") ? readList(file) : parsePattern(text, path);
+  const auto file = base::YamlValue::parse(text, path, {kLargestPatternFile, kMostPatternValues});
+  Pattern pattern =
+      file.isMap() && file.has("garments") ? readList(file) : parsePattern(text, path);
+  for (Panel& panel : pattern.panels) makePlain(panel.name);
+  requireSound(pattern, path);
+  return pattern;
 }
 
 }  // namespace haptex::garment

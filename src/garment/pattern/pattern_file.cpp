@@ -187,11 +187,11 @@ std::string readPatternText(const std::string& path) {
       base::refuse(path, ": has ", size, " bytes: allowed are up to ", kLargestPatternFile);
     }
   }
-  return base::readTextFile(path);
+  return base::readTextFile(path, kLargestPatternFile);
 }
 
 Pattern parsePattern(const std::string& text, const std::string& name) {
-  const YamlValue file = YamlValue::parse(text, name);
+  const YamlValue file = YamlValue::parse(text, name, {kLargestPatternFile, kMostPatternValues});
   Pattern pattern = PatternReader(file).read();
   requireSound(pattern, name);
   return pattern;

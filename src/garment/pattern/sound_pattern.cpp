@@ -14,6 +14,8 @@ namespace {
 using base::refuse;
 using Eigen::Vector2d;
 
+constexpr double kLargestAngle = 2.0 * M_PI;  // rad
+
 class SoundPattern {
  public:
   SoundPattern(const Pattern& pattern, const std::string& file) : pattern_(pattern), file_(file) {}
@@ -30,6 +32,7 @@ class SoundPattern {
       }
     }
     for (const Panel& panel : pattern_.panels) {
+      if (panel.name.empty()) refuse(file_, ": a panel has no name: every one must have its own");
       if (!names.insert(panel.name).second) {
         refuse(file_, ": panel '", panel.name, "' is there twice: names must differ");
       }
@@ -170,10 +173,11 @@ class SoundPattern {
              "' is unknown: ", known.empty() ? "there is none" : "there are " + known);
     }
     const double angle = on.angle.value_or(0.0), along = on.along.value_or(0.0);
-    if (!std::isfinite(angle) || !std::isfinite(on.turn) || !(along >= -2.0 && along <= 3.0)) {
+    if (!(std::abs(angle) <= kLargestAngle && std::abs(on.turn) <= kLargestAngle && along >= -2.0 &&
+          along <= 3.0)) {
       refuse(at(panel), ": lies at angle ", angle, " rad, ", along,
              " along its carrier, turned by ", on.turn,
-             " rad: allowed are finite angles and -2 to 3");
+             " rad: allowed are angles of -2 pi to 2 pi and -2 to 3");
     }
   }
 

@@ -37,6 +37,12 @@ Request parse(const std::vector<std::string>& arguments) {
   return {line.files, line.value("--body"), edge};
 }
 
+void requireOutputs(const Request& request) {
+  const std::vector<std::string>& files = request.files;
+  base::requireOutput(files[2], {files[0], files[1]});
+  if (!request.body_obj.empty()) base::requireOutput(request.body_obj, files);
+}
+
 std::ofstream openToWrite(const std::string& path) {
   std::ofstream file(path);
   if (!file) throw std::runtime_error(path + ": cannot be written");
@@ -88,6 +94,7 @@ int prepositionProgram(const std::vector<std::string>& arguments, std::ostream& 
   Request request;
   const auto read = [&] { request = parse(arguments); };
   return base::runProgram(kUsage, err, read, [&] {
+    requireOutputs(request);
     const Pattern pattern = loadOutfit(request.files[0]);
     const Body body = loadBody(request.files[1]);
     std::vector<PanelMesh> meshes;

@@ -8,6 +8,7 @@
 namespace haptex::garment {
 
 constexpr std::size_t kLargestPatternFile = 8u << 20;  ///< bytes
+constexpr std::size_t kMostPatternValues = 2'000'000;  ///< of its YAML
 
 /// The text of a file of at most kLargestPatternFile bytes.
 /// @throws std::runtime_error naming the path if it cannot be read
